@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TypeVar
 
-from app.desk.desk import Attached, Desk
+from app.desk.desk import Desk
+from app.desk.pages.desk_parts import Attached
 
 A = TypeVar("A", bound=Attached)
 

@@ -14,7 +14,8 @@ from app.compose.extra import extras
 OURS = ("app", "core", "drivers", "resources")
 QT = {"PySide6", "shiboken6"}
 SCREEN = "app.screen"
-COMMANDS = {"app.cli.main", "app.cli.report_file"}  # open the screen, print a PDF, and import Qt only then
+# They open the screen or print a PDF, and import Qt only then.
+COMMANDS = {"app.cli.main", "app.cli.proofs.report_file"}
 
 
 def test_import_contracts_hold() -> None:
@@ -33,7 +34,7 @@ def test_no_command_but_the_screen_imports_qt(command: str) -> None:
     importlib.import_module(f"app.cli.{command}_command")
     script = (
         "import sys; from app.cli.main import build_parser; "
-        f"build_parser(['{command}']); import app.compose.machine_setup; "
+        f"build_parser(['{command}']); import app.compose.machine.machine_setup; "
         "sys.exit(any(name.startswith('PySide6') for name in sys.modules))"
     )
     assert subprocess.run([sys.executable, "-c", script], check=False).returncode == 0
@@ -138,7 +139,11 @@ def test_every_folder_of_a_driver_is_in_its_contracts() -> None:
 
 def test_pickle_goes_between_our_own_processes_alone() -> None:
     """Unpickling runs what it is given: it is no format of a file."""
-    sender_and_receiver = {"app/cli/proof_job.py", "app/cli/proof_work.py", "app/compose/feeder_process.py"}
+    sender_and_receiver = {
+        "app/cli/proofs/proof_job.py",
+        "app/cli/proofs/proof_work.py",
+        "app/compose/backends/feeder_process.py",
+    }
     house = Path(__file__).parents[1]
     paths = [path for top in OURS for path in (house / top).rglob("*.py")]
     found = [

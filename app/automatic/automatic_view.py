@@ -8,10 +8,10 @@ from functools import partial
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QWidget
 
-from app.desk.machine_status import MachineStatus
-from app.desk.page_entry import editor_barred, program_barred, searchto_barred
-from app.desk.program_loading import Loaded
-from app.desk.prompt_line import MOVING, NONE_NAMED, UNDER_WAY
+from app.desk.pages.page_entry import editor_barred, program_barred, searchto_barred
+from app.desk.programs.program_loading import Loaded
+from app.desk.status.machine_status import MachineStatus
+from app.desk.status.prompt_line import MOVING, NONE_NAMED, UNDER_WAY
 from app.path.measuring import measuring_words
 from app.path.part_player import player_of
 from app.path.path_aspects import tip_of

@@ -1,4 +1,7 @@
-"""What happens when TurnDesk itself is at fault: one line for the person, the traceback into a crash file."""
+"""What happens when TurnDesk itself is at fault: one line for the person, the traceback into a crash file.
+
+And Ctrl+C where Python drops it: raised in a finalizer it is printed, and the command goes on to its end.
+"""
 
 from __future__ import annotations
 
@@ -6,9 +9,16 @@ import os
 import sys
 import threading
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from types import TracebackType
+from typing import TYPE_CHECKING
 
+if TYPE_CHECKING:
+    from sys import UnraisableHookArgs
+
+_dropped: list[type[BaseException]] = []
 _NAMES = 100  # tried before giving up: so many crashes in one second
 
 
@@ -70,3 +80,29 @@ def _written(folder: Path, text: str) -> Path | None:
     except OSError:
         return None
     return None
+
+
+@contextmanager
+def keep_interrupts() -> Iterator[None]:
+    """Whatever is dropped in here is raised by the next ``raise_interrupt``."""
+    before = sys.unraisablehook
+
+    def keep(told: UnraisableHookArgs) -> None:
+        if issubclass(told.exc_type, KeyboardInterrupt):
+            _dropped.append(told.exc_type)
+        else:
+            before(told)
+
+    _dropped.clear()
+    sys.unraisablehook = keep
+    try:
+        yield
+    finally:
+        sys.unraisablehook = before
+
+
+def raise_interrupt() -> None:
+    """Raise the KeyboardInterrupt that was dropped, once."""
+    if _dropped:
+        _dropped.clear()
+        raise KeyboardInterrupt

@@ -1,4 +1,4 @@
-"""``turndesk machine``: is a machine file good, and does everything in it answer?"""
+"""``turndesk machine``: is a machine file good, does everything in it answer, which HAL file does it need?"""
 
 from __future__ import annotations
 
@@ -7,22 +7,116 @@ import json
 import signal
 import sys
 import textwrap
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from importlib import import_module
+from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING
 
-from app.cli.machine_hal import add_hal_parser, write_hal
+from app.cli.program_options import out_file
 from app.cli.who_changes import COMMAND_LINE, add_as_option, who_changes
 from app.compose.extra import action_modules
-from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, EXIT_USAGE, CommandError, as_command_error
+from app.desk.command_errors import (
+    EXIT_ERRORS,
+    EXIT_OK,
+    EXIT_USAGE,
+    CommandError,
+    as_command_error,
+    cannot_write,
+)
 from core.access.access_table import Act
 from core.message import Message
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
+    from app.compose.backends.hal_file import WrittenHal
     from core.machine.machine_file import Change
     from core.machine.machine_model import Machine
+
+
+def add_hal_parser(actions: SubParsers) -> None:
+    """``hal`` among the actions of ``machine``."""
+    parser = actions.add_parser(
+        "hal",
+        help="write the HAL file for LinuxCNC and list the required wiring",
+        description="Writes the HAL file for the board that [board] in the machine file names: "
+        "simulation, parallel port, Mesa 7I76E or 7I97, EtherCAT. The comments at the top of "
+        "the file list the wiring and the values to measure.",
+    )
+    parser.add_argument("file", metavar="FILE", help="machine file with the [hal] and [board] tables")
+    parser.add_argument(
+        "--out",
+        type=out_file,
+        metavar="FILE.hal",
+        help="output file, which must not exist yet (default: stdout)",
+    )
+    parser.add_argument("--json", action="store_true", help="print only JSON on stdout")
+
+
+def write_hal(args: argparse.Namespace) -> int:
+    """Writes it: 0 done, 2 a machine file or an output that cannot be used. Raises CommandError."""
+    from app.compose.backends.hal_file import written_hal
+    from app.compose.machine.machine_setup import read_machine
+    from core.table_schema import MachineFileError
+
+    machine = read_machine(args.file)
+    try:
+        hal = written_hal(machine)
+    except MachineFileError as error:
+        sys.stderr.write("".join(f"turndesk: {error.source}: {finding}\n" for finding in error.errors))
+        return EXIT_USAGE
+    if args.out:
+        _save_hal(Path(args.out), hal.text, hal.beside)
+    if args.json:
+        _report_file(machine.source, args.out, hal)
+    elif args.out:
+        sys.stdout.write("".join(f"{line}\n" for line in hal.table))
+        sys.stdout.write("".join(f"measure: {note}\n" for note in hal.measure))
+    else:
+        sys.stdout.write(hal.text)
+        sys.stderr.write(
+            "".join(
+                f"turndesk: {name} must be in the same folder; --out writes both\n" for name in hal.beside
+            )
+        )
+    if args.out and Path(args.out).name != hal.name:
+        sys.stderr.write(
+            f"turndesk: {machine.source}: [hal] file is {hal.name}, so TurnDesk loads that file\n"
+        )
+    return EXIT_OK
+
+
+def _report_file(source: str, out: str | None, hal: WrittenHal) -> None:
+    report = {
+        "file": source,
+        "board": hal.board,
+        "out": out,
+        "hal": hal.text,
+        "beside": hal.beside,
+        "wires": [{**wire._asdict(), "names": list(wire.names)} for wire in hal.wires],
+        "measure": hal.measure,
+    }
+    sys.stdout.write(json.dumps(report) + "\n")
+
+
+def _save_hal(out: Path, text: str, beside: Mapping[str, str]) -> None:
+    """New files only: all of them, or none."""
+    files = {out: text, **{out.parent / name: more for name, more in beside.items()}}
+    for path in files:
+        if path.exists():
+            raise CommandError(
+                Message(
+                    "{path} already exists and will not be overwritten; use a different name or folder",
+                    path=path,
+                ),
+                "file-exists",
+            )
+    for path, content in files.items():
+        try:
+            with path.open("x", encoding="utf-8") as opened:
+                opened.write(content)
+        except OSError as error:
+            raise cannot_write(path, error) from error
 
 
 def add_parser(subparsers: SubParsers) -> None:
@@ -74,9 +168,9 @@ Rows = Sequence[tuple[str, str, str, str]]  # name, where it hangs, state, detai
 
 def check(file: str | None, *, json_wanted: bool) -> int:
     """Validates, connects and reports; answers the exit status."""
-    from app.compose.check_rows import NOT_CHECKED
-    from app.compose.machine_answers import check_ports
-    from app.compose.machine_files import named_machine
+    from app.compose.backends.backend_entry import NOT_CHECKED
+    from app.compose.backends.machine_answers import check_ports
+    from app.compose.machine.machine_files import named_machine
     from core.table_schema import MachineFileError
 
     try:
@@ -159,7 +253,7 @@ MOST = 5  # changes that a run tells; a check tells all
 def changed(machine: Machine) -> tuple[Change, ...]:
     """What differs from the file that was accepted last; nothing for one that never was. CommandError."""
     from app.cli.store_command import opened_store
-    from app.compose.accepted_machine import differences
+    from app.compose.machine.accepted_machine import differences
 
     with opened_store(read_only=True) as store:
         return differences(machine, store) or ()
@@ -167,7 +261,7 @@ def changed(machine: Machine) -> tuple[Change, ...]:
 
 def demand_accepted(machine: Machine) -> None:
     """A run tells what has changed; on a machine that is not simulated it does not begin. CommandError."""
-    from app.compose.backends import real_time
+    from app.compose.backends.connection import real_time
 
     try:
         told = changed(machine)
@@ -206,8 +300,8 @@ def demand_accepted(machine: Machine) -> None:
 def accept(file: str, args: argparse.Namespace) -> int:
     """Shows what has changed, and takes the file as it is now. Raises CommandError."""
     from app.cli.store_command import opened_store
-    from app.compose.accepted_machine import differences, key_of, record_of
-    from app.compose.machine_setup import read_machine
+    from app.compose.machine.accepted_machine import differences, key_of, record_of
+    from app.compose.machine.machine_setup import read_machine
 
     machine = read_machine(file)
     with opened_store() as store:
@@ -242,8 +336,8 @@ def _counted(changes: int) -> str:
 
 def play(file: str) -> int:
     """Answers on the bus of ``file`` until Ctrl-C or SIGTERM. Raises CommandError."""
-    from app.compose.backend_entry import backend_of, playable
-    from app.compose.machine_setup import read_machine
+    from app.compose.backends.backend_entry import backend_of, playable
+    from app.compose.machine.machine_setup import read_machine
     from core.ports import DriverError
 
     machine = read_machine(file)
@@ -272,7 +366,7 @@ def play(file: str) -> int:
 
 def _typed() -> Callable[[], Iterable[str]]:
     """Lines of the standard input, where there is one."""
-    from app.compose.played_machine import Typed
+    from app.compose.backends.played_machine import Typed
 
     try:
         return Typed(sys.stdin.fileno()).lines

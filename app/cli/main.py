@@ -13,9 +13,8 @@ import threading
 from collections.abc import Sequence
 from types import ModuleType
 
-from app.cli import dropped_interrupt
 from app.cli.command_parser import Parser, add_screen_options, settled
-from app.cli.crash_report import report_crash, report_thread
+from app.cli.crash_report import keep_interrupts, raise_interrupt, report_crash, report_thread
 from app.compose.extra import command_modules, extras, insert_after
 from app.desk import command_errors
 from app.desk.command_errors import EXIT_INTERRUPTED, EXIT_OK, EXIT_USAGE, CommandError
@@ -92,10 +91,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         nothing_taken()
         args = build_parser(_commands_for(argv)).parse_args(argv)
-        with dropped_interrupt.kept():
+        with keep_interrupts():
             check_data_folder()
             status = _flushed(_dispatch(settled(args)))
-            dropped_interrupt.look()
+            raise_interrupt()
             return status
     except (CommandError, DataFolderError) as error:
         return command_errors.report_refusal(error)

@@ -79,8 +79,7 @@ def _only_travel(found: tuple[Suspicion, ...]) -> tuple[Suspicion, ...]:
 
 def _machine_travel(store: Store, args: argparse.Namespace) -> Travel:
     """Return the travel of the machine of this command, mm. Raises CommandError for a bad machine file."""
-    from app.compose.machine_in_use import machine_in_use
-    from app.compose.machine_setup import read_machine
+    from app.compose.machine.machine_setup import machine_in_use, read_machine
 
     return travel_of(read_machine(args.machine) if args.machine else machine_in_use(store))
 

@@ -72,6 +72,6 @@ def _add_table(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Does what ``args`` asks; raises CommandError with one sentence."""
-    from app.cli.offset_actions import ACTIONS
+    from app.cli.actions.offset_actions import ACTIONS
 
     return ACTIONS[args.action](args)

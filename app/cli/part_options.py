@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli.figures import MM_PER_INCH
+from app.cli.figures.units import MM_PER_INCH
 from app.cli.program_options import STDIN, circumstances, read_source
 from app.desk.command_errors import CommandError
 from app.desk.kept_part import lasting
@@ -68,7 +68,7 @@ def part_setting(args: argparse.Namespace, around: Circumstances) -> PartSetting
 
 def with_kept_stock(setting: PartSetting, program: str, args: argparse.Namespace) -> PartSetting:
     """Without --stock that of the store; with --keep-stock the store remembers it. Raises CommandError."""
-    from app.compose.kept_stock import keep_stock, kept_with
+    from app.compose.known_part import keep_stock, kept_with
 
     if args.keep_stock:
         if program == STDIN:
@@ -113,7 +113,7 @@ def with_kept(setting: PartSetting, program: str, kept: KeptPart, args: argparse
 def _said(
     text: str, args: argparse.Namespace, around: Circumstances, setting: PartSetting
 ) -> Stock | StockSpec:
-    from app.compose.kept_stock import kept_with
+    from app.compose.known_part import kept_with
     from app.compose.said_stock import ProgramBefore, said_stock
     from core.part.stock_spec import StockError
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from app.desk.command_errors import CommandError
 from app.desk.standard_input import DASH, standard_input
 from core.language.source import Dialect, dialect_of
-from core.message import Message, error_code
+from core.message import CodedError, Message, error_code
 
 if TYPE_CHECKING:
     from core.interpreter.job_setup import Setup
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from core.machine.machine_model import Machine
 
     SubParsers = argparse._SubParsersAction[argparse.ArgumentParser]
+
 
 STDIN = "stdin"  # how a program that comes from there is called
 
@@ -60,7 +61,7 @@ class Circumstances:
 
 def circumstances(args: argparse.Namespace) -> Circumstances:
     """Read machine, offsets and inputs that the options name; raises CommandError with one sentence."""
-    from app.compose.machine_setup import read_machine
+    from app.compose.machine.machine_setup import read_machine
     from app.compose.stored_offsets import chosen_offsets, setup_with
 
     machine = read_machine(args.machine)
@@ -79,8 +80,6 @@ def input_states(path: str | None, known: Collection[str] = ()) -> dict[str, boo
     """The inputs file of the options, empty without one; with ``known`` no others. Raises CommandError."""
     if path is None:
         return {}
-    from app.cli.inputs_file import read_inputs
-
     return read_inputs(Path(path), known)
 
 
@@ -122,3 +121,29 @@ def read_source(path: Path, args: argparse.Namespace) -> Source:
 def out_file(text: str) -> str | None:
     """Where to: ``-`` is stdout, as it is where nothing is said."""
     return None if text == DASH else text
+
+
+def read_inputs(path: Path, known: Collection[str] = ()) -> dict[str, bool]:
+    """Input states by name. With ``known`` only these names are taken.
+
+    The file has [inputs] with ``10 = true`` for PLC input 10, ``"TB2-5" = false`` for a terminal. M95
+    asks what the control calls input 7: terminal TB2-9. ``7`` stands for it too where the file does not name
+    TB2-9.     Raises CommandError naming every mistake.
+    """
+    from app.desk.toml_file import read_toml, refuse, unknown_key
+
+    data = read_toml(path)
+    mistakes = [unknown_key(key, ("inputs",)) for key in data if key != "inputs"]
+    table = data.get("inputs")
+    if not isinstance(table, dict):
+        refuse(path, [*mistakes, CodedError("the table [inputs] is missing", "no-table")])
+        return {}
+    mistakes += [
+        CodedError(Message("inputs.{name} must be true (closed) or false (open)", name=name), "wrong-type")
+        for name, state in table.items()
+        if not isinstance(state, bool)
+    ]
+    mistakes += [unknown_key(name, known, "inputs") for name in table if known and name not in known]
+    refuse(path, mistakes)
+    also = "7" in table and (not known or "TB2-9" in known)
+    return {"TB2-9": table["7"], **table} if also else dict(table)

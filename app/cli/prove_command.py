@@ -22,11 +22,10 @@ from core.tool_edges import edge_name
 MOST_JOBS = 256
 
 if TYPE_CHECKING:
-    from app.cli.fitting_jobs import FittingJobs
     from app.cli.program_options import SubParsers
-    from app.cli.proof_job import OtherOffsets, ProofJob
-    from app.cli.proof_work import Findings
-    from app.cli.report_file import ReportFile
+    from app.cli.proofs.proof_job import FittingJobs, OtherOffsets, ProofJob
+    from app.cli.proofs.proof_work import Findings
+    from app.cli.proofs.report_file import ReportFile
     from core.interpreter.job_setup import Setup
     from core.language.source import Source
     from core.proving.proof_report import PartReport, Report
@@ -94,15 +93,15 @@ def _count(word: str) -> int:
 def run(args: argparse.Namespace) -> int:
     """Prove each file; 1 when any has errors, 2 when one cannot be read."""
     many = _for_workers(args)
-    from app.cli.fitting_jobs import FittingJobs
+    from app.cli.proofs.proof_job import FittingJobs
 
     jobs = FittingJobs(args, _job)
     jobs.of("")  # what is wrong with the options is told before anything is proved
     if many:
-        from app.cli.folder_proofs import prove_many
+        from app.cli.proofs.folder_proofs import prove_many
 
         return prove_many(args, jobs)
-    from app.cli.report_file import report_file
+    from app.cli.proofs.report_file import report_file
 
     with report_file(args) as report:
         return max(_status(Path(name), jobs, args, report) for name in args.files)
@@ -139,7 +138,7 @@ def _for_workers(args: argparse.Namespace) -> bool:
 def _job(args: argparse.Namespace) -> ProofJob:
     """What the options say about all programs. Raises CommandError."""
     from app.cli.part_options import part_setting
-    from app.cli.proof_job import ProofJob
+    from app.cli.proofs.proof_job import ProofJob
 
     around = circumstances(args)
     setting = part_setting(args, around)
@@ -155,7 +154,7 @@ def _other(args: argparse.Namespace, setup: Setup) -> OtherOffsets | None:
     """The offsets of --compare. Raises CommandError naming every mistake in them."""
     if args.compare is None:
         return None
-    from app.cli.proof_job import OtherOffsets
+    from app.cli.proofs.proof_job import OtherOffsets
     from app.compose.stored_offsets import read_offsets
 
     tools, secondary, zero, *_ = read_offsets(Path(args.compare))
@@ -164,9 +163,9 @@ def _other(args: argparse.Namespace, setup: Setup) -> OtherOffsets | None:
 
 def _status(path: Path, jobs: FittingJobs, args: argparse.Namespace, report: ReportFile | None) -> int:
     """Prove one file; one that cannot be read does not keep the others from their proof."""
-    from app.cli.fitting_jobs import on_machine
     from app.cli.part_options import with_kept_stock
-    from app.cli.proof_work import Proof
+    from app.cli.proofs.proof_job import on_machine
+    from app.cli.proofs.proof_work import Proof
 
     try:
         source = read_source(path, args)
@@ -186,8 +185,8 @@ def _status(path: Path, jobs: FittingJobs, args: argparse.Namespace, report: Rep
 
 
 def _prove(path: Path, source: Source, job: ProofJob, args: argparse.Namespace) -> Findings:
-    from app.cli.proof_json import report_json, stops_of
-    from app.cli.proof_work import findings
+    from app.cli.figures.proof_json import report_json, stops_of
+    from app.cli.proofs.proof_work import findings
 
     with Progress(f"proving {path.name}", len(source.lines)) as progress:
         found = findings(job, source, progress.reach)
@@ -202,7 +201,7 @@ def _prove(path: Path, source: Source, job: ProofJob, args: argparse.Namespace) 
         sys.stdout.write(f"  stops {stops} times for the operator\n" if stops else "")
         sys.stdout.write(_silenced(report))
         if compare is not None:
-            from app.cli.compare_figures import compare_lines
+            from app.cli.figures.compare_figures import compare_lines
 
             sys.stdout.write(compare_lines(compare, metric=report.metric, dialect=report.dialect))
     return found
@@ -217,7 +216,7 @@ def _silenced(report: Report) -> str:
 def _reached(report: Report, length: Callable[[float], float], unit: str) -> str:
     """What the program reaches: of a lathe X and Z of the program, of a mill all axes of the machine."""
     if report.mill is not None:
-        from app.cli.klartext_figures import machine_reach
+        from app.cli.figures.klartext_figures import machine_reach
 
         return machine_reach(report.mill)
     (x0, x1), (z0, z1) = report.reach.x, report.reach.z
@@ -243,8 +242,8 @@ def _ways(report: Report) -> str:
 
 def _sheet(path: Path, report: Report, part: PartReport | None) -> str:
     """The proof as a person reads it."""
-    from app.cli.figures import MM_PER_INCH, inches, millimetres, per_minute
-    from app.cli.stock_figures import stock_lines
+    from app.cli.figures.proof_json import stock_lines
+    from app.cli.figures.units import MM_PER_INCH, inches, millimetres, per_minute
     from core.language.source import Dialect
 
     inch = report.dialect is Dialect.OMNITURN

@@ -113,8 +113,8 @@ def _proved(args: argparse.Namespace, around: Circumstances, job: Job) -> Report
 
 def _run(args: argparse.Namespace, around: Circumstances, job: Job, report: Report) -> int:
     from app.cli.machine_command import demand_accepted
-    from app.compose.headless_run import headless
-    from app.compose.run_log import EventLog
+    from app.compose.runs.headless_run import headless
+    from app.compose.runs.run_log import EventLog
     from app.compose.workshop import proof_of
 
     demand_accepted(around.machine)
@@ -182,11 +182,11 @@ def _shown_place(final: dict[str, float], *, mill: bool) -> str:
 
 def _place(report: Report, outcome: Outcome | None) -> dict[str, float]:
     """Where the tip stands in the frame of the last move; X as a radius, inches or mm by the language."""
-    from app.cli.figures import degrees, length_of
+    from app.cli.figures.units import degrees, length_of
     from core.language.source import Dialect
 
     if report.mill is not None:
-        from app.cli.klartext_figures import place
+        from app.cli.figures.klartext_figures import place
 
         complete = outcome is not None and outcome.state == "complete"
         return place(report.mill, outcome.snapshot.demand if outcome else (), complete=complete)
@@ -203,7 +203,7 @@ def _place(report: Report, outcome: Outcome | None) -> dict[str, float]:
 
 
 def _figures(outcome: Outcome | None, dialect: Dialect) -> dict[str, object]:
-    from app.cli.figures import length_of, seconds
+    from app.cli.figures.units import length_of, seconds
 
     if outcome is None:
         return {"elapsed_s": 0.0, "alarms": [], "underruns": 0, "max_following_error": 0.0}

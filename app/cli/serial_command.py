@@ -124,7 +124,7 @@ def run(args: argparse.Namespace) -> int:
     """0 done; 1 not transferred, or stored with errors; 2 usage."""
     if args.action == "ports":
         return _ports()
-    from app.compose.machine_setup import read_machine
+    from app.compose.machine.machine_setup import read_machine
 
     machine = read_machine(args.machine)
     settings = _settings(args, machine)
@@ -132,7 +132,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _ports() -> int:
-    from app.compose.serial_ports import serial_ports
+    from app.compose.backends.serial_ports import serial_ports
     from core.ports import DriverError
 
     with as_command_error(DriverError):

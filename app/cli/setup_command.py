@@ -55,7 +55,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _save(args: argparse.Namespace) -> int:
-    from app.compose.setup_file import save_setup
+    from app.compose.machine.setup_file import save_setup
 
     told = save_setup(Path(args.file), args.machine)
     sys.stdout.write(f"setup saved to {args.file}: data store, programs: {told.programs}, {told.machine}\n")
@@ -65,7 +65,7 @@ def _save(args: argparse.Namespace) -> int:
 
 
 def _load(args: argparse.Namespace) -> int:
-    from app.compose.setup_file import check_setup, load_setup
+    from app.compose.machine.setup_file import check_setup, load_setup
 
     if args.check:
         told = check_setup(Path(args.file))
@@ -90,7 +90,7 @@ def _load(args: argparse.Namespace) -> int:
 
 
 def _desktop(args: argparse.Namespace) -> int:
-    from app.cli.desktop_entry import install, remove
+    from app.cli.actions.desktop_entry import install, remove
 
     if args.remove and args.autostart:
         raise CommandError(

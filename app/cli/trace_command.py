@@ -81,8 +81,8 @@ def run(args: argparse.Namespace) -> int:
 
 def _write_json(timeline: Timeline, args: argparse.Namespace, path: Path) -> None:
     """What was written, in one object."""
-    from app.cli.figures import seconds
-    from app.cli.proof_json import diagnostic_json
+    from app.cli.figures.proof_json import diagnostic_json
+    from app.cli.figures.units import seconds
 
     told = {
         "file": str(path),
@@ -98,7 +98,7 @@ class _Table:
     """The columns of a machine: time, its axes in their order, the spindle, the line."""
 
     def __init__(self, machine: Machine, *, inch: bool) -> None:
-        from app.cli.figures import MM_PER_INCH
+        from app.cli.figures.units import MM_PER_INCH
 
         names = ",".join(axis.name.lower() for axis in machine.axes)
         self.header = f"t,{names},spindle_deg,line\n"

@@ -6,8 +6,8 @@ import os
 from contextlib import suppress
 from pathlib import Path
 
-from app.compose.backend_entry import has_inverter, played
-from app.compose.machine_setup import read_machine
+from app.compose.backends.backend_entry import has_inverter, played
+from app.compose.machine.machine_setup import read_machine
 from app.compose.workshop import samples
 from app.desk.command_errors import CommandError
 from app.desk.data_folder import HOME, data_folder

@@ -11,9 +11,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from app.desk.background_work import AbandonedError, Watch, sentence
 from app.desk.kept_part import NOTHING_KEPT, KeptPart
-from app.desk.latest import AbandonedError, Watch, sentence
-from app.desk.program_loading import PartProved
+from app.desk.programs.program_loading import PartProved
 from core.language.diagnostics import Diagnostic, Severity
 from core.message import Message
 from core.proving.checks.part_checks import is_serious

@@ -9,7 +9,7 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-from app.compose.machine_files import shipped_machine
+from app.compose.machine.machine_files import shipped_machine
 from core.interpreter.dialects import NAMES, code_book
 from core.language.source import Dialect, dialect_of
 from core.machine.machine_model import Machine

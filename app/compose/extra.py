@@ -14,14 +14,13 @@ from importlib.util import find_spec
 from typing import TYPE_CHECKING, TypeVar
 
 if TYPE_CHECKING:
-    from app.compose.backend_entry import Connected
-    from app.compose.check_rows import Answers
-    from app.compose.journal import Journal
+    from app.compose.backends.backend_entry import Answers, Connected
+    from app.compose.runs.journal import Journal
+    from app.desk.background_work import Latest
     from app.desk.desk import Desk
-    from app.desk.latest import Latest
     from app.desk.page_description import PageEntry
     from app.desk.persistence import Persistence
-    from app.desk.program_loading import LoadingSteps
+    from app.desk.programs.program_loading import LoadingSteps
     from app.special.special_functions import SpecialFunction
     from core.executor.snapshot import Snapshot
     from core.json_key import Output

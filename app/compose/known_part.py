@@ -1,11 +1,17 @@
-"""What is known of a part before it is proved: tools, what holds the stock, the neighbours on the plate."""
+"""What is known of a part before it is proved: tools, what holds the stock, the neighbours on the plate.
+
+The store remembers the stock with a program, by the program's name; it is never written into its text.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
-from app.desk.kept_part import KeptPart
+from app.desk.command_errors import as_command_error
+from app.desk.data_folder import data_folder
+from app.desk.kept_part import NOTHING_KEPT, KeptPart, kept_part
 from core.interpreter.job_setup import ToolOffset
 from core.machine.machine_model import Machine
 from core.part.stock import Clamping
@@ -13,6 +19,10 @@ from core.part.tool_shape import ToolShape
 from core.proving.checks.machine_checks import LIVE
 from core.proving.checks.thread_checks import Drives
 from core.proving.program_tools import PartSetting
+from core.store.store_file import has_store
+
+if TYPE_CHECKING:
+    from core.store.store import Store
 
 OF_MACHINE = "set by the machine file"
 
@@ -67,3 +77,38 @@ def _clamping(machine: Machine, stick_out: float | None) -> Clamping | None:
         held.centre_point,
         held.centre_at,
     )
+
+
+def kept_with(program: str) -> KeptPart:
+    """What was said last; nothing where there is no store.
+
+    Raises CommandError when the store cannot be trusted.
+    """
+    return kept_with_all([program]).get(program, NOTHING_KEPT)
+
+
+def kept_with_all(programs: Iterable[str]) -> dict[str, KeptPart]:
+    """Of those with which the store remembers something what is kept. Raises CommandError, as above."""
+    folder = data_folder()
+    if not has_store(folder):
+        return {}
+    from core.store.store import Store, StoreError
+
+    with as_command_error(StoreError), Store.open(folder, read_only=True) as store:
+        found = {program: kept_part(store.setting, program) for program in programs}
+    return {program: kept for program, kept in found.items() if kept != NOTHING_KEPT}
+
+
+def keep_stock(program: str, text: str, stick_out: float | None) -> None:
+    """Remember it; ``stick_out`` mm, None: that of before. Raises CommandError when it cannot be kept."""
+    from core.store.store import Store, StoreError
+
+    with as_command_error(StoreError), Store.open(data_folder()) as store:
+        kept = replace(kept_part(store.setting, program), stock=text)
+        write(store, program, kept if stick_out is None else replace(kept, stick_out=stick_out))
+
+
+def write(store: Store, program: str, kept: KeptPart) -> None:
+    """Keep it, to the disk. Raises StoreError."""
+    for key, value in kept.settings(program).items():
+        store.set_setting(key, value).result()

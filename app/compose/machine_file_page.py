@@ -14,7 +14,7 @@ from decimal import Decimal
 from math import isfinite
 from pathlib import Path
 
-from app.compose.machine_drivers import DRIVERS
+from app.compose.machine.machine_files import DRIVERS
 from core.key_declaration import LENGTHS, Field, Kind, Unit, keys_of, to_file
 from core.machine import axis_tables, machine_tables, mill_kinematics
 from core.machine.driver_tables import tables_of

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from app.desk.background_work import Latest
 from app.desk.desk import Desk
-from app.desk.latest import Latest
 from app.desk.persistence import Persistence
-from app.desk.program_loading import LoadingSteps
+from app.desk.programs.program_loading import LoadingSteps
 from app.programs.folder_chooser import FolderChooser
 from app.programs.import_export import ImportExport
 from app.programs.preview import DrawThumbnail, Preview

@@ -6,8 +6,8 @@ import tempfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from app.compose.serial_ports import open_wire, serial_ports
-from app.desk.program_loading import LoadingSteps
+from app.compose.backends.serial_ports import open_wire, serial_ports
+from app.desk.programs.program_loading import LoadingSteps
 from app.programs.whole_file import FileError
 from app.transfer.line_transfer import Received
 from core.input_file import input_bytes

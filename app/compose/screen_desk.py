@@ -9,19 +9,15 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.compose.accepted_machine import file_changes, guarded
-from app.compose.backend_entry import NO_PRIORITY, Connected, has_inverter, played
-from app.compose.backends import connect
-from app.compose.desk_functions import furnish
-from app.compose.error_log import Log
+from app.compose.backends.backend_entry import NO_PRIORITY, Connected, has_inverter, played
+from app.compose.backends.connection import connect
+from app.compose.desk_functions import furnish, give_production, give_scope, keep_status
 from app.compose.extra import drawing_endings, extras
-from app.compose.journal import Journal
-from app.compose.kinematics_chain import kinematics_of
-from app.compose.machine_in_use import remember_machine
-from app.compose.machine_setup import read_machine
-from app.compose.machine_status import keep_status
-from app.compose.production_desk import give_production
-from app.compose.scope_desk import give_scope
+from app.compose.machine.accepted_machine import file_changes, guarded
+from app.compose.machine.kinematics_chain import kinematics_of
+from app.compose.machine.machine_setup import read_machine, remember_machine
+from app.compose.runs.error_log import Log
+from app.compose.runs.journal import Journal
 from app.compose.stored_offsets import Offsets, book_of, shapes_at_hand, stored_offsets
 from app.compose.workshop import (
     drawer,
@@ -33,17 +29,17 @@ from app.compose.workshop import (
     thumbnails,
     workshop,
 )
-from app.desk.alarm_log import KEPT, KINDS
 from app.desk.command_errors import as_command_error
 from app.desk.daily_backup import DailyBackup
 from app.desk.data_folder import BACKUPS, RECORDS, data_folder
 from app.desk.desk import Desk
 from app.desk.kept_part import kept_part
 from app.desk.persistence import Persistence
-from app.desk.program_folder import ProgramFile, ProgramFolders
-from app.desk.program_loading import LoadingSteps, ProgramLoader
-from app.desk.prompt_line import UNDER_WAY
-from app.desk.start_watch import StartWatch
+from app.desk.programs.program_folder import ProgramFile, ProgramFolders
+from app.desk.programs.program_loading import LoadingSteps, ProgramLoader
+from app.desk.programs.start_watch import StartWatch
+from app.desk.status.alarm_log import KEPT, KINDS
+from app.desk.status.prompt_line import UNDER_WAY
 from app.desk.translation import tr
 from app.offsets.mill_touch import MillTouch
 from app.offsets.offset_effect import Effect
@@ -99,17 +95,17 @@ def build_desk(machine_file: str | None = None, offsets: Callable[[], Offsets] =
     file = ProgramFile(lambda: desk.session.now)
 
     watchdog = Watchdog(thread, executor.halt, SUPERVISED, partial(_thread_ended, desk, journal))
-    desk.stops += [
+    desk.closing.stops += [
         ClosingStep("watchdog", watchdog.end),  # what ends from now on ends in good order
         ClosingStep("executor", thread.close, EXECUTOR_CLOSES),
     ]
-    desk.workers += [
+    desk.closing.workers += [
         ClosingStep("watchdog", watchdog.close),
         ClosingStep("program-file", file.close),
         ClosingStep("recorder", recorder.close),
         *(ClosingStep(f"shop-floor-{number}", close) for number, close in enumerate(floor, 1)),
     ]
-    desk.ends += [
+    desk.closing.ends += [
         ClosingStep("store", partial(_close_store, journal), STORE_CLOSES),
         ClosingStep("log", log.close),
     ]
@@ -221,7 +217,7 @@ def desk_and_executor(
     if journal is not None:
         desk.log.recall(_stops(journal))
         journal.when_late(partial(_came_late, desk, journal))
-    desk.shut = connected.close
+    desk.closing.shut = connected.close
     for warning in (
         *connected.ports.warnings,
         *(Message("machine file: {item}", item=each) for each in desk.changes.changes),

@@ -7,11 +7,11 @@ from pathlib import Path
 
 from app.compose.extra import extras, insert_after
 from app.compose.program_transfer import PLAIN, SerialLines, proving
+from app.desk.background_work import Latest
 from app.desk.data_folder import BACKUPS, data_folder
 from app.desk.desk import Desk
-from app.desk.latest import Latest
 from app.desk.persistence import Persistence
-from app.desk.program_loading import LoadingSteps
+from app.desk.programs.program_loading import LoadingSteps
 from app.production.parts_watch import PartsWatch
 from app.scope.scope_function import ScopeFunction
 from app.special.backup_and_restore import BackupAndRestore

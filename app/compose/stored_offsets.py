@@ -8,7 +8,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
-from app.compose.machine_setup import setup_for
+from app.compose.machine.machine_setup import setup_for
 from app.desk.command_errors import CommandError, as_command_error
 from app.desk.data_folder import data_folder
 from app.offsets.mill_offsets import MillOffsets, rows_of, with_mill
@@ -26,7 +26,7 @@ from core.store.store_file import has_store
 from core.store.store_rows import SecondaryRow, ToolRow, ZeroRow
 
 if TYPE_CHECKING:
-    from app.compose.journal import Journal
+    from app.compose.runs.journal import Journal
     from app.offsets.offset_book import OffsetBook
     from core.machine.machine_model import Machine
     from core.part.tool_shape import ToolShape

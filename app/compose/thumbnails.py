@@ -20,7 +20,7 @@ from app.compose.desk_part import PartDesk
 from app.programs.preview import Thumbnail
 
 if TYPE_CHECKING:
-    from app.desk.latest import Watch
+    from app.desk.background_work import Watch
     from core.executor.job import Job
     from core.machine.machine_model import Machine
     from core.part.solid_picture import Image

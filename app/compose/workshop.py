@@ -10,15 +10,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.compose.desk_part import KeptOfProgram, PartDesk, Shapes, nothing_kept
-from app.compose.journal import Journal
+from app.compose.runs.journal import Journal
 from app.compose.stored_offsets import Offsets, setup_with
 from app.compose.thumbnails import HIGH, WIDE, Thumbnails
+from app.desk.background_work import Watch
 from app.desk.data_folder import data_folder
 from app.desk.desk import Desk
-from app.desk.latest import Watch
 from app.desk.persistence import Persistence
-from app.desk.prepared_line import ProveLine
-from app.desk.program_loading import LoadingSteps, PartProved, Proved
+from app.desk.programs.prepared_line import ProveLine
+from app.desk.programs.program_loading import LoadingSteps, PartProved, Proved
 from app.jog.hand_functions import HandFunctions
 from app.mdi.mdi_line import MdiLine
 from app.mdi.mdi_model import MdiModel
@@ -37,7 +37,7 @@ from core.machine.machine_model import Machine
 from core.proving.proof_report import Report
 
 if TYPE_CHECKING:
-    from app.desk.latest import Watch
+    from app.desk.background_work import Watch
     from app.offsets.offset_effect import ComparePart, Draw
     from app.path.path_picture import Picture, Timed
     from app.programs.preview import DrawThumbnail

@@ -12,7 +12,7 @@ from datetime import date, datetime, timedelta
 from functools import partial
 from pathlib import Path
 
-from app.desk.repeating_thread import RepeatingThread
+from app.desk.background_work import RepeatingThread
 from core.message import Message
 from core.store.store_errors import StoreError
 

@@ -6,38 +6,37 @@ Every method that a key or finger calls returns at once. What it cannot do it sa
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol, TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
-from app.desk import interrupted_notice, prompt_line
 from app.desk.access import Access
-from app.desk.alarm_log import AlarmLog
-from app.desk.first_job import FirstJob
-from app.desk.interrupted_notice import NoticeRow
-from app.desk.machine_file_changes import FileChanges
-from app.desk.machine_status import MachineStatus, SilenceWatch, Tone, status_of
 from app.desk.page_description import ProgramKey
-from app.desk.page_entry import program_barred
-from app.desk.program_folder import ProgramFolders
-from app.desk.program_loading import Loaded, PartProved, Phase, ProgramLoader
-from app.desk.program_renewal import ProgramRenewal
-from app.desk.prompt_line import ONE_HAND, UNDER_WAY, YES, PromptAnswers
-from app.desk.readouts import Readout
+from app.desk.pages.desk_parts import Attached, Closing, OwnStart, Watcher
+from app.desk.pages.first_job import FirstJob
+from app.desk.pages.page_entry import program_barred
+from app.desk.programs.program_folder import ProgramFolders
+from app.desk.programs.program_loading import Loaded, PartProved, Phase, ProgramLoader
+from app.desk.programs.program_renewal import ProgramRenewal
+from app.desk.programs.start_watch import StartWatch
 from app.desk.screen_settings import SettingsBook
-from app.desk.start_watch import StartWatch
 from app.desk.station_hands import OVERRIDE_MOST, StationHands, StationPanel, stepped
+from app.desk.status import interrupted_notice, prompt_line
+from app.desk.status.alarm_log import AlarmLog
+from app.desk.status.interrupted_notice import NoticeRow
+from app.desk.status.machine_file_changes import FileChanges
+from app.desk.status.machine_status import MachineStatus, SilenceWatch, Tone, status_of
+from app.desk.status.prompt_line import ONE_HAND, UNDER_WAY, YES, PromptAnswers
+from app.desk.status.readouts import Readout
 from app.desk.translation import tr
-from app.desk.waiting import how_it_ends
 from app.offsets.offset_book import NONE_KEPT, OffsetBook
 from app.programs.run_history import RunHistory
 from app.special.part_count import PartCounter
 from core.access.access_table import Act
-from core.closing import ClosingStep, Wait, close_in_order, close_together, wait_for
+from core.closing import ClosingStep
 from core.executor.commands import (
     Command,
     ConfirmStart,
@@ -49,46 +48,17 @@ from core.executor.commands import (
     SetSwitch,
 )
 from core.executor.snapshot import LINES, Event, Snapshot, Starts, State
-from core.message import Message, join_messages
+from core.message import Message
 from core.store.store_errors import StoreError
 
 if TYPE_CHECKING:
     from core.executor.recorder import Recorder
     from core.machine.machine_model import Machine
 
-DRIVERS_CLOSE = 10.0  # s: an inverter is stopped, a driver process ends
 SWITCHES = frozenset({"single_block", "optional_stop", "cycle_repeat", "no_count"})
 SILENT = "CONTROL SILENT"
 LAST_PROGRAM = "last_program"  # setting: the path of the program that was loaded last
 BY_SCREEN = "a key or a touch on the screen"  # who holds, for the log
-
-
-class Attached(Protocol):
-    """The model of a page, or a worker of the desk: it ends with the desk."""
-
-    def close(self) -> None: ...
-
-
-class OwnStart(Protocol):
-    """A page that starts something of its own while it is open: a line of MDI, a restart."""
-
-    open: bool
-
-    def barred(self) -> str:
-        """Why the palms start nothing now; empty when they may."""
-        ...
-
-
-class Watcher(Protocol):
-    """What looks at every frame, and has something to tell beside the standing prompt."""
-
-    def see(self, snapshot: Snapshot, loaded: Loaded) -> None: ...
-
-    def due(self) -> str:
-        """What the operator is to do some time soon; empty while there is nothing."""
-        ...
-
-
 A = TypeVar("A", bound=Attached)
 
 
@@ -110,11 +80,7 @@ class Desk:
     lathe: Machine | None = None  # what the machine file says, for moves by hand
     one_hand: bool = False  # nothing real moves: palms may be pressed one after the other
     set_input: Callable[[str, bool], None] | None = None  # of a simulated machine
-    stops: list[ClosingStep] = field(default_factory=list)  # close the machine: before everything else
-    shut: Callable[[], None] = field(default=lambda: None)  # closes the drivers
-    workers: list[ClosingStep] = field(default_factory=list)  # closed together, with what is attached
-    ends: list[ClosingStep] = field(default_factory=list)  # close what the workers write to, in this order
-    wait: Wait = wait_for  # of closing, for a step
+    closing: Closing = field(default_factory=Closing)
     waiting: Callable[[], str] = str  # what of it waits in memory, in words
     differs: Callable[[], str] = str  # how the file on the disk is not the program on the desk
     saved_here: Callable[[], None] = lambda: None  # called when the editor has written a program file
@@ -146,11 +112,9 @@ class Desk:
     first_move: StartWatch | None = None  # what is known of it
     program_keys: dict[str, ProgramKey] = field(default_factory=dict)  # keys of features in the program list
     watches: list[Watcher] = field(default_factory=list)  # what else looks at every frame
+    silence: SilenceWatch = field(default_factory=SilenceWatch)
     _attached: dict[type[Attached], Attached] = field(default_factory=dict)
-    _made_later: dict[str, Callable[[], Attached]] = field(
-        default_factory=dict
-    )  # by the names of their classes
-    _silence: SilenceWatch = field(default_factory=SilenceWatch)
+    _made_later: dict[str, Callable[[], Attached]] = field(default_factory=dict)  # by names of classes
     _part_told: PartProved | None = None
 
     def __post_init__(self) -> None:
@@ -256,18 +220,10 @@ class Desk:
         self.choose_setting("readout", self.readout.following.value)
 
     def close(self) -> None:
-        """Stop the machine and close its drivers; then end the workers, all at once; then ``ends``.
-
-        No step waits without a limit, and none depends on another: see ``core/closing.py``.
-        """
-        drivers = ClosingStep("drivers", self.shut, DRIVERS_CLOSE)
-        close_in_order([*self.stops, drivers], self.wait)
-        close_together([*self._workers(), *self.workers], self.wait)
-        close_in_order(self.ends, self.wait)
-
-    def _workers(self) -> list[ClosingStep]:
+        """Stop the machine and close its drivers; then end the workers and all that is attached."""
         own = [ClosingStep("loading", self.session.close), ClosingStep("levels", self.access.close)]
-        return own + [ClosingStep(kind.__name__, part.close) for kind, part in self._attached.items()]
+        attached = [ClosingStep(kind.__name__, part.close) for kind, part in self._attached.items()]
+        self.closing.close([*own, *attached])
 
     def attach(self, part: Attached) -> None:
         """Have the model of a page with the desk: it is found by its class, and ends with the desk."""
@@ -338,66 +294,15 @@ class Desk:
         view = status_of(
             snapshot, self.readout, self.with_c, self.settings.units, self.language, third, table
         )
-        if self._silence.silent(snapshot.t, self.hands.clock()):
+        if self.silence.silent(snapshot.t, self.hands.clock()):
             view = replace(view, state=SILENT, tone=Tone.ALARM)
         return snapshot, view, loaded
-
-    def prompt(self, snapshot: Snapshot, loaded: Loaded, page: str = "") -> str:
-        """The state's place: what can be done now. Question and answer have places of their own.
-
-        ``page`` is what the page in front would say there; an alarm and an E-stop go before it.
-        """
-        self.answers.expire(snapshot)
-        if self._silence.is_silent:
-            return prompt_line.CONTROL_SILENT
-        if self.keyboard_away and snapshot.state in prompt_line.MOVING:
-            return prompt_line.KEYBOARD_AWAY
-        announced = prompt_line.announced(snapshot, starts_here=self.starts_here)
-        return join_messages(" · ", filter(None, (*announced, self._prompt(snapshot, loaded, page))))
-
-    def _prompt(self, snapshot: Snapshot, loaded: Loaded, page: str) -> str:
-        if page:
-            return prompt_line.alarm_of(snapshot, self.release_words, field_open=self.field_open()) or page
-        words = self.start_words, self.release_words
-        standing = prompt_line.prompt(snapshot, loaded, *words, field_open=self.field_open())
-        if snapshot.state is State.DISABLED and self.changes.barred:
-            standing = self.changes.barred
-        elif refusal := self.first_move_refusal(snapshot):
-            standing = Message("{no_start}: {refusal}", no_start=prompt_line.NO_START, refusal=refusal)
-        elif self.first_move is not None and self.first_move.checking and snapshot.state is State.IDLE:
-            standing = tr("CHECKING THE FIRST MOVE FOR COLLISION WITH THE PART")
-        if snapshot.state is State.WAIT:
-            standing = how_it_ends(snapshot, self.set_input is not None) or standing
-        return join_messages(" · ", filter(None, (self._due(snapshot, standing), standing)))
-
-    def _due(self, snapshot: Snapshot, standing: str) -> str:
-        """What is to be done some time soon; behind an alarm, an interrupted job or a refusal it can wait."""
-        waits = snapshot.state in {State.ESTOP, State.FAULT} or snapshot.interrupted_line
-        if waits or standing.startswith(prompt_line.NO_START):
-            return ""
-        return join_messages(" · ", filter(None, (watcher.due() for watcher in self.watches)))
 
     def first_move_refusal(self, snapshot: Snapshot) -> str:
         """Why Cycle Start does not begin the program from here; empty when its first move is clear."""
         if self.first_move is None or snapshot.state is not State.IDLE:
             return ""
         return self.first_move.refusal if snapshot.starts is Starts.PROGRAM else ""
-
-    def start_refusal(self, snapshot: Snapshot) -> str:
-        """Why the palms start nothing now, as far as the screen knows; empty when they may."""
-        refused = self.barred() or self.first_move_refusal(snapshot)
-        if refused or snapshot.state is not State.IDLE or snapshot.starts is not Starts.PROGRAM:
-            return refused
-        return prompt_line.lacking(snapshot, self.session.now)
-
-    def time_left(self, snapshot: Snapshot, loaded: Loaded) -> float:
-        """Seconds to the end of the cycle at the present override; infinite while it stands still."""
-        picture = loaded.picture
-        if picture is None or loaded.proof is None:
-            return float("inf")
-        to_go = math.dist(snapshot.block_end[:2], snapshot.actual[:2])
-        left = picture.time_left(snapshot.block, to_go)
-        return left / snapshot.feed_override if snapshot.feed_override > 0 else float("inf")
 
     def _tell_part(self, snapshot: Snapshot, loaded: Loaded) -> None:
         """What the part of a program was warned of after it was started is told at once."""
@@ -435,33 +340,6 @@ class Desk:
         if self.may_choose():
             self.session.load(path, self.session.now.block_delete)
             self.keep(partial(self.settings.persistence.save_setting, LAST_PROGRAM, str(path)))
-
-    def begin_with(self, named: str | None) -> None:
-        """At the start: the program that was interrupted, or else the one that is ``named``."""
-        found = self.snapshot().interrupted
-        path = str(Path(named).absolute()) if named is not None else ""
-        if found is None:
-            if named is not None and not self.choose(path):
-                self.say(Message("FILE NOT FOUND: {named}", named=named))
-        elif named is not None and Path(named).name == found.program and self.choose(path):
-            return
-        elif not self.choose(found.program):
-            self.say(
-                tr(
-                    Message(
-                        "INTERRUPTED PROGRAM {name} NOT FOUND. F2: CHOOSE A PROGRAM",
-                        name=found.program,
-                    )
-                )
-            )
-        elif named is not None:
-            self.say(
-                tr(
-                    Message(
-                        "{name} NOT LOADED: THE INTERRUPTED JOB WAS LOADED INSTEAD", name=Path(named).name
-                    )
-                )
-            )
 
     # --- keys ----------------------------------------------------------------------------------------
 

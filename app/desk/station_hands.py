@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from app.desk.prompt_line import BOTH_UP, ONE_PALM
+from app.desk.status.prompt_line import BOTH_UP, ONE_PALM
 
 # --- palm buttons and pots ----------------------------------------------------------------------------
 

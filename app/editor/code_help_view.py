@@ -8,8 +8,8 @@ from functools import partial
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QWidget
 
-from app.desk.code_help import CodeHelp
-from app.desk.sheet import Key
+from app.desk.pages.code_help import CodeHelp
+from app.desk.pages.sheet import Key
 from app.editor.code_pictures import picture_of
 from app.editor.live_proof import LiveProof
 from app.editor.text_view import TextField

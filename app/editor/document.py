@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from app.desk.program_folder import ENDINGS
+from app.desk.programs.program_folder import ENDINGS
 from app.editor.versions import Archive
 from app.programs.whole_file import present, write_whole
 from core.language.source import SourceError, load_source

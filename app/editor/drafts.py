@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from app.desk.latest import Latest
+from app.desk.background_work import Latest
 from app.editor import editor_messages as messages
 from app.editor.document import Document
 from app.editor.versions import Archive

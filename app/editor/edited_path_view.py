@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtWidgets import QWidget
 
-from app.desk.sheet import Key
+from app.desk.pages.sheet import Key
 from app.desk.translation import tr
 from app.path.path_aspects import Tip
 from app.path.path_view import PathView

@@ -12,11 +12,11 @@ from enum import StrEnum
 from functools import partial
 from pathlib import Path
 
+from app.desk.background_work import Latest
 from app.desk.desk import Desk
-from app.desk.latest import Latest
-from app.desk.page_entry import editor_barred
-from app.desk.program_loading import Loaded, LoadingSteps
-from app.desk.prompt_line import UNDER_WAY
+from app.desk.pages.page_entry import editor_barred
+from app.desk.programs.program_loading import Loaded, LoadingSteps
+from app.desk.status.prompt_line import UNDER_WAY
 from app.desk.translation import tr
 from app.editor import editor_messages as messages
 from app.editor.document import (

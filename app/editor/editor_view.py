@@ -16,10 +16,10 @@ from PySide6.QtGui import QKeyEvent, QResizeEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.arithmetic import line_of
-from app.desk.machine_status import MachineStatus
-from app.desk.program_loading import Loaded
-from app.desk.prompt_line import MOVING
-from app.desk.sheet import Key
+from app.desk.pages.sheet import Key
+from app.desk.programs.program_loading import Loaded
+from app.desk.status.machine_status import MachineStatus
+from app.desk.status.prompt_line import MOVING
 from app.editor import editor_messages as messages
 from app.editor.code_help_view import CodeList, CodeStrip
 from app.editor.edited_path_view import EditedPath

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from PySide6.QtCore import QRectF
 from PySide6.QtWidgets import QWidget
 
-from app.desk import formats
+from app.desk.status import formats
 from app.desk.translation import tr
 from app.editor.live_proof import Findings
 from app.editor.text_view import TONES, WORDS

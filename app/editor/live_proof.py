@@ -6,8 +6,8 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import TYPE_CHECKING
 
-from app.desk.latest import Latest, Request
-from app.desk.program_loading import LoadingSteps
+from app.desk.background_work import Latest, Request
+from app.desk.programs.program_loading import LoadingSteps
 from core.interpreter.dialects import code_book
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Source

@@ -8,7 +8,7 @@ from PySide6.QtCore import QObject, QRectF, Qt
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QLineEdit, QWidget
 
-from app.desk.sheet import Key
+from app.desk.pages.sheet import Key
 from app.desk.translation import tr
 from app.editor.find_replace import Search, following, preceding
 from app.editor.text_view import TextField

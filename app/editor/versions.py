@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from difflib import SequenceMatcher
 from typing import Protocol
 
-from app.desk.latest import Latest, Watch
+from app.desk.background_work import Latest, Watch
 from core.message import Message
 from core.store.store_errors import StoreError
 from core.store.store_rows import VersionRow

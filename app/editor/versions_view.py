@@ -9,8 +9,8 @@ from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QWheelEvent
 from PySide6.QtWidgets import QWidget
 
-from app.desk.formats import local_time
-from app.desk.sheet import Key
+from app.desk.pages.sheet import Key
+from app.desk.status.formats import local_time
 from app.editor.versions import DifferenceRow, VersionHistory
 from app.screen.look import LEFT, RIGHT, Look, Painter, put, put_raw
 from app.screen.panel import Panel, Shown

@@ -9,12 +9,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from app.desk import prompt_line
 from app.desk.arithmetic import CHARACTERS, LONGEST, EntryError, value_of
 from app.desk.desk import Desk
-from app.desk.prepared_line import PreparedLine, ProveLine
-from app.desk.readouts import TURNING
-from app.desk.sheet import edited, refused
+from app.desk.pages.sheet import edited, refused
+from app.desk.programs.prepared_line import PreparedLine, ProveLine
+from app.desk.status import prompt_line
+from app.desk.status.readouts import TURNING
 from app.desk.translation import tr
 from core.executor.commands import ForceOutput, Reset, SpindleStop
 from core.executor.snapshot import CYCLE, STOPPED, Snapshot, Starts, State

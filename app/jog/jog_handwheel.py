@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from app.desk.sheet import following
+from app.desk.pages.sheet import following
 from app.desk.translation import tr
 from app.jog.held_jog import BEGINS, RENEWED, HeldJog
 from app.jog.jog_speeds import CONTINUOUS, JogSpeeds

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from app.desk import prompt_line
 from app.desk.desk import Desk
-from app.desk.prompt_line import STOP_HELD
+from app.desk.status import prompt_line
+from app.desk.status.prompt_line import STOP_HELD
 from app.desk.translation import tr
 from app.jog.hand_functions import HandFunctions
 from app.jog.jog_handwheel import JogHandwheel

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from app.desk.formats import MM_PER_INCH
+from app.desk.status.formats import MM_PER_INCH
 from app.offsets.offset_values import Mode
 from core.machine.machine_model import Machine
 

@@ -8,8 +8,8 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QKeyEvent, QResizeEvent
 from PySide6.QtWidgets import QWidget
 
-from app.desk.machine_status import MachineStatus
-from app.desk.program_loading import Loaded
+from app.desk.programs.program_loading import Loaded
+from app.desk.status.machine_status import MachineStatus
 from app.desk.translation import tr
 from app.jog.hand_functions_view import HandPanel, HandStrip, strip_keys
 from app.jog.held_keys_view import CHORDS, HeldKeysPage

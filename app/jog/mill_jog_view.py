@@ -7,7 +7,7 @@ from collections.abc import Callable
 from PySide6.QtCore import QRectF
 from PySide6.QtWidgets import QWidget
 
-from app.desk.formats import length
+from app.desk.status.formats import length
 from app.desk.translation import tr
 from app.jog.jog_model import JogModel
 from app.jog.tilted_jog import SLIDES

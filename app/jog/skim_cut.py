@@ -10,8 +10,8 @@ from dataclasses import dataclass, field
 from enum import Enum, auto
 
 from app.desk.desk import Desk
-from app.desk.formats import length
-from app.desk.readouts import TURNING
+from app.desk.status.formats import length
+from app.desk.status.readouts import TURNING
 from app.desk.translation import tr
 from app.jog.jog_touch_off import MOVED, TOUCH_X, TOUCH_Z, TOUCHES
 from app.jog.tool_setting import ToolSetting

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 from app.desk.arithmetic import CHARACTERS, LONGEST, EntryError, value_of
 from app.desk.desk import Desk
-from app.desk.sheet import edited, refused
+from app.desk.pages.sheet import edited, refused
 from app.desk.translation import tr
 from app.jog import jog_touch_off
 from app.jog.jog_touch_off import TOUCH_X, TOUCH_Z, TOUCHES, TouchOff

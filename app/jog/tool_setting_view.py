@@ -8,7 +8,7 @@ from functools import partial
 from PySide6.QtCore import QRectF
 from PySide6.QtWidgets import QWidget
 
-from app.desk.formats import length
+from app.desk.status.formats import length
 from app.desk.translation import tr
 from app.jog.jog_model import JogModel
 from app.jog.jog_touch_off import TOUCH_X, TOUCH_Z

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from app.desk.code_help import CodeHelp
+from app.desk.pages.code_help import CodeHelp
 from app.mdi.mdi_line import LONGEST, MdiLine
 from core.language.code_book import CodeBook, Entry
 

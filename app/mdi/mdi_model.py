@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from app.desk import prompt_line
-from app.desk.page_entry import mdi_barred
-from app.desk.prepared_line import PreparedLine, ProveLine
+from app.desk.pages.page_entry import mdi_barred
+from app.desk.programs.prepared_line import PreparedLine, ProveLine
+from app.desk.status import prompt_line
 from app.desk.translation import tr
 from app.mdi.line_completion import LineCompletion
 from app.mdi.mdi_line import MdiLine

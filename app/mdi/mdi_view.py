@@ -10,11 +10,11 @@ from PySide6.QtCore import QPointF, QRectF
 from PySide6.QtGui import QFontMetricsF, QPolygonF, QResizeEvent
 from PySide6.QtWidgets import QWidget
 
-from app.desk.machine_status import MachineStatus
-from app.desk.modal_rows import ModalRow, rows_of
-from app.desk.program_loading import Loaded
-from app.desk.prompt_line import MOVING
-from app.desk.start_watch import drawn
+from app.desk.programs.program_loading import Loaded
+from app.desk.programs.start_watch import drawn
+from app.desk.status.machine_status import MachineStatus
+from app.desk.status.modal_rows import ModalRow, rows_of
+from app.desk.status.prompt_line import MOVING
 from app.desk.translation import tr
 from app.mdi.mdi_model import MdiModel
 from app.path.path_aspects import tip_of

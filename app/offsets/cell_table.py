@@ -8,9 +8,9 @@ from typing import ClassVar
 
 from app.desk.arithmetic import CHARACTERS, EntryError, value_of
 from app.desk.desk import Desk
-from app.desk.machine_status import Tone
-from app.desk.prompt_line import UNDER_WAY
-from app.desk.sheet import edited, refused
+from app.desk.pages.sheet import edited, refused
+from app.desk.status.machine_status import Tone
+from app.desk.status.prompt_line import UNDER_WAY
 from app.desk.translation import tr
 from app.offsets.offset_history import LETTERS, refusal
 from app.offsets.offset_table import OffsetTable

@@ -8,8 +8,8 @@ from functools import partial
 from PySide6.QtCore import QRectF
 from PySide6.QtWidgets import QWidget
 
-from app.desk.machine_status import MachineStatus, Tone
-from app.desk.program_loading import Loaded
+from app.desk.programs.program_loading import Loaded
+from app.desk.status.machine_status import MachineStatus, Tone
 from app.offsets.cell_table import CellTable
 from app.offsets.mill_tools import MillTools
 from app.offsets.offset_values import cell_text

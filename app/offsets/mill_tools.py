@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from app.desk.arithmetic import value_of
-from app.desk.machine_status import Tone
+from app.desk.status.machine_status import Tone
 from app.desk.translation import tr
 from app.offsets.cell_table import CellTable
 from app.offsets.mill_lives import MillLives

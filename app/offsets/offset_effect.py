@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
-from app.desk.formats import length
-from app.desk.latest import Latest, Watch
+from app.desk.background_work import Latest, Watch
+from app.desk.status.formats import length
 from app.desk.translation import tr
 from app.offsets.offset_table import OffsetTable
 from app.offsets.offsets_in_force import secondary_offsets, tool_offsets

@@ -9,8 +9,8 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 
 from app.desk.desk import Desk
-from app.desk.formats import local_time
-from app.desk.prompt_line import UNDER_WAY
+from app.desk.status.formats import local_time
+from app.desk.status.prompt_line import UNDER_WAY
 from app.desk.translation import tr
 from app.offsets.offset_book import OffsetBook
 from app.offsets.offset_values import Mode, from_to

@@ -11,7 +11,7 @@ from typing import ClassVar
 
 from app.desk.arithmetic import LONGEST
 from app.desk.desk import Desk
-from app.desk.sheet import edited
+from app.desk.pages.sheet import edited
 from app.desk.translation import tr
 from app.offsets.offset_book import OffsetBook
 from app.offsets.offset_history import OffsetHistory, refusal

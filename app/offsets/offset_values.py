@@ -7,9 +7,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from app.desk import formats
 from app.desk.arithmetic import EntryError, value_of
-from app.desk.formats import MINUS, MM_PER_INCH
+from app.desk.status import formats
+from app.desk.status.formats import MINUS, MM_PER_INCH
 from app.desk.translation import tr
 from core.message import Message
 from core.store.store_rows import (

@@ -13,8 +13,8 @@ from PySide6.QtCore import QEvent, QObject, QRectF
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QWidget
 
-from app.desk.machine_status import MachineStatus
-from app.desk.program_loading import Loaded
+from app.desk.programs.program_loading import Loaded
+from app.desk.status.machine_status import MachineStatus
 from app.desk.translation import tr
 from app.offsets.offset_effect import EffectDisplay
 from app.offsets.offset_table import OffsetTable

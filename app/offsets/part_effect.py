@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from app.desk.formats import length
-from app.desk.machine_status import Tone
-from app.desk.sheet import Row, Sheet
+from app.desk.pages.sheet import Row, Sheet
+from app.desk.status.formats import length
+from app.desk.status.machine_status import Tone
 from app.desk.translation import tr
 from app.offsets.offset_values import Mode, signed
 from core.language.diagnostics import Diagnostic

@@ -10,8 +10,8 @@ from enum import IntEnum
 
 from app.desk.arithmetic import CHARACTERS, EntryError, value_of
 from app.desk.desk import Desk
-from app.desk.formats import length
-from app.desk.sheet import refused
+from app.desk.pages.sheet import refused
+from app.desk.status.formats import length
 from app.desk.translation import tr
 from app.offsets.offset_history import counts_from
 from app.offsets.offset_table import OffsetTable, Proposed

@@ -8,9 +8,9 @@ from functools import partial
 from PySide6.QtCore import QRectF
 from PySide6.QtWidgets import QWidget
 
-from app.desk.formats import length
-from app.desk.machine_status import MachineStatus
-from app.desk.program_loading import Loaded
+from app.desk.programs.program_loading import Loaded
+from app.desk.status.formats import length
+from app.desk.status.machine_status import MachineStatus
 from app.desk.translation import tr
 from app.offsets.offset_values import UNKNOWN, Mode, signed
 from app.offsets.offsets_view import OffsetPage

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import ClassVar
 
 from app.desk.arithmetic import CHARACTERS, LONGEST, EntryError
-from app.desk.sheet import refused
+from app.desk.pages.sheet import refused
 from app.desk.translation import tr
 from app.offsets.offset_history import OffsetHistory
 from app.offsets.offset_questions import OffsetQuestions

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import remainder
 
 from app.desk.arithmetic import value_of
-from app.desk.prompt_line import UNDER_WAY
+from app.desk.status.prompt_line import UNDER_WAY
 from app.desk.translation import tr
 from app.offsets.cell_table import CellTable
 from core.executor.snapshot import Snapshot, State

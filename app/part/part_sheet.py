@@ -12,13 +12,13 @@ from functools import partial
 from pathlib import Path
 
 from app.desk.arithmetic import CHARACTERS, EntryError
+from app.desk.background_work import Latest
 from app.desk.desk import Desk
 from app.desk.kept_part import NOTHING_KEPT, KeptPart, kept_part, lasting
-from app.desk.latest import Latest
+from app.desk.pages.sheet import STEPS, Key, edited, following, refused
 from app.desk.persistence import Persistence
-from app.desk.program_loading import Loaded
-from app.desk.prompt_line import UNDER_WAY
-from app.desk.sheet import STEPS, Key, edited, following, refused
+from app.desk.programs.program_loading import Loaded
+from app.desk.status.prompt_line import UNDER_WAY
 from app.desk.translation import tr
 from app.part.stock_entry import StockEntry, StockField, StockKind
 from core.access.access_table import Act

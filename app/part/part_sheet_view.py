@@ -8,10 +8,10 @@ from functools import partial
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QWidget
 
-from app.desk.machine_status import MachineStatus
-from app.desk.page_entry import editor_barred
-from app.desk.program_loading import Loaded
-from app.desk.sheet import Key
+from app.desk.pages.page_entry import editor_barred
+from app.desk.pages.sheet import Key
+from app.desk.programs.program_loading import Loaded
+from app.desk.status.machine_status import MachineStatus
 from app.part.part_sheet import PartSheet, Section
 from app.part.part_tables import table
 from app.path.part_player import player_of

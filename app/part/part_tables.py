@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import textwrap
 
-from app.desk.formats import length
-from app.desk.machine_status import Tone
-from app.desk.sheet import Row, Sheet
+from app.desk.pages.sheet import Row, Sheet
+from app.desk.status.formats import length
+from app.desk.status.machine_status import Tone
 from app.desk.translation import tr
 from app.part.part_sheet import PartSheet, Section
 from app.part.stock_entry import StockField

@@ -7,8 +7,8 @@ from enum import StrEnum
 from pathlib import Path
 
 from app.desk.arithmetic import EntryError, value_of
-from app.desk.formats import MM_PER_INCH, length
 from app.desk.kept_part import KeptPart
+from app.desk.status.formats import MM_PER_INCH, length
 from core.part.stock_spec import StockError, StockSpec, stock_spec
 
 _PLACES = 6

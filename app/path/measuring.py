@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.desk import formats
+from app.desk.status import formats
 from app.desk.translation import tr
 from app.path.polyline import SAME, Bounds, Floats, Polyline, Stroke
 from core.message import Message

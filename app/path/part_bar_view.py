@@ -7,7 +7,7 @@ from collections.abc import Callable
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QPainter
 
-from app.desk.machine_status import Tone
+from app.desk.status.machine_status import Tone
 from app.desk.translation import tr
 from app.path.part_player import PartPlayer
 from app.screen.look import CENTRE, LEFT, Look, draw_sign, put

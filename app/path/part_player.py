@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from app.desk.latest import Latest, Request
+from app.desk.background_work import Latest, Request
 from core.language.diagnostics import Diagnostic
 from core.proving.checks.part_checks import is_serious
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QFontMetricsF, QPainter, QPen, QPolygonF
 
-from app.desk import formats
+from app.desk.status import formats
 from app.desk.translation import tr
 from app.path.measuring import Apart
 from app.path.path_aspects import IN_SPACE, OF_PART, Aspect, DrawnLeg

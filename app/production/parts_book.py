@@ -9,7 +9,7 @@ from functools import partial
 from typing import Any
 
 from app.desk.access import Access
-from app.desk.latest import Latest
+from app.desk.background_work import Latest
 from core.access.access_table import Act
 from core.message import Message
 from core.store.production import part_cycles, tool_lives

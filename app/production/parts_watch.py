@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Protocol
 
 from app.desk.desk import Desk
-from app.desk.program_loading import Loaded
+from app.desk.programs.program_loading import Loaded
 from app.desk.translation import tr
 from app.production.parts_book import PartsBook
 from app.production.tool_life_watch import ToolLifeWatch

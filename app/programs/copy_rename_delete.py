@@ -9,12 +9,12 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from app.desk.background_work import Latest
 from app.desk.desk import Desk
-from app.desk.latest import Latest
+from app.desk.pages.sheet import Entry
 from app.desk.persistence import Persistence
-from app.desk.program_folder import ENDINGS, Takes, is_program
-from app.desk.prompt_line import UNDER_WAY
-from app.desk.sheet import Entry
+from app.desk.programs.program_folder import ENDINGS, Takes, is_program
+from app.desk.status.prompt_line import UNDER_WAY
 from app.desk.translation import tr
 from app.programs.program_rows import Program
 from app.programs.whole_file import FileError, present, write_whole

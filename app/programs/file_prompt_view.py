@@ -9,8 +9,8 @@ from PySide6.QtCore import QEvent, QObject, QRectF, Qt
 from PySide6.QtGui import QKeyEvent, QResizeEvent
 from PySide6.QtWidgets import QLineEdit, QWidget
 
-from app.desk.program_folder import ListedProgram, ProgramFolders
-from app.desk.prompt_line import ASK_FILE, CHOOSE_FILE, NOT_FOUND
+from app.desk.programs.program_folder import ListedProgram, ProgramFolders
+from app.desk.status.prompt_line import ASK_FILE, CHOOSE_FILE, NOT_FOUND
 from app.desk.translation import tr
 from app.screen.entry_panel import dress_line
 from app.screen.look import CENTRE, RIGHT, Look, Painter, put

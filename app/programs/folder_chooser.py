@@ -6,9 +6,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from app.desk import formats
-from app.desk.program_folder import Takes, is_program
-from app.desk.sheet import Row, Sheet
+from app.desk.pages.sheet import Row, Sheet
+from app.desk.programs.program_folder import Takes, is_program
+from app.desk.status import formats
 from app.desk.translation import tr
 from app.programs.removable_media import Medium, Stick, sticks, why_not
 from app.programs.whole_file import FileError

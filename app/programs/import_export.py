@@ -12,11 +12,11 @@ from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 
+from app.desk.background_work import Latest
 from app.desk.desk import Desk
-from app.desk.latest import Latest
+from app.desk.pages.sheet import STEPS, Key, Sheet
 from app.desk.persistence import Persistence
-from app.desk.program_folder import Takes, is_program
-from app.desk.sheet import STEPS, Key, Sheet
+from app.desk.programs.program_folder import Takes, is_program
 from app.desk.translation import tr
 from app.programs.copy_rename_delete import BUSY, checked_name, same_name_in
 from app.programs.folder_chooser import FolderChooser, chooser_sheet

@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
-from app.desk.latest import Latest, Watch
-from app.desk.program_loading import LoadingSteps
+from app.desk.background_work import Latest, Watch
+from app.desk.programs.program_loading import LoadingSteps
 from app.programs.program_rows import Program
 from core.executor.job import Job
 

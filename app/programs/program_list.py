@@ -7,14 +7,14 @@ from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 
-from app.desk import formats
+from app.desk.background_work import Latest
 from app.desk.desk import Desk
-from app.desk.latest import Latest
-from app.desk.machine_status import Tone
-from app.desk.page_entry import BY_HAND
+from app.desk.pages.page_entry import BY_HAND
+from app.desk.pages.sheet import STEPS, Entry, Key, Row, Sheet, following
 from app.desk.persistence import Persistence
-from app.desk.prompt_line import UNDER_WAY
-from app.desk.sheet import STEPS, Entry, Key, Row, Sheet, following
+from app.desk.status import formats
+from app.desk.status.machine_status import Tone
+from app.desk.status.prompt_line import UNDER_WAY
 from app.desk.translation import tr
 from app.programs.copy_rename_delete import COPY, NONE, RENAME, CopyRenameDelete
 from app.programs.import_export import ImportExport

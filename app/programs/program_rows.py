@@ -9,9 +9,9 @@ from datetime import datetime
 from functools import lru_cache
 from pathlib import Path
 
-from app.desk import formats
 from app.desk.persistence import Persistence
-from app.desk.program_folder import LISTED, ProgramFolders
+from app.desk.programs.program_folder import LISTED, ProgramFolders
+from app.desk.status import formats
 from core.language.source import SourceError, load_source
 from core.store.program_records import key_of_text
 from core.store.store_rows import RunRow

@@ -10,11 +10,11 @@ from PySide6.QtCore import QRectF
 from PySide6.QtGui import QImage, QResizeEvent
 from PySide6.QtWidgets import QWidget
 
-from app.desk.machine_status import MachineStatus
 from app.desk.page_description import ProgramKey
-from app.desk.page_entry import editor_barred
-from app.desk.program_loading import Loaded
-from app.desk.sheet import Key
+from app.desk.pages.page_entry import editor_barred
+from app.desk.pages.sheet import Key
+from app.desk.programs.program_loading import Loaded
+from app.desk.status.machine_status import MachineStatus
 from app.editor.editor import Editor
 from app.path.path_view import PathView
 from app.programs.copy_rename_delete import NONE

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from app.desk import formats
+from app.desk.status import formats
 from app.desk.translation import tr
 from app.programs.whole_file import FileError
 from core.message import Message

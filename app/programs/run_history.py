@@ -6,9 +6,9 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from app.desk import prompt_line
 from app.desk.persistence import Persistence
-from app.desk.program_loading import Loaded, Phase
+from app.desk.programs.program_loading import Loaded, Phase
+from app.desk.status import prompt_line
 from core.executor.snapshot import Snapshot, State
 from core.message import Message
 from core.store.store import Store

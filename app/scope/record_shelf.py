@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple, TypeVar
 
-from app.desk.formats import file_size
+from app.desk.status.formats import file_size
 from core.file_placing import put_in_place
 from core.message import CodedError, Message
 from core.records.record import Record

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.desk.sheet import Row
+from app.desk.pages.sheet import Row
 from app.desk.translation import tr
 from app.scope.scope_model import Scope
 from app.special.special_functions import PageFunction

@@ -12,8 +12,8 @@ from functools import partial
 
 import numpy as np
 
+from app.desk.background_work import Latest
 from app.desk.desk import Desk
-from app.desk.latest import Latest
 from app.desk.translation import tr
 from app.scope.record_shelf import INSTANT, Kept, RecordShelf, instant_of
 from app.scope.scope_curves import LiveCurves, LiveSamples, Range, RecordCurves, Sight, Wanted

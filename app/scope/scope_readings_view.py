@@ -10,7 +10,7 @@ from PySide6.QtCore import QRectF
 from PySide6.QtGui import QWheelEvent
 from PySide6.QtWidgets import QWidget
 
-from app.desk import formats
+from app.desk.status import formats
 from app.scope.scope_curves import Sight
 from app.scope.scope_model import Scope
 from app.scope.signals import Signal

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from app.desk import formats
 from app.desk.arithmetic import EntryError, line_of, value_of
-from app.desk.sheet import STEPS, Entry, Key, Row, Sheet, refused
+from app.desk.pages.sheet import STEPS, Entry, Key, Row, Sheet, refused
+from app.desk.status import formats
 from app.desk.translation import tr
 from app.scope.scope_model import NO_SAMPLES, Scope, Side
 from app.scope.scope_trigger import When

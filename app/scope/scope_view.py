@@ -11,10 +11,10 @@ from PySide6.QtCore import QBuffer, QByteArray, QEvent, QIODevice, QPointF, QRec
 from PySide6.QtGui import QImage, QImageWriter, QMouseEvent, QResizeEvent, QTouchEvent, QWheelEvent
 from PySide6.QtWidgets import QWidget
 
-from app.desk import formats
-from app.desk.machine_status import MachineStatus
-from app.desk.program_loading import Loaded
-from app.desk.sheet import Key
+from app.desk.pages.sheet import Key
+from app.desk.programs.program_loading import Loaded
+from app.desk.status import formats
+from app.desk.status.machine_status import MachineStatus
 from app.desk.translation import tr
 from app.scope.scope_curves import Sight
 from app.scope.scope_model import NO_SAMPLES, Scope, Side

@@ -12,7 +12,7 @@ from enum import Enum
 import numpy as np
 import numpy.typing as npt
 
-from app.desk.formats import MM_PER_INCH
+from app.desk.status.formats import MM_PER_INCH
 from app.desk.translation import tr
 from core.message import Message
 from core.records import record

@@ -9,9 +9,9 @@ from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QWheelEvent
 from PySide6.QtWidgets import QWidget
 
-from app.desk.alarm_log import LoggedStop
-from app.desk.machine_status import Tone
-from app.desk.prompt_line import exactly
+from app.desk.status.alarm_log import LoggedStop
+from app.desk.status.machine_status import Tone
+from app.desk.status.prompt_line import exactly
 from app.desk.translation import tr
 from app.screen.look import Look, Painter, draw_sign
 from app.screen.panel import Panel, Shown

@@ -16,7 +16,7 @@ from PySide6.QtCore import QLineF, QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFontMetricsF, QPainter, QPen
 from PySide6.QtWidgets import QFrame, QGraphicsGridLayout, QGraphicsItem, QGraphicsView, QWidget
 
-from app.desk.formats import fixed
+from app.desk.status.formats import fixed
 from app.desk.translation import tr
 from app.screen.look import FAMILY, LEAST, Look
 from app.screen.theme import CURVES

@@ -8,7 +8,7 @@ from functools import partial
 from PySide6.QtCore import QRectF
 from PySide6.QtWidgets import QWidget
 
-from app.desk.code_help import CodeHelp
+from app.desk.pages.code_help import CodeHelp
 from app.screen.look import LEFT, Look, Painter, put_raw
 from app.screen.panel import Panel, Shown
 from core.language.code_book import Entry

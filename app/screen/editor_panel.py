@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from PySide6.QtWidgets import QWidget
 
-from app.desk.editor_panel import PanelModel
+from app.desk.pages.editor_panel import PanelModel
 from app.screen.page_base import Host, Page
 
 

@@ -10,7 +10,7 @@ from PySide6.QtCore import QRectF
 from PySide6.QtGui import QFontMetricsF
 from PySide6.QtWidgets import QLineEdit, QWidget
 
-from app.desk.sheet import RefusedText
+from app.desk.pages.sheet import RefusedText
 from app.screen.letter_keys import LetterPad, Rows
 from app.screen.look import Look, Painter
 from app.screen.panel import Panel, Shown

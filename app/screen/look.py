@@ -22,7 +22,7 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QApplication
 
-from app.desk.machine_status import Tone
+from app.desk.status.machine_status import Tone
 from app.desk.translation import tr
 from app.screen.theme import Palette
 from app.screen.window_layout import FINGER

@@ -9,10 +9,10 @@ from PySide6.QtCore import QRectF
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QWidget
 
-from app.desk.machine_status import MachineStatus
 from app.desk.page_description import PageEntry
-from app.desk.page_entry import editor_barred, mdi_barred
-from app.desk.program_loading import Loaded
+from app.desk.pages.page_entry import editor_barred, mdi_barred
+from app.desk.programs.program_loading import Loaded
+from app.desk.status.machine_status import MachineStatus
 from app.screen import page_table
 from app.screen.keys import OF_MENU
 from app.screen.look import CENTRE, Look, Painter

@@ -21,7 +21,7 @@ from PySide6.QtGui import (
 from PySide6.QtWidgets import QApplication, QWidget
 
 from app.desk.desk import BY_SCREEN, Desk
-from app.desk.prompt_line import MOVING, UNDER_WAY
+from app.desk.status.prompt_line import MOVING, UNDER_WAY
 from app.desk.translation import spoken, tr
 from app.screen.event_times import EventTimes
 from app.screen.keyboard import Keyboard, key_of, letter_of

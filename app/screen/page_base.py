@@ -48,8 +48,8 @@ from PySide6.QtGui import QKeyEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.desk import Desk
-from app.desk.machine_status import MachineStatus
-from app.desk.program_loading import Loaded
+from app.desk.programs.program_loading import Loaded
+from app.desk.status.machine_status import MachineStatus
 from app.screen.look import Look
 from app.screen.machine_labels import label_on
 from core.executor.snapshot import Snapshot

@@ -10,10 +10,10 @@ import gc
 from collections.abc import Callable, Iterator
 from functools import partial
 
+from app.desk.background_work import Latest
 from app.desk.desk import Desk
-from app.desk.latest import Latest
 from app.desk.page_description import PageEntry
-from app.desk.program_loading import Phase
+from app.desk.programs.program_loading import Phase
 from app.screen.page_base import Page
 from app.screen.page_table import class_of, load, pages_of
 

@@ -7,10 +7,10 @@ from collections.abc import Sequence
 from PySide6.QtCore import QRectF, Qt
 from PySide6.QtWidgets import QWidget
 
-from app.desk import formats
-from app.desk.formats import percent
-from app.desk.machine_status import MachineStatus, Tone
-from app.desk.readouts import UNKNOWN, AxisFigures, FeedFigures, PositionFigures, SpindleFigures
+from app.desk.status import formats
+from app.desk.status.formats import percent
+from app.desk.status.machine_status import MachineStatus, Tone
+from app.desk.status.readouts import UNKNOWN, AxisFigures, FeedFigures, PositionFigures, SpindleFigures
 from app.desk.translation import tr
 from app.screen.look import CENTRE, LEFT, RIGHT, Look, Painter, draw_sign, put
 from app.screen.panel import Panel, Shown

@@ -12,6 +12,7 @@ from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QApplication
 
 from app.desk.desk import Desk
+from app.desk.programs.first_program import begin_with
 from app.screen import accessible
 from app.screen.look import Look, dress, load_fonts
 from app.screen.main_window import MainWindow
@@ -72,7 +73,7 @@ class _Start:
         try:
             desk = self._desk = self._build()
             self._window.open_desk(desk)
-            desk.begin_with(self._program)
+            begin_with(desk, self._program)
         except Exception as error:  # noqa: BLE001 - raised into Qt's loop nobody could catch it
             self._trouble = error
             QApplication.exit(1)

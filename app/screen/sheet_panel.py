@@ -9,7 +9,7 @@ from typing import Protocol
 from PySide6.QtCore import QRectF, Qt
 from PySide6.QtWidgets import QWidget
 
-from app.desk.sheet import Key, Row, Sheet
+from app.desk.pages.sheet import Key, Row, Sheet
 from app.screen import page_table
 from app.screen.entry_panel import draw_entry_box
 from app.screen.look import LEFT, RIGHT, Look, Painter

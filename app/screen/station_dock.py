@@ -9,9 +9,10 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QFontMetricsF, QWheelEvent
 from PySide6.QtWidgets import QWidget
 
-from app.desk import formats
 from app.desk.desk import Desk
 from app.desk.station_hands import Pot
+from app.desk.status import formats
+from app.desk.status.standing_prompt import start_refusal
 from app.desk.translation import tr
 from app.screen.look import CENTRE, RIGHT, Look, Painter
 from app.screen.panel import Control, FingerPanel, Shown, pressed
@@ -38,7 +39,7 @@ class StationDock(FingerPanel):
     def show_station(self, snapshot: Snapshot) -> None:
         """Where its switches and buttons stand."""
         desk = self._desk
-        self._auto, self.barred = snapshot.spindle_auto, bool(desk.start_refusal(snapshot))
+        self._auto, self.barred = snapshot.spindle_auto, bool(start_refusal(desk, snapshot))
         palms = frozenset(desk.hands.palms.down)
         pots = (desk.hands.spindle_pot.wanted, desk.hands.feed_pot.wanted)
         latched = desk.settings.now.latched and desk.one_hand

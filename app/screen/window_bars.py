@@ -11,10 +11,10 @@ from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QFont, QFontMetricsF
 from PySide6.QtWidgets import QWidget
 
-from app.desk.interrupted_notice import NoticeRow
-from app.desk.machine_status import Tone
-from app.desk.prompt_line import Sort
-from app.desk.readouts import Lamp
+from app.desk.status.interrupted_notice import NoticeRow
+from app.desk.status.machine_status import Tone
+from app.desk.status.prompt_line import Sort
+from app.desk.status.readouts import Lamp
 from app.desk.translation import tr
 from app.screen.accessible import announce
 from app.screen.keys import ANSWER, NO

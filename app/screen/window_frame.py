@@ -10,15 +10,15 @@ from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QApplication, QLineEdit, QPlainTextEdit, QWidget
 
 from app.automatic.automatic_view import AutomaticPage
-from app.desk import formats, prompt_line
 from app.desk.desk import Desk
-from app.desk.first_job import CLOSE
-from app.desk.interrupted_notice import NoticeRow, may_go_on, notice_of
-from app.desk.machine_status import MachineStatus
-from app.desk.program_loading import Loaded
-from app.desk.readouts import Lamp, drives_lamp
+from app.desk.pages.first_job import CLOSE
+from app.desk.programs.program_loading import Loaded
+from app.desk.status import formats, prompt_line
+from app.desk.status.interrupted_notice import NoticeRow, may_go_on, notice_of, unheard_notice
+from app.desk.status.machine_status import MachineStatus
+from app.desk.status.readouts import Lamp, drives_lamp
+from app.desk.status.standing_prompt import prompt, time_left
 from app.desk.translation import tr
-from app.desk.unheard_notice import unheard_notice
 from app.screen import page_table
 from app.screen.alarm_panels import AlarmList, Notice
 from app.screen.keys import OF_AUTOMATIC
@@ -328,7 +328,7 @@ class Frame(QWidget):
         self.title.page = self.page.NAME
         self.title.access = desk.access.words
         self.title.show_state(name, view.state, view.tone, desk.machine, desk.time_of_day())
-        state = desk.prompt(snapshot, loaded, self.page.prompt())
+        state = prompt(desk, snapshot, loaded, self.page.prompt())
         self.prompt.show_state(state, prompt_line.reason(view) or prompt_line.remedy(loaded, state))
         self.prompt.show_question(desk.answers.question or self.page.asks(), desk.asked)
         self.prompt.show_answer(desk.answers.answer, sort=desk.answers.sort)
@@ -343,7 +343,7 @@ class Frame(QWidget):
         self, snapshot: Snapshot, view: MachineStatus, loaded: Loaded
     ) -> tuple[tuple[str, str], ...]:
         """Parts and times, as the run's row has them too."""
-        left = formats.duration(self.desk.time_left(snapshot, loaded))
+        left = formats.duration(time_left(snapshot, loaded))
         return (
             ("PARTS", self.desk.counter.words),
             ("CYCLE", view.cycle),

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from app.desk.arithmetic import line_of
-from app.desk.sheet import edited
+from app.desk.pages.sheet import edited
 
 _PASS = re.compile(r"\s*(\d+)\s*[Pp]\s*(\d+)\s*")
 LONGEST = 60  # characters of what is typed

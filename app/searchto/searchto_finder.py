@@ -6,8 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from app.desk.latest import Latest, Watch
-from app.desk.program_loading import Proved
+from app.desk.background_work import Latest, Watch
+from app.desk.programs.program_loading import Proved
 from core.executor.job import Job
 from core.interpreter.restart.cut_record import CutRecord
 from core.interpreter.restart.restart_point import Interruption, NoRestart, RestartPoint

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field, replace
 from enum import Enum, auto
 from typing import TYPE_CHECKING
 
-from app.desk.latest import Watch
-from app.desk.page_entry import searchto_barred
-from app.desk.program_loading import Loaded, ProgramLoader, Proved
+from app.desk.background_work import Watch
+from app.desk.pages.page_entry import searchto_barred
+from app.desk.programs.program_loading import Loaded, ProgramLoader, Proved
 from app.desk.translation import tr
 from app.searchto.searchto_cursor import LineCursor
 from app.searchto.searchto_finder import Answer, LineFinder

@@ -8,8 +8,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from app.desk import formats
-from app.desk.modal_rows import NONE, ModalRow, rows_of
+from app.desk.status import formats
+from app.desk.status.modal_rows import NONE, ModalRow, rows_of
 from app.desk.translation import tr
 from app.path.path_aspects import DrawnLeg as Drawn
 from core.executor.job import Job

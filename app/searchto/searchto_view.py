@@ -12,8 +12,8 @@ from PySide6.QtCore import QRectF
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QWidget
 
-from app.desk.machine_status import MachineStatus
-from app.desk.program_loading import Loaded
+from app.desk.programs.program_loading import Loaded
+from app.desk.status.machine_status import MachineStatus
 from app.desk.translation import tr
 from app.path.part_player import player_of
 from app.path.path_aspects import Tip, tip_of

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from app.desk.machine_status import SilenceWatch
+from app.desk.status.machine_status import SilenceWatch
 from core.alarms import CATALOGUE, Code, Reaction
 from core.executor.snapshot import LINES, Alarm, InterruptedJob, Snapshot, State
 from core.machine.machine_model import Machine

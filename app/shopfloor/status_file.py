@@ -7,7 +7,7 @@ import logging
 from collections.abc import Callable
 from pathlib import Path
 
-from app.desk.repeating_thread import RepeatingThread
+from app.desk.background_work import RepeatingThread
 from app.shopfloor.floor_reading import Reading, Value
 from core.executor.snapshot import Alarm, InterruptedJob
 from core.file_placing import write_in_place

@@ -8,13 +8,13 @@ from datetime import datetime
 from functools import partial
 from pathlib import Path
 
+from app.desk.background_work import Latest
 from app.desk.daily_backup import ENDING
 from app.desk.desk import Desk
-from app.desk.latest import Latest
-from app.desk.machine_status import Tone
+from app.desk.pages.sheet import Key, Row, Sheet
 from app.desk.persistence import Persistence
-from app.desk.prompt_line import UNDER_WAY
-from app.desk.sheet import Key, Row, Sheet
+from app.desk.status.machine_status import Tone
+from app.desk.status.prompt_line import UNDER_WAY
 from app.desk.translation import tr
 from app.programs.removable_media import Stick, sticks
 from app.programs.whole_file import FileError

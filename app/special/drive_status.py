@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from app.desk import formats
 from app.desk.desk import Desk
-from app.desk.machine_status import Tone
-from app.desk.readouts import UNKNOWN
-from app.desk.sheet import Row, Sheet
+from app.desk.pages.sheet import Row, Sheet
+from app.desk.status import formats
+from app.desk.status.machine_status import Tone
+from app.desk.status.readouts import UNKNOWN
 from app.special.special_functions import SpecialFunction
 from core.executor.snapshot import Alarm, Snapshot
 from core.machine.machine_model import Axis, Machine

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from enum import StrEnum
 
 from app.desk.desk import Desk
-from app.desk.machine_status import Tone
-from app.desk.readouts import UNKNOWN, Lamp, drives_lamp, lamps_of
-from app.desk.sheet import Key, Row, Sheet, following
+from app.desk.pages.sheet import Key, Row, Sheet, following
+from app.desk.status.machine_status import Tone
+from app.desk.status.readouts import UNKNOWN, Lamp, drives_lamp, lamps_of
 from app.desk.translation import tr
 from app.special.special_functions import SpecialFunction
 from core.access.access_table import Act

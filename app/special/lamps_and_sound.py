@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from app.desk.desk import Desk
+from app.desk.pages.sheet import Key, Row, Sheet
 from app.desk.persistence import Persistence
-from app.desk.sheet import Key, Row, Sheet
-from app.desk.sounds import Sounds
+from app.desk.status.sounds import Sounds
 from app.desk.translation import tr
 from app.special.special_functions import SpecialFunction
 from core.access.access_table import Act

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from app.desk.alarm_log import read_back
+from app.desk.background_work import Latest
 from app.desk.desk import Desk
-from app.desk.formats import local_time
-from app.desk.latest import Latest
-from app.desk.machine_status import Tone
+from app.desk.pages.sheet import Entry, Key, Row, Sheet, following
 from app.desk.persistence import Persistence
-from app.desk.prompt_line import cause_of
-from app.desk.sheet import Entry, Key, Row, Sheet, following
+from app.desk.status.alarm_log import read_back
+from app.desk.status.formats import local_time
+from app.desk.status.machine_status import Tone
+from app.desk.status.prompt_line import cause_of
 from app.desk.translation import tr
 from app.special.special_functions import SpecialFunction
 from core.executor.snapshot import Snapshot

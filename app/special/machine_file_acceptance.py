@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from app.desk.desk import Desk
-from app.desk.machine_file_changes import FileChanges
-from app.desk.machine_status import Tone
-from app.desk.sheet import Key, Row, Sheet
+from app.desk.pages.sheet import Key, Row, Sheet
+from app.desk.status.machine_file_changes import FileChanges
+from app.desk.status.machine_status import Tone
 from app.desk.translation import tr
 from app.special.special_functions import SpecialFunction
 from core.access.access_table import Act

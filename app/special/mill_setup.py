@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-from app.desk.readouts import rotary_angle
+from app.desk.status.readouts import rotary_angle
 from app.desk.translation import tr
 from core.geometry.rotary_axes import DatumPreset
 from core.interpreter.job_setup import MillTool, Setup, ToolOffset

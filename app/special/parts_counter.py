@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import partial
 
-from app.desk import formats
 from app.desk.arithmetic import EntryError, value_of
-from app.desk.sheet import Key, Row, Sheet, refused
+from app.desk.pages.sheet import Key, Row, Sheet, refused
+from app.desk.status import formats
 from app.desk.translation import tr
 from app.special.part_count import MOST, PartCounter
 from app.special.special_functions import FigureFunction

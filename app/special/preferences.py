@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from app.desk.first_job import FirstJob
-from app.desk.sheet import Row, Sheet
+from app.desk.pages.first_job import FirstJob
+from app.desk.pages.sheet import Row, Sheet
 from app.desk.translation import tr
 from app.special.special_functions import SpecialFunction
 from core.executor.snapshot import Snapshot

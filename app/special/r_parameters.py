@@ -6,11 +6,11 @@ from collections.abc import Mapping
 from functools import partial
 
 from app.desk.arithmetic import EntryError, value_of
+from app.desk.background_work import Latest
 from app.desk.desk import Desk
-from app.desk.latest import Latest
+from app.desk.pages.sheet import Key, Row, Sheet
 from app.desk.persistence import Persistence
-from app.desk.prompt_line import UNDER_WAY
-from app.desk.sheet import Key, Row, Sheet
+from app.desk.status.prompt_line import UNDER_WAY
 from app.desk.translation import tr
 from app.offsets.offsets_in_force import R_PARAMETERS, r_parameters
 from app.special.special_functions import FigureFunction

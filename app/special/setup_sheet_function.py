@@ -7,10 +7,10 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from app.desk.background_work import Latest
 from app.desk.desk import Desk
-from app.desk.latest import Latest
+from app.desk.pages.sheet import Entry, Key, Row, Sheet
 from app.desk.persistence import Persistence
-from app.desk.sheet import Entry, Key, Row, Sheet
 from app.desk.translation import tr
 from app.programs.removable_media import Stick, sticks
 from app.report.pdf_file import Paper

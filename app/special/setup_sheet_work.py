@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 
-from app.desk.latest import Request
-from app.desk.sheet import Row
+from app.desk.background_work import Request
+from app.desk.pages.sheet import Row
 from app.desk.translation import spoken, tr
 from app.programs.whole_file import FileError, settle, write_out
 from app.report.html_tables import PAGE_END, clock, headline, page_head, text_hash

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from app.desk.arithmetic import EntryError
+from app.desk.background_work import Latest
 from app.desk.desk import Desk
-from app.desk.latest import Latest
-from app.desk.sheet import STEPS, Entry, Key, Row, Sheet, refused
+from app.desk.pages.sheet import STEPS, Entry, Key, Row, Sheet, refused
 from app.desk.translation import tr
 from core.executor.snapshot import Snapshot
 from core.message import Message

@@ -9,9 +9,9 @@ from PySide6.QtCore import QRectF
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QWidget
 
-from app.desk.machine_status import MachineStatus
-from app.desk.program_loading import Loaded
-from app.desk.sheet import Key
+from app.desk.pages.sheet import Key
+from app.desk.programs.program_loading import Loaded
+from app.desk.status.machine_status import MachineStatus
 from app.screen import page_table
 from app.screen.entry_panel import KeyPad
 from app.screen.letter_keys import LetterPad

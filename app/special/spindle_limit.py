@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from app.desk import formats
 from app.desk.arithmetic import EntryError, value_of
 from app.desk.desk import Desk
-from app.desk.readouts import UNKNOWN
-from app.desk.sheet import Key, Row, Sheet
+from app.desk.pages.sheet import Key, Row, Sheet
+from app.desk.status import formats
+from app.desk.status.readouts import UNKNOWN
 from app.desk.translation import tr
 from app.special.special_functions import FigureFunction
 from core.access.access_table import Act

@@ -8,9 +8,9 @@ from functools import partial
 
 from app.desk.arithmetic import EntryError, value_of
 from app.desk.desk import Desk
-from app.desk.formats import NOTHING
-from app.desk.machine_status import Tone
-from app.desk.sheet import Key, Row, Sheet, following
+from app.desk.pages.sheet import Key, Row, Sheet, following
+from app.desk.status.formats import NOTHING
+from app.desk.status.machine_status import Tone
 from app.desk.translation import tr
 from app.production.parts_watch import PartsWatch
 from app.special.special_functions import FigureFunction

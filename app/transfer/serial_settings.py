@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, fields, replace
 
-from app.desk.sheet import following
+from app.desk.pages.sheet import following
 from app.desk.translation import tr
 from core.machine.desk_tables import DncModel
 

@@ -6,11 +6,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from app.desk.background_work import Latest
 from app.desk.desk import Desk
-from app.desk.latest import Latest
-from app.desk.machine_status import Tone
+from app.desk.pages.sheet import Entry, Key, Row, Sheet
 from app.desk.persistence import Persistence
-from app.desk.sheet import Entry, Key, Row, Sheet
+from app.desk.status.machine_status import Tone
 from app.desk.translation import tr
 from app.programs.whole_file import FileError
 from app.special.special_functions import SpecialFunction

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from app.desk.readouts import rotary_angle, system_words
+from app.desk.status.readouts import rotary_angle, system_words
 
 if TYPE_CHECKING:
     from app.working_plane.plane_scene import Scene

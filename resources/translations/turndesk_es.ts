@@ -5359,26 +5359,6 @@
       <translation>A la línea</translation>
     </message>
     <message>
-      <location filename="app/compose/accepted_machine.py" />
-      <source>canopen.nodes.{name}, all values written to the node</source>
-      <translation>canopen.nodes.{name}, todos los valores que se escriben en el nodo</translation>
-    </message>
-    <message>
-      <location filename="app/compose/accepted_machine.py" />
-      <source>machine file</source>
-      <translation>archivo de máquina</translation>
-    </message>
-    <message>
-      <location filename="app/compose/accepted_machine.py" />
-      <source>machine file {path} accepted</source>
-      <translation>archivo de máquina {path} aceptado</translation>
-    </message>
-    <message>
-      <location filename="app/compose/accepted_machine.py" />
-      <source>machine file {path} accepted by {name}</source>
-      <translation>archivo de máquina {path} aceptado por {name}</translation>
-    </message>
-    <message>
       <location filename="app/compose/desk_part.py" />
       <source>Change the specified stock or the tool shapes.</source>
       <translation>Cambie el material en bruto indicado o las formas de herramienta.</translation>
@@ -5409,12 +5389,32 @@
       <translation>El material en bruto indicado no se puede usar ({why}). En su lugar se emplea uno supuesto.</translation>
     </message>
     <message>
-      <location filename="app/compose/journal.py" />
+      <location filename="app/compose/machine/accepted_machine.py" />
+      <source>canopen.nodes.{name}, all values written to the node</source>
+      <translation>canopen.nodes.{name}, todos los valores que se escriben en el nodo</translation>
+    </message>
+    <message>
+      <location filename="app/compose/machine/accepted_machine.py" />
+      <source>machine file</source>
+      <translation>archivo de máquina</translation>
+    </message>
+    <message>
+      <location filename="app/compose/machine/accepted_machine.py" />
+      <source>machine file {path} accepted</source>
+      <translation>archivo de máquina {path} aceptado</translation>
+    </message>
+    <message>
+      <location filename="app/compose/machine/accepted_machine.py" />
+      <source>machine file {path} accepted by {name}</source>
+      <translation>archivo de máquina {path} aceptado por {name}</translation>
+    </message>
+    <message>
+      <location filename="app/compose/runs/journal.py" />
       <source>loaded to run</source>
       <translation>cargado para correr</translation>
     </message>
     <message>
-      <location filename="app/compose/journal.py" />
+      <location filename="app/compose/runs/journal.py" />
       <source>the data store is closed</source>
       <translation>el almacén de datos está cerrado</translation>
     </message>
@@ -5579,11 +5579,6 @@
       <translation>{entry} es demasiado grande; escriba un número menor</translation>
     </message>
     <message>
-      <location filename="app/desk/code_help.py" />
-      <source>MATCHING CODES</source>
-      <translation>CÓDIGOS QUE COINCIDEN</translation>
-    </message>
-    <message>
       <location filename="app/desk/daily_backup.py" />
       <source>the backup was written, but {wrong}; check the disk that holds {folder}</source>
       <translation>la copia se escribió, pero {wrong}; revise el disco de {folder}</translation>
@@ -5620,11 +5615,6 @@
     </message>
     <message>
       <location filename="app/desk/desk.py" />
-      <source>CHECKING THE FIRST MOVE FOR COLLISION WITH THE PART</source>
-      <translation>COMPROBANDO SI EL PRIMER MOVIMIENTO CHOCA CON LA PIEZA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/desk.py" />
       <source>CONTROL SILENT</source>
       <translation>CONTROL SIN RESPUESTA</translation>
     </message>
@@ -5647,16 +5637,6 @@
       <location filename="app/desk/desk.py" />
       <source>F2: CHOOSE A PROGRAM BEFORE CHANGING BLOCK DELETE</source>
       <translation>F2: ELIJA UN PROGRAMA ANTES DE CAMBIAR EL SALTO DE BLOQUE</translation>
-    </message>
-    <message>
-      <location filename="app/desk/desk.py" />
-      <source>FILE NOT FOUND: {named}</source>
-      <translation>NO SE ENCONTRÓ EL ARCHIVO: {named}</translation>
-    </message>
-    <message>
-      <location filename="app/desk/desk.py" />
-      <source>INTERRUPTED PROGRAM {name} NOT FOUND. F2: CHOOSE A PROGRAM</source>
-      <translation>PROGRAMA INTERRUMPIDO {name} NO ENCONTRADO. F2: ELEGIR PROGRAMA</translation>
     </message>
     <message>
       <location filename="app/desk/desk.py" />
@@ -5739,457 +5719,137 @@
       <translation>una tecla o un toque en la pantalla</translation>
     </message>
     <message>
-      <location filename="app/desk/desk.py" />
-      <source>{name} NOT LOADED: THE INTERRUPTED JOB WAS LOADED INSTEAD</source>
-      <translation>{name} NO SE CARGÓ: EN SU LUGAR SE CARGÓ EL TRABAJO INTERRUMPIDO</translation>
+      <location filename="app/desk/pages/code_help.py" />
+      <source>MATCHING CODES</source>
+      <translation>CÓDIGOS QUE COINCIDEN</translation>
     </message>
     <message>
-      <location filename="app/desk/first_job.py" />
+      <location filename="app/desk/pages/first_job.py" />
       <source>CHOOSE A PROGRAM</source>
       <translation>ELIJA UN PROGRAMA</translation>
     </message>
     <message>
-      <location filename="app/desk/first_job.py" />
+      <location filename="app/desk/pages/first_job.py" />
       <source>CLOSE</source>
       <translation>CERRAR</translation>
     </message>
     <message>
-      <location filename="app/desk/first_job.py" />
+      <location filename="app/desk/pages/first_job.py" />
       <source>DRY RUN</source>
       <translation>MARCHA EN VACÍO</translation>
     </message>
     <message>
-      <location filename="app/desk/first_job.py" />
+      <location filename="app/desk/pages/first_job.py" />
       <source>DRY RUN, NO STOCK: P, D, CYCLE START. WATCH EVERY MOVE. H: FEED HOLD</source>
       <translation>MARCHA EN VACÍO, SIN MATERIAL: P, D, ARRANQUE DE CICLO. VIGILE CADA MOVIMIENTO. H: RETENCIÓN DE AVANCE</translation>
     </message>
     <message>
-      <location filename="app/desk/first_job.py" />
+      <location filename="app/desk/pages/first_job.py" />
       <source>F2: TYPE A NAME   F1, THEN F6: CHOOSE FROM THE LIST</source>
       <translation>F2: ESCRIBIR UN NOMBRE   F1 Y LUEGO F6: ELEGIR DE LA LISTA</translation>
     </message>
     <message>
-      <location filename="app/desk/first_job.py" />
+      <location filename="app/desk/pages/first_job.py" />
       <source>FIRST JOB, STEP {number} OF {count}</source>
       <translation>PRIMER TRABAJO, PASO {number} DE {count}</translation>
     </message>
     <message>
-      <location filename="app/desk/first_job.py" />
+      <location filename="app/desk/pages/first_job.py" />
       <source>FIRST JOB: DONE</source>
       <translation>PRIMER TRABAJO: HECHO</translation>
     </message>
     <message>
-      <location filename="app/desk/first_job.py" />
+      <location filename="app/desk/pages/first_job.py" />
       <source>FIRST PART</source>
       <translation>PRIMERA PIEZA</translation>
     </message>
     <message>
-      <location filename="app/desk/first_job.py" />
+      <location filename="app/desk/pages/first_job.py" />
       <source>NO COUNT</source>
       <translation>SIN CONT</translation>
     </message>
     <message>
-      <location filename="app/desk/first_job.py" />
+      <location filename="app/desk/pages/first_job.py" />
       <source>P: COUNT ON. LOAD STOCK, CYCLE START. MEASURE PART. F9: CORRECT WEAR</source>
       <translation>P: CONTAR. PONGA MATERIAL, ARRANQUE DE CICLO. MIDA LA PIEZA. F9: CORREGIR DESGASTE</translation>
     </message>
     <message>
-      <location filename="app/desk/first_job.py" />
+      <location filename="app/desk/pages/first_job.py" />
       <source>PROGRAM IS PROVED AUTOMATICALLY. B (PART): SHOW ERRORS, WARNINGS</source>
       <translation>EL PROGRAMA SE COMPRUEBA SOLO. B (PIEZA): VER ERRORES Y AVISOS</translation>
     </message>
     <message>
-      <location filename="app/desk/first_job.py" />
+      <location filename="app/desk/pages/first_job.py" />
       <source>PROVE THE PROGRAM</source>
       <translation>COMPROBAR EL PROGRAMA</translation>
     </message>
     <message>
-      <location filename="app/desk/first_job.py" />
+      <location filename="app/desk/pages/first_job.py" />
       <source>SET THE TOOLS</source>
       <translation>REGLAR LAS HERRAMIENTAS</translation>
     </message>
     <message>
-      <location filename="app/desk/first_job.py" />
+      <location filename="app/desk/pages/first_job.py" />
       <source>SHOW THIS CARD AGAIN: F10, 7, ENTER, FIRST JOB CARD</source>
       <translation>VER OTRA VEZ: F10, 7, ENTER, TARJETA DEL PRIMER TRABAJO</translation>
     </message>
     <message>
-      <location filename="app/desk/first_job.py" />
+      <location filename="app/desk/pages/first_job.py" />
       <source>TOOLS NOT SET? PRESS F8. TO TOUCH OFF: F1, F5, THEN T, X, Z</source>
       <translation>¿HERRAMIENTAS SIN CORRECTOR? PULSE F8. PARA TOCAR: F1, F5, LUEGO T, X, Z</translation>
     </message>
     <message>
-      <location filename="app/desk/formats.py" />
-      <source>{size} GB</source>
-      <translation>{size} GB</translation>
-    </message>
-    <message>
-      <location filename="app/desk/interrupted_notice.py" />
-      <source> (PROGRAM CHANGED SINCE THEN)</source>
-      <translation> (EL PROGRAMA CAMBIÓ DESDE ENTONCES)</translation>
-    </message>
-    <message>
-      <location filename="app/desk/interrupted_notice.py" />
-      <source> REPETITION {now} OF {all}</source>
-      <translation> REPETICIÓN {now} DE {all}</translation>
-    </message>
-    <message>
-      <location filename="app/desk/interrupted_notice.py" />
-      <source>. THE LAST SECOND BEFORE THE STOP WAS NOT RECORDED. CUT MAY BE INCOMPLETE. CHECK TOOL AND PART</source>
-      <translation>. NO SE REGISTRÓ EL ÚLTIMO SEGUNDO ANTES DEL PARO. EL CORTE PUEDE ESTAR INCOMPLETO. REVISE HERRAMIENTA Y PIEZA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/interrupted_notice.py" />
-      <source>INTERRUPTED: {program} LINE {line}{passed}, T{tool}, PART {part}, {position}: {why}{changed}</source>
-      <translation>INTERRUMPIDO: {program} LÍNEA {line}{passed}, T{tool}, PIEZA {part}, {position}: {why}{changed}</translation>
-    </message>
-    <message>
-      <location filename="app/desk/interrupted_notice.py" />
-      <source>POSITION UNCHANGED: {position} FROM HOME</source>
-      <translation>POSICIÓN SIN CAMBIOS: {position} DESDE LA REFERENCIA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/interrupted_notice.py" />
-      <source>POSITION WAS {position} FROM HOME</source>
-      <translation>LA POSICIÓN ERA {position} DESDE LA REFERENCIA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/interrupted_notice.py" />
-      <source>POSITION WAS {position} FROM HOME, NOW UNKNOWN UNTIL HOMED</source>
-      <translation>LA POSICIÓN ERA {position} DESDE LA REFERENCIA, DESCONOCIDA HASTA REFERENCIAR</translation>
-    </message>
-    <message>
-      <location filename="app/desk/interrupted_notice.py" />
-      <source>POSITION WAS {position}, IS NOW {now} FROM HOME</source>
-      <translation>LA POSICIÓN ERA {position}, AHORA ES {now} DESDE LA REFERENCIA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/interrupted_notice.py" />
-      <source>STARTS AT LINE 1 ({text}) FROM CURRENT T{tool} POSITION. {start}. ESC: CANCEL</source>
-      <translation>EMPIEZA EN LA LÍNEA 1 ({text}) DESDE LA POSICIÓN ACTUAL DE T{tool}. {start}. ESC: CANCELAR</translation>
-    </message>
-    <message>
-      <location filename="app/desk/interrupted_notice.py" />
-      <source>STOPPED IN LINE {line}. F6: RETRACT AND RESUME. Y: START OVER</source>
-      <translation>PARADO EN LA LÍNEA {line}. F6: RETIRAR Y REANUDAR. Y: EMPEZAR DE NUEVO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/interrupted_notice.py" />
-      <source>STOPPED IN LINE {line}. JOG THE TOOL CLEAR. Y: START OVER</source>
-      <translation>PARADO EN LA LÍNEA {line}. SAQUE LA HERRAMIENTA EN JOG. Y: EMPEZAR DE NUEVO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/interrupted_notice.py" />
-      <source>T{tool} MAY BE IN THE PART ({program}, LINE {line}). PRESS Y TO CANCEL THE INTERRUPTED JOB AND LOAD {name}, N TO KEEP THE INTERRUPTED JOB</source>
-      <translation>T{tool} PUEDE ESTAR DENTRO DE LA PIEZA ({program}, LÍNEA {line}). PULSE Y PARA CANCELAR EL TRABAJO INTERRUMPIDO Y CARGAR {name}, N PARA CONSERVAR EL TRABAJO INTERRUMPIDO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/machine_file_changes.py" />
-      <source>MACHINE FILE CHANGED ({count}). F10: REVIEW AND ACCEPT</source>
-      <translation>ARCHIVO DE MÁQUINA CAMBIADO ({count}). F10: REVISAR Y ACEPTAR</translation>
-    </message>
-    <message>
-      <location filename="app/desk/machine_status.py" />
-      <source>ALARM {number}: {alarms}</source>
-      <translation>ALARMA {number}: {alarms}</translation>
-    </message>
-    <message>
-      <location filename="app/desk/machine_status.py" />
-      <source>FEED HOLD {number}: {stop}</source>
-      <translation>RETENCIÓN DE AVANCE {number}: {stop}</translation>
-    </message>
-    <message>
-      <location filename="app/desk/machine_status.py" />
-      <source>NOT HOMED</source>
-      <translation>SIN REF</translation>
-    </message>
-    <message>
-      <location filename="app/desk/machine_status.py" />
-      <source>PROGRAM STOP</source>
-      <translation>PARO DE PROGRAMA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/machine_status.py" />
-      <source>WAITING: {what}</source>
-      <translation>ESPERANDO: {what}</translation>
-    </message>
-    <message>
-      <location filename="app/desk/modal_rows.py" />
-      <source>C AXIS</source>
-      <translation>EJE C</translation>
-    </message>
-    <message>
-      <location filename="app/desk/modal_rows.py" />
-      <source>COARSE FEED</source>
-      <translation>AVANCE BURDO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/modal_rows.py" />
-      <source>COLLET</source>
-      <translation>PINZA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/modal_rows.py" />
-      <source>COMMENT</source>
-      <translation>COMENTARIO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/modal_rows.py" />
-      <source>COOLANT</source>
-      <translation>REFRIG.</translation>
-    </message>
-    <message>
-      <location filename="app/desk/modal_rows.py" />
-      <source>D OFFSET</source>
-      <translation>CORRECTOR D</translation>
-    </message>
-    <message>
-      <location filename="app/desk/modal_rows.py" />
-      <source>DATUM SHIFT</source>
-      <translation>DECALAJE DE ORIGEN</translation>
-    </message>
-    <message>
-      <location filename="app/desk/modal_rows.py" />
-      <source>DISTANCE</source>
-      <translation>DISTANCIA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/modal_rows.py" />
-      <source>FEED</source>
-      <translation>AVANCE</translation>
-    </message>
-    <message>
-      <location filename="app/desk/modal_rows.py" />
-      <source>FEED MODE</source>
-      <translation>MODO DE AVANCE</translation>
-    </message>
-    <message>
-      <location filename="app/desk/modal_rows.py" />
-      <source>FREE</source>
-      <translation>LIBRE</translation>
-    </message>
-    <message>
-      <location filename="app/desk/modal_rows.py" />
-      <source>G01 FEED</source>
-      <translation>AVANCE G01</translation>
-    </message>
-    <message>
-      <location filename="app/desk/modal_rows.py" />
-      <source>G10 ACTIVE</source>
-      <translation>G10 ACTIVO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/modal_rows.py" />
-      <source>G10 FROM NEXT T</source>
-      <translation>G10 DESDE LA SIGUIENTE T</translation>
-    </message>
-    <message>
-      <location filename="app/desk/modal_rows.py" />
-      <source>G70 INCH</source>
-      <translation>G70 PULGADAS</translation>
-    </message>
-    <message>
-      <location filename="app/desk/modal_rows.py" />
-      <source>G92 PRESET</source>
-      <translation>PRESET G92</translation>
-    </message>
-    <message>
-      <location filename="app/desk/modal_rows.py" />
-      <source>G97 {rpm} RPM</source>
-      <translation>G97 {rpm} RPM</translation>
-    </message>
-    <message>
-      <location filename="app/desk/modal_rows.py" />
-      <source>LENGTH, RADIUS</source>
-      <translation>LONGITUD, RADIO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/modal_rows.py" />
-      <source>LOCKED</source>
-      <translation>BLOQUEADO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/modal_rows.py" />
-      <source>M FUNCTIONS</source>
-      <translation>FUNCIONES M</translation>
-    </message>
-    <message>
-      <location filename="app/desk/modal_rows.py" />
-      <source>MIRROR, ROT, SCALE</source>
-      <translation>ESPEJO, ROT, ESCALA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/modal_rows.py" />
-      <source>MOTION</source>
-      <translation>MOVIMIENTO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/modal_rows.py" />
-      <source>NOSE COMP</source>
-      <translation>COMP DE PUNTA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/modal_rows.py" />
-      <source>OFF</source>
-      <translation>APAGADO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/modal_rows.py" />
-      <source>PRESET</source>
-      <translation>PRESET</translation>
-    </message>
-    <message>
-      <location filename="app/desk/modal_rows.py" />
-      <source>RAPID</source>
-      <translation>RÁPIDO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/modal_rows.py" />
-      <source>RAPID (FIRST F)</source>
-      <translation>RÁPIDO (PRIMERA F)</translation>
-    </message>
-    <message>
-      <location filename="app/desk/modal_rows.py" />
-      <source>RAPID RATE</source>
-      <translation>VELOCIDAD RÁPIDO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/modal_rows.py" />
-      <source>SFM</source>
-      <translation>PIES/MIN</translation>
-    </message>
-    <message>
-      <location filename="app/desk/modal_rows.py" />
-      <source>SPEED</source>
-      <translation>VELOC</translation>
-    </message>
-    <message>
-      <location filename="app/desk/modal_rows.py" />
-      <source>SPINDLE</source>
-      <translation>HUSILLO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/modal_rows.py" />
-      <source>TCPM</source>
-      <translation>TCPM</translation>
-    </message>
-    <message>
-      <location filename="app/desk/modal_rows.py" />
-      <source>TILTED PLANE</source>
-      <translation>PLANO INCLINADO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/modal_rows.py" />
-      <source>TOOL</source>
-      <translation>HERRAMIENTA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/modal_rows.py" />
-      <source>TOOL OFFSET</source>
-      <translation>COMP HERRAM</translation>
-    </message>
-    <message>
-      <location filename="app/desk/modal_rows.py" />
-      <source>TRANS</source>
-      <translation>TRANS</translation>
-    </message>
-    <message>
-      <location filename="app/desk/modal_rows.py" />
-      <source>TRANSFORMATION</source>
-      <translation>TRANSFORMACIÓN</translation>
-    </message>
-    <message>
-      <location filename="app/desk/modal_rows.py" />
-      <source>UNITS</source>
-      <translation>UNIDADES</translation>
-    </message>
-    <message>
-      <location filename="app/desk/modal_rows.py" />
-      <source>X VALUES</source>
-      <translation>VALORES X</translation>
-    </message>
-    <message>
-      <location filename="app/desk/modal_rows.py" />
-      <source>ZERO OFFSET</source>
-      <translation>DECALAJE DE CERO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/modal_rows.py" />
-      <source>cut feed</source>
-      <translation>avance de corte</translation>
-    </message>
-    <message>
-      <location filename="app/desk/modal_rows.py" />
-      <source>feed mode</source>
-      <translation>modo de avance</translation>
-    </message>
-    <message>
-      <location filename="app/desk/modal_rows.py" />
-      <source>first feed</source>
-      <translation>primer avance</translation>
-    </message>
-    <message>
-      <location filename="app/desk/modal_rows.py" />
-      <source>rapid rate</source>
-      <translation>velocidad de rápido</translation>
-    </message>
-    <message>
-      <location filename="app/desk/modal_rows.py" />
-      <source>tool offset</source>
-      <translation>corrector de herramienta</translation>
-    </message>
-    <message>
-      <location filename="app/desk/page_entry.py" />
+      <location filename="app/desk/pages/page_entry.py" />
       <source>AXES ARE MOVING. STOP THEM (H) BEFORE CHOOSING A PROGRAM</source>
       <translation>LOS EJES SE MUEVEN. PÁRELOS (H) ANTES DE ELEGIR UN PROGRAMA</translation>
     </message>
     <message>
-      <location filename="app/desk/page_entry.py" />
+      <location filename="app/desk/pages/page_entry.py" />
       <source>AXES ARE MOVING. WAIT UNTIL THEY STOP BEFORE EDITING</source>
       <translation>LOS EJES SE MUEVEN. ESPERE A QUE PAREN ANTES DE EDITAR</translation>
     </message>
     <message>
-      <location filename="app/desk/page_entry.py" />
+      <location filename="app/desk/pages/page_entry.py" />
       <source>CHOOSE A PROGRAM FIRST (F2)</source>
       <translation>ELIJA PRIMERO UN PROGRAMA (F2)</translation>
     </message>
     <message>
-      <location filename="app/desk/page_entry.py" />
+      <location filename="app/desk/pages/page_entry.py" />
       <source>CHOOSE A PROGRAM FIRST (F2), OR TYPE A NEW NAME THERE</source>
       <translation>ELIJA PRIMERO UN PROGRAMA (F2), O ESCRIBA AHÍ UN NOMBRE NUEVO</translation>
     </message>
     <message>
-      <location filename="app/desk/page_entry.py" />
+      <location filename="app/desk/pages/page_entry.py" />
       <source>FIX PROGRAM ERRORS FIRST</source>
       <translation>CORRIJA PRIMERO LOS ERRORES DEL PROGRAMA</translation>
     </message>
     <message>
-      <location filename="app/desk/page_entry.py" />
+      <location filename="app/desk/pages/page_entry.py" />
       <source>PROGRAM RUNNING. LET IT END, OR STOP IT AND PRESS R FIRST</source>
       <translation>PROGRAMA EN MARCHA. DEJE QUE TERMINE, O PÁRELO Y PULSE R</translation>
     </message>
     <message>
-      <location filename="app/desk/page_entry.py" />
+      <location filename="app/desk/pages/page_entry.py" />
       <source>SPINDLE IS COASTING. WAIT UNTIL IT STOPS BEFORE EDITING</source>
       <translation>EL HUSILLO GIRA POR INERCIA. ESPERE A QUE SE DETENGA ANTES DE EDITAR</translation>
     </message>
     <message>
-      <location filename="app/desk/page_entry.py" />
+      <location filename="app/desk/pages/page_entry.py" />
       <source>SPINDLE IS ON. STOP IT (M05 OR R). EDIT WHEN IT IS AT REST</source>
       <translation>HUSILLO ENCENDIDO. PÁRELO (M05 O R). EDITE CUANDO SE DETENGA</translation>
     </message>
     <message>
-      <location filename="app/desk/page_entry.py" />
+      <location filename="app/desk/pages/page_entry.py" />
       <source>SPINDLE MAY BE TURNING: PRESS E-STOP. DO NOT EDIT NOW</source>
       <translation>EL HUSILLO PUEDE ESTAR GIRANDO: PULSE PARO DE EMERGENCIA. NO EDITE AHORA</translation>
     </message>
     <message>
-      <location filename="app/desk/page_entry.py" />
+      <location filename="app/desk/pages/page_entry.py" />
       <source>TO OPEN MDI, LET THE PROGRAM END, OR STOP IT AND PRESS R</source>
       <translation>PARA ABRIR MDI, DEJE TERMINAR EL PROGRAMA, O PÁRELO Y PULSE R</translation>
     </message>
     <message>
-      <location filename="app/desk/page_entry.py" />
+      <location filename="app/desk/pages/page_entry.py" />
       <source>TO USE SEARCHTO, LET THE PROGRAM END, OR STOP IT AND PRESS R</source>
       <translation>PARA USAR BUSCAR A, DEJE TERMINAR EL PROGRAMA, O PÁRELO Y PULSE R</translation>
     </message>
@@ -6199,499 +5859,144 @@
       <translation>no se está guardando ningún dato; arranque turndesk con una carpeta en la que se pueda escribir (TURNDESK_HOME)</translation>
     </message>
     <message>
-      <location filename="app/desk/prepared_line.py" />
+      <location filename="app/desk/programs/first_program.py" />
+      <source>FILE NOT FOUND: {named}</source>
+      <translation>NO SE ENCONTRÓ EL ARCHIVO: {named}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/programs/first_program.py" />
+      <source>INTERRUPTED PROGRAM {name} NOT FOUND. F2: CHOOSE A PROGRAM</source>
+      <translation>PROGRAMA INTERRUMPIDO {name} NO ENCONTRADO. F2: ELEGIR PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/programs/first_program.py" />
+      <source>{name} NOT LOADED: THE INTERRUPTED JOB WAS LOADED INSTEAD</source>
+      <translation>{name} NO SE CARGÓ: EN SU LUGAR SE CARGÓ EL TRABAJO INTERRUMPIDO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/programs/prepared_line.py" />
       <source>Set the tool with F8.</source>
       <translation>Regle la herramienta con F8.</translation>
     </message>
     <message>
-      <location filename="app/desk/prepared_line.py" />
+      <location filename="app/desk/programs/prepared_line.py" />
       <source>Tool {number} has not been set.</source>
       <translation>La herramienta {number} no está reglada.</translation>
     </message>
     <message>
-      <location filename="app/desk/program_folder.py" />
+      <location filename="app/desk/programs/program_folder.py" />
       <source>CANNOT READ {name}: CHECK FOLDER. CYCLE START RUNS LOADED VERSION</source>
       <translation>NO SE PUEDE LEER {name}: REVISE LA CARPETA. EL ARRANQUE DE CICLO EJECUTA LA VERSIÓN CARGADA</translation>
     </message>
     <message>
-      <location filename="app/desk/program_folder.py" />
+      <location filename="app/desk/programs/program_folder.py" />
       <source>{name} HAS CHANGED. F2: RELOAD. CYCLE START RUNS THE OLD VERSION</source>
       <translation>{name} HA CAMBIADO. F2: RECARGAR. EL ARRANQUE DE CICLO EJECUTA LA VERSIÓN ANTERIOR</translation>
     </message>
     <message>
-      <location filename="app/desk/program_folder.py" />
+      <location filename="app/desk/programs/program_folder.py" />
       <source>{name} IS NOT ON THE DISK. CYCLE START RUNS THE LOADED PROGRAM</source>
       <translation>{name} NO ESTÁ EN EL DISCO. EL ARRANQUE DE CICLO EJECUTA EL PROGRAMA CARGADO</translation>
     </message>
     <message>
-      <location filename="app/desk/program_loading.py" />
+      <location filename="app/desk/programs/program_loading.py" />
       <source>DRAWING</source>
       <translation>DIBUJO</translation>
     </message>
     <message>
-      <location filename="app/desk/program_loading.py" />
+      <location filename="app/desk/programs/program_loading.py" />
       <source>EMPTY</source>
       <translation>VACÍO</translation>
     </message>
     <message>
-      <location filename="app/desk/program_loading.py" />
+      <location filename="app/desk/programs/program_loading.py" />
       <source>PROVING</source>
       <translation>COMPROBANDO</translation>
     </message>
     <message>
-      <location filename="app/desk/program_loading.py" />
+      <location filename="app/desk/programs/program_loading.py" />
       <source>PROVING PART:</source>
       <translation>COMPROBANDO PIEZA:</translation>
     </message>
     <message>
-      <location filename="app/desk/program_loading.py" />
+      <location filename="app/desk/programs/program_loading.py" />
       <source>READING</source>
       <translation>LEYENDO</translation>
     </message>
     <message>
-      <location filename="app/desk/program_loading.py" />
+      <location filename="app/desk/programs/program_loading.py" />
       <source>READY</source>
       <translation>LISTO</translation>
     </message>
     <message>
-      <location filename="app/desk/program_loading.py" />
+      <location filename="app/desk/programs/program_loading.py" />
       <source>REJECTED</source>
       <translation>RECHAZADO</translation>
     </message>
     <message>
-      <location filename="app/desk/program_loading.py" />
+      <location filename="app/desk/programs/program_loading.py" />
       <source>UNREADABLE</source>
       <translation>ILEGIBLE</translation>
     </message>
     <message>
-      <location filename="app/desk/program_renewal.py" />
+      <location filename="app/desk/programs/program_renewal.py" />
       <source>AFTER THIS OFFSET CHANGE, THE NEXT PART WILL NOT START: {why}</source>
       <translation>CON ESTE CAMBIO DE CORRECTORES, LA PRÓXIMA PIEZA NO ARRANCARÁ: {why}</translation>
     </message>
     <message>
-      <location filename="app/desk/prompt_line.py" />
-      <source> {reached} BLOCKS</source>
-      <translation> {reached} BLOQUES</translation>
+      <location filename="app/desk/programs/start_verdict.py" />
+      <source>F6, ENTER: RESUME   F6, F4: RETRACT   OR {jog}</source>
+      <translation>F6, ENTER: REANUDAR   F6, F4: RETIRAR   O {jog}</translation>
     </message>
     <message>
-      <location filename="app/desk/prompt_line.py" />
-      <source>ALARM: CORRECT THE CAUSE, THEN PRESS R TO ACKNOWLEDGE</source>
-      <translation>ALARMA: CORRIJA LA CAUSA Y PULSE R PARA RECONOCERLA</translation>
+      <location filename="app/desk/programs/start_verdict.py" />
+      <source>JOG THE TOOL BACK OUT ALONG ITS ENTRY PATH</source>
+      <translation>SAQUE LA HERRAMIENTA EN JOG POR SU TRAYECTORIA DE ENTRADA</translation>
     </message>
     <message>
-      <location filename="app/desk/prompt_line.py" />
-      <source>CANNOT START: A BACKUP IS BEING RESTORED</source>
-      <translation>NO PUEDE ARRANCAR: SE ESTÁ RESTAURANDO UN RESPALDO</translation>
+      <location filename="app/desk/programs/start_verdict.py" />
+      <source>JOG {direction} UNTIL THE TOOL IS CLEAR</source>
+      <translation>MUEVA {direction} EN JOG HASTA QUE LA HERRAMIENTA QUEDE LIBRE</translation>
     </message>
     <message>
-      <location filename="app/desk/prompt_line.py" />
-      <source>CANNOT START: THE PROGRAM IS BEING RELOADED</source>
-      <translation>NO PUEDE ARRANCAR: SE ESTÁ VOLVIENDO A CARGAR EL PROGRAMA</translation>
+      <location filename="app/desk/programs/start_verdict.py" />
+      <source>THE CHUCK</source>
+      <translation>EL PLATO</translation>
     </message>
     <message>
-      <location filename="app/desk/prompt_line.py" />
-      <source>CANNOT START: {refused}</source>
-      <translation>NO PUEDE ARRANCAR: {refused}</translation>
+      <location filename="app/desk/programs/start_verdict.py" />
+      <source>THE FIRST MOVE WOULD TAKE {tool} THROUGH {what}</source>
+      <translation>EL PRIMER MOVIMIENTO HARÍA QUE {tool} ATRAVESARA {what}</translation>
     </message>
     <message>
-      <location filename="app/desk/prompt_line.py" />
-      <source>CAUSE: {stop}</source>
-      <translation>CAUSA: {stop}</translation>
+      <location filename="app/desk/programs/start_verdict.py" />
+      <source>THE PART</source>
+      <translation>LA PIEZA</translation>
     </message>
     <message>
-      <location filename="app/desk/prompt_line.py" />
-      <source>CONTROL NOT RESPONDING. PRESS E-STOP. SCREEN IS NOT LIVE</source>
-      <translation>EL CONTROL NO RESPONDE. PULSE EL PARO DE EMERGENCIA. LA PANTALLA NO ESTÁ ACTUALIZADA</translation>
+      <location filename="app/desk/programs/start_verdict.py" />
+      <source>THE TAILSTOCK</source>
+      <translation>EL CONTRAPUNTO</translation>
     </message>
     <message>
-      <location filename="app/desk/prompt_line.py" />
-      <source>DRIVES ARE OFF: PRESS D FOR DRIVES ON</source>
-      <translation>SERVOS APAGADOS: PULSE D PARA ENCENDERLOS</translation>
+      <location filename="app/desk/programs/start_verdict.py" />
+      <source>UNKNOWN PART IN CHUCK. CHECK THE FIRST MOVE BEFORE STARTING</source>
+      <translation>PIEZA DESCONOCIDA EN EL PLATO. REVISE EL PRIMER MOVIMIENTO</translation>
     </message>
     <message>
-      <location filename="app/desk/prompt_line.py" />
-      <source>E-STOP: MAKE THE MACHINE SAFE. {release}. THEN D: DRIVES ON</source>
-      <translation>PARO DE EMERGENCIA: PONGA LA MÁQUINA SEGURA. {release}. LUEGO D: ENCENDER SERVOS</translation>
+      <location filename="app/desk/programs/start_verdict.py" />
+      <source>{tool} IS INSIDE {what}</source>
+      <translation>{tool} ESTÁ DENTRO DE {what}</translation>
     </message>
     <message>
-      <location filename="app/desk/prompt_line.py" />
-      <source>ERRORS FOUND WHEN PROVING</source>
-      <translation>LA COMPROBACIÓN DIO ERRORES</translation>
+      <location filename="app/desk/programs/start_watch.py" />
+      <source>START</source>
+      <translation>ARRANQUE</translation>
     </message>
     <message>
-      <location filename="app/desk/prompt_line.py" />
-      <source>FEED HOLD: PAUSE, H OR ESC   E-STOP: SCROLL LOCK (STOP)</source>
-      <translation>RETENCIÓN DE AVANCE: PAUSA, H O ESC   PARO DE EMERGENCIA: BLOQ DESPL (PARO)</translation>
-    </message>
-    <message>
-      <location filename="app/desk/prompt_line.py" />
-      <source>FILE NOT FOUND, PRESS ANY KEY TO CONTINUE</source>
-      <translation>NO SE ENCONTRÓ EL ARCHIVO, PULSE CUALQUIER TECLA PARA CONTINUAR</translation>
-    </message>
-    <message>
-      <location filename="app/desk/prompt_line.py" />
-      <source>FILE TO BE PROCESSED</source>
-      <translation>ARCHIVO A PROCESAR</translation>
-    </message>
-    <message>
-      <location filename="app/desk/prompt_line.py" />
-      <source>HOMING THE AXES</source>
-      <translation>REFERENCIANDO LOS EJES</translation>
-    </message>
-    <message>
-      <location filename="app/desk/prompt_line.py" />
-      <source>LINE {line}: {first}  ·  {hint}</source>
-      <translation>LÍNEA {line}: {first}  ·  {hint}</translation>
-    </message>
-    <message>
-      <location filename="app/desk/prompt_line.py" />
-      <source>NOT COUNTED AS A PART: {event}</source>
-      <translation>NO CONTADO COMO PIEZA: {event}</translation>
-    </message>
-    <message>
-      <location filename="app/desk/prompt_line.py" />
-      <source>ONLY ONE PALM BUTTON PRESSED: PRESS BOTH WITHIN 0.5 S</source>
-      <translation>SÓLO SE PULSÓ UN PULSADOR: PULSE LOS DOS EN 0.5 S</translation>
-    </message>
-    <message>
-      <location filename="app/desk/prompt_line.py" />
-      <source>PRESS BOTH PALM BUTTONS WITHIN 0.5 S. ONE-HAND MODE: F10, 7</source>
-      <translation>PULSE LOS DOS PULSADORES EN 0.5 S. CON UNA MANO: F10, 7</translation>
-    </message>
-    <message>
-      <location filename="app/desk/prompt_line.py" />
-      <source>PRESS E-STOP ON THE MACHINE. THIS KEY ONLY STARTED FEED HOLD</source>
-      <translation>PULSE EL PARO DE EMERGENCIA DE LA MÁQUINA. ESTA TECLA SÓLO ACTIVÓ LA RETENCIÓN DE AVANCE</translation>
-    </message>
-    <message>
-      <location filename="app/desk/prompt_line.py" />
-      <source>PRESS F2 TO CHOOSE A PROGRAM</source>
-      <translation>PULSE F2 PARA ELEGIR UN PROGRAMA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/prompt_line.py" />
-      <source>PRESS Y TO CANCEL THE PROGRAM, N TO KEEP IT</source>
-      <translation>PULSE Y PARA CANCELAR EL PROGRAMA, N PARA CONSERVARLO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/prompt_line.py" />
-      <source>PRESS Y TO RELEASE THE E-STOP, N TO LEAVE IT PRESSED</source>
-      <translation>PULSE Y PARA SOLTAR EL PARO DE EMERGENCIA, N PARA DEJARLO PULSADO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/prompt_line.py" />
-      <source>RELEASE BOTH PALM BUTTONS, THEN PRESS BOTH WITHIN 0.5 S</source>
-      <translation>SUELTE LOS DOS PULSADORES Y PULSE LOS DOS EN 0.5 S</translation>
-    </message>
-    <message>
-      <location filename="app/desk/prompt_line.py" />
-      <source>RELEASE THE STOP KEY FIRST</source>
-      <translation>SUELTE PRIMERO LA TECLA DE PARO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/prompt_line.py" />
-      <source>RESUME AT THIS LINE: {start}. ESC: CANCEL</source>
-      <translation>REANUDAR EN ESTA LÍNEA: {start}. ESC: CANCELAR</translation>
-    </message>
-    <message>
-      <location filename="app/desk/prompt_line.py" />
-      <source>START CYCLES ON THE AUTOMATIC PAGE: PRESS F1, THEN F2</source>
-      <translation>ARRANQUE LOS CICLOS EN LA PÁGINA AUTOMÁTICO: PULSE F1 Y LUEGO F2</translation>
-    </message>
-    <message>
-      <location filename="app/desk/prompt_line.py" />
-      <source>STOP KEYS DO NOT WORK. TAP THIS WINDOW OR USE THE BUTTONS</source>
-      <translation>LAS TECLAS DE PARO NO ACTÚAN. TOQUE ESTA VENTANA O USE LOS BOTONES</translation>
-    </message>
-    <message>
-      <location filename="app/desk/prompt_line.py" />
-      <source>STOPPING</source>
-      <translation>DETENIÉNDOSE</translation>
-    </message>
-    <message>
-      <location filename="app/desk/prompt_line.py" />
-      <source>THE PROGRAM IS NOT PROVED YET AND WILL NOT START</source>
-      <translation>EL PROGRAMA AÚN NO ESTÁ COMPROBADO Y NO ARRANCARÁ</translation>
-    </message>
-    <message>
-      <location filename="app/desk/prompt_line.py" />
-      <source>TO CONTINUE: {start}. R: CANCEL THE PROGRAM</source>
-      <translation>PARA CONTINUAR: {start}. R: CANCELAR EL PROGRAMA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/prompt_line.py" />
-      <source>TO EDIT, FIRST TYPE A NAME OR SELECT ONE WITH THE ARROWS</source>
-      <translation>PARA EDITAR, ESCRIBA ANTES UN NOMBRE O ELÍJALO CON LAS FLECHAS</translation>
-    </message>
-    <message>
-      <location filename="app/desk/prompt_line.py" />
-      <source>TO START: </source>
-      <translation>PARA ARRANCAR: </translation>
-    </message>
-    <message>
-      <location filename="app/desk/prompt_line.py" />
-      <source>TO START: {start}</source>
-      <translation>PARA ARRANCAR: {start}</translation>
-    </message>
-    <message>
-      <location filename="app/desk/prompt_line.py" />
-      <source>TYPE A NAME OR SELECT A PROGRAM   ENTER: LOAD   ESC: CLOSE</source>
-      <translation>ESCRIBA UN NOMBRE O ELIJA UN PROGRAMA   ENTER: CARGAR   ESC: CERRAR</translation>
-    </message>
-    <message>
-      <location filename="app/desk/prompt_line.py" />
-      <source>WHAT TO DO: {remedy}  ·  F1: LEAVE THE PAGE, THEN R: ACKNOWLEDGE</source>
-      <translation>QUÉ HACER: {remedy}  ·  F1: SALIR DE LA PÁGINA, LUEGO R: RECONOCER</translation>
-    </message>
-    <message>
-      <location filename="app/desk/prompt_line.py" />
-      <source>WHAT TO DO: {remedy}  ·  R: ACKNOWLEDGE   F7: ALARM LIST</source>
-      <translation>QUÉ HACER: {remedy}  ·  R: RECONOCER   F7: LISTA DE ALARMAS</translation>
-    </message>
-    <message>
-      <location filename="app/desk/prompt_line.py" />
-      <source>WILL NOT RUN: LINE {line}: {text}</source>
-      <translation>NO CORRERÁ: LÍNEA {line}: {text}</translation>
-    </message>
-    <message>
-      <location filename="app/desk/prompt_line.py" />
-      <source>WILL NOT RUN: {text}</source>
-      <translation>NO CORRERÁ: {text}</translation>
-    </message>
-    <message>
-      <location filename="app/desk/prompt_line.py" />
-      <source>WILL NOT START</source>
-      <translation>NO ARRANCARÁ</translation>
-    </message>
-    <message>
-      <location filename="app/desk/prompt_line.py" />
-      <source>WILL NOT START: NO OFFSET SET FOR {missing}. SET IT WITH F8</source>
-      <translation>NO ARRANCARÁ: SIN CORRECTOR PARA {missing}. PÓNGALO CON F8</translation>
-    </message>
-    <message>
-      <location filename="app/desk/prompt_line.py" />
-      <source>WILL NOT START: {missing} NOT IN THE TOOL TABLE (F8)</source>
-      <translation>NO ARRANCA: {missing} NO ESTÁ EN LA TABLA DE HERRAMIENTAS (F8)</translation>
-    </message>
-    <message>
-      <location filename="app/desk/prompt_line.py" />
-      <source>WILL NOT START: {next_barred}</source>
-      <translation>NO ARRANCARÁ: {next_barred}</translation>
-    </message>
-    <message>
-      <location filename="app/desk/prompt_line.py" />
-      <source>{cause}  ·  WHAT TO DO: {remedy}</source>
-      <translation>{cause}  ·  QUÉ HACER: {remedy}</translation>
-    </message>
-    <message>
-      <location filename="app/desk/prompt_line.py" />
-      <source>{first_error} ({more} MORE)</source>
-      <translation>{first_error} ({more} MÁS)</translation>
-    </message>
-    <message>
-      <location filename="app/desk/prompt_line.py" />
-      <source>{loaded} CANNOT BE LOADED: {problem}. F2: CHOOSE ANOTHER PROGRAM</source>
-      <translation>NO SE PUEDE CARGAR {loaded}: {problem}. F2: ELEGIR OTRO PROGRAMA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>BLOCK DELETE</source>
-      <translation>SALTO BLOQUE</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>COLLET ?</source>
-      <translation>PINZA ?</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>COLLET CLOSED</source>
-      <translation>PINZA CERRADA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>COLLET OPEN</source>
-      <translation>PINZA ABIERTA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>CONTROL USES G72 Ø</source>
-      <translation>EL CONTROL USA G72 Ø</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>CONTROL USES G73 R</source>
-      <translation>EL CONTROL USA G73 R</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>CYCLE REPEAT</source>
-      <translation>REPETIR CICLO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>DISTANCE TO GO</source>
-      <translation>DISTANCIA POR RECORRER</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>DRIVES ?</source>
-      <translation>SERVOS ?</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>DRIVES ON</source>
-      <translation>SERVOS ACTIVOS</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>FROM HOME</source>
-      <translation>DESDE REFERENCIA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>HEAD ROTATED</source>
-      <translation>CABEZAL GIRADO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>INCH</source>
-      <translation>PULGADAS</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>LIVE TOOL</source>
-      <translation>HERR MOTORIZADA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>M03 FWD</source>
-      <translation>M03 ADEL</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>M04 REV</source>
-      <translation>M04 REV</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>M05 OFF</source>
-      <translation>M05 PARADO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>M3 FWD</source>
-      <translation>M3 ADEL</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>M4 REV</source>
-      <translation>M4 REV</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>M5 OFF</source>
-      <translation>M5 PARADO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>MACHINE</source>
-      <translation>MÁQUINA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>MANUAL COLLET</source>
-      <translation>PINZA MANUAL</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>MM</source>
-      <translation>MM</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>OPTIONAL STOP</source>
-      <translation>PARO OPCIONAL</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>ORIENTED {angle}</source>
-      <translation>ORIENTADO {angle}</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>POSITION</source>
-      <translation>POSICIÓN</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>SINGLE BLOCK</source>
-      <translation>BLOQUE A BLOQUE</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>SPINDLE COASTING</source>
-      <translation>HUSILLO POR INERCIA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>SPINDLE FWD</source>
-      <translation>HUSILLO ADELANTE</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>SPINDLE ORIENTED</source>
-      <translation>HUSILLO ORIENTADO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>SPINDLE ORIENTING</source>
-      <translation>HUSILLO ORIENTÁNDOSE</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>SPINDLE REV</source>
-      <translation>HUSILLO REVERSA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>SPINDLE UNKNOWN</source>
-      <translation>HUSILLO DESCONOCIDO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>TABLE ROTATED</source>
-      <translation>MESA GIRADA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>TILTED PLANE FROM LINE {line}</source>
-      <translation>PLANO INCLINADO DE LA LÍNEA {line}</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>UNKNOWN</source>
-      <translation>DESCONOCIDO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>WORKPIECE</source>
-      <translation>PIEZA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>X IS A DIAMETER</source>
-      <translation>X ES DIÁMETRO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>X IS A RADIUS</source>
-      <translation>X ES RADIO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>{names}  ·  CONTROL USES {names2}</source>
-      <translation>{names}  ·  EL CONTROL USA {names2}</translation>
+      <location filename="app/desk/programs/start_watch.py" />
+      <source>THE FIRST MOVE COULD NOT BE CHECKED: {why}</source>
+      <translation>NO SE PUDO COMPROBAR EL PRIMER MOVIMIENTO: {why}</translation>
     </message>
     <message>
       <location filename="app/desk/screen_settings.py" />
@@ -6700,18 +6005,33 @@
     </message>
     <message>
       <location filename="app/desk/screen_settings.py" />
+      <source>DISTANCE TO GO</source>
+      <translation>DISTANCIA POR RECORRER</translation>
+    </message>
+    <message>
+      <location filename="app/desk/screen_settings.py" />
+      <source>FROM HOME</source>
+      <translation>DESDE REFERENCIA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/screen_settings.py" />
+      <source>INCH</source>
+      <translation>PULGADAS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/screen_settings.py" />
+      <source>MM</source>
+      <translation>MM</translation>
+    </message>
+    <message>
+      <location filename="app/desk/screen_settings.py" />
+      <source>POSITION</source>
+      <translation>POSICIÓN</translation>
+    </message>
+    <message>
+      <location filename="app/desk/screen_settings.py" />
       <source>screen: {name} {before} → {value}</source>
       <translation>pantalla: {name} {before} → {value}</translation>
-    </message>
-    <message>
-      <location filename="app/desk/sounds.py" />
-      <source>{command} did not finish in time</source>
-      <translation>{command} no terminó a tiempo</translation>
-    </message>
-    <message>
-      <location filename="app/desk/sounds.py" />
-      <source>{command} failed</source>
-      <translation>{command} ha fallado</translation>
     </message>
     <message>
       <location filename="app/desk/standard_input.py" />
@@ -6724,214 +6044,894 @@
       <translation>stdin está cerrado y «{what}» no se puede leer de ahí; indique un archivo</translation>
     </message>
     <message>
-      <location filename="app/desk/start_verdict.py" />
-      <source>F6, ENTER: RESUME   F6, F4: RETRACT   OR {jog}</source>
-      <translation>F6, ENTER: REANUDAR   F6, F4: RETIRAR   O {jog}</translation>
+      <location filename="app/desk/status/formats.py" />
+      <source>{size} GB</source>
+      <translation>{size} GB</translation>
     </message>
     <message>
-      <location filename="app/desk/start_verdict.py" />
-      <source>JOG THE TOOL BACK OUT ALONG ITS ENTRY PATH</source>
-      <translation>SAQUE LA HERRAMIENTA EN JOG POR SU TRAYECTORIA DE ENTRADA</translation>
+      <location filename="app/desk/status/interrupted_notice.py" />
+      <source> (PROGRAM CHANGED SINCE THEN)</source>
+      <translation> (EL PROGRAMA CAMBIÓ DESDE ENTONCES)</translation>
     </message>
     <message>
-      <location filename="app/desk/start_verdict.py" />
-      <source>JOG {direction} UNTIL THE TOOL IS CLEAR</source>
-      <translation>MUEVA {direction} EN JOG HASTA QUE LA HERRAMIENTA QUEDE LIBRE</translation>
+      <location filename="app/desk/status/interrupted_notice.py" />
+      <source> REPETITION {now} OF {all}</source>
+      <translation> REPETICIÓN {now} DE {all}</translation>
     </message>
     <message>
-      <location filename="app/desk/start_verdict.py" />
-      <source>THE CHUCK</source>
-      <translation>EL PLATO</translation>
+      <location filename="app/desk/status/interrupted_notice.py" />
+      <source>. THE LAST SECOND BEFORE THE STOP WAS NOT RECORDED. CUT MAY BE INCOMPLETE. CHECK TOOL AND PART</source>
+      <translation>. NO SE REGISTRÓ EL ÚLTIMO SEGUNDO ANTES DEL PARO. EL CORTE PUEDE ESTAR INCOMPLETO. REVISE HERRAMIENTA Y PIEZA</translation>
     </message>
     <message>
-      <location filename="app/desk/start_verdict.py" />
-      <source>THE FIRST MOVE WOULD TAKE {tool} THROUGH {what}</source>
-      <translation>EL PRIMER MOVIMIENTO HARÍA QUE {tool} ATRAVESARA {what}</translation>
+      <location filename="app/desk/status/interrupted_notice.py" />
+      <source>INPUTS</source>
+      <translation>ENTRADAS</translation>
     </message>
     <message>
-      <location filename="app/desk/start_verdict.py" />
-      <source>THE PART</source>
-      <translation>LA PIEZA</translation>
+      <location filename="app/desk/status/interrupted_notice.py" />
+      <source>INTERRUPTED: {program} LINE {line}{passed}, T{tool}, PART {part}, {position}: {why}{changed}</source>
+      <translation>INTERRUMPIDO: {program} LÍNEA {line}{passed}, T{tool}, PIEZA {part}, {position}: {why}{changed}</translation>
     </message>
     <message>
-      <location filename="app/desk/start_verdict.py" />
-      <source>THE TAILSTOCK</source>
-      <translation>EL CONTRAPUNTO</translation>
+      <location filename="app/desk/status/interrupted_notice.py" />
+      <source>OUTPUTS</source>
+      <translation>SALIDAS</translation>
     </message>
     <message>
-      <location filename="app/desk/start_verdict.py" />
-      <source>UNKNOWN PART IN CHUCK. CHECK THE FIRST MOVE BEFORE STARTING</source>
-      <translation>PIEZA DESCONOCIDA EN EL PLATO. REVISE EL PRIMER MOVIMIENTO</translation>
+      <location filename="app/desk/status/interrupted_notice.py" />
+      <source>POSITION UNCHANGED: {position} FROM HOME</source>
+      <translation>POSICIÓN SIN CAMBIOS: {position} DESDE LA REFERENCIA</translation>
     </message>
     <message>
-      <location filename="app/desk/start_verdict.py" />
-      <source>{tool} IS INSIDE {what}</source>
-      <translation>{tool} ESTÁ DENTRO DE {what}</translation>
+      <location filename="app/desk/status/interrupted_notice.py" />
+      <source>POSITION WAS {position} FROM HOME</source>
+      <translation>LA POSICIÓN ERA {position} DESDE LA REFERENCIA</translation>
     </message>
     <message>
-      <location filename="app/desk/start_watch.py" />
-      <source>START</source>
-      <translation>ARRANQUE</translation>
+      <location filename="app/desk/status/interrupted_notice.py" />
+      <source>POSITION WAS {position} FROM HOME, NOW UNKNOWN UNTIL HOMED</source>
+      <translation>LA POSICIÓN ERA {position} DESDE LA REFERENCIA, DESCONOCIDA HASTA REFERENCIAR</translation>
     </message>
     <message>
-      <location filename="app/desk/start_watch.py" />
-      <source>THE FIRST MOVE COULD NOT BE CHECKED: {why}</source>
-      <translation>NO SE PUDO COMPROBAR EL PRIMER MOVIMIENTO: {why}</translation>
+      <location filename="app/desk/status/interrupted_notice.py" />
+      <source>POSITION WAS {position}, IS NOW {now} FROM HOME</source>
+      <translation>LA POSICIÓN ERA {position}, AHORA ES {now} DESDE LA REFERENCIA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/interrupted_notice.py" />
+      <source>POSITIONS</source>
+      <translation>POSICIONES</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/interrupted_notice.py" />
+      <source>SPINDLE</source>
+      <translation>HUSILLO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/interrupted_notice.py" />
+      <source>SPINDLE UNKNOWN – SPINDLE MAY BE TURNING: PRESS E-STOP</source>
+      <translation>HUSILLO DESCONOCIDO – PUEDE ESTAR GIRANDO: PULSE PARO DE EMERGENCIA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/interrupted_notice.py" />
+      <source>STARTS AT LINE 1 ({text}) FROM CURRENT T{tool} POSITION. {start}. ESC: CANCEL</source>
+      <translation>EMPIEZA EN LA LÍNEA 1 ({text}) DESDE LA POSICIÓN ACTUAL DE T{tool}. {start}. ESC: CANCELAR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/interrupted_notice.py" />
+      <source>STOPPED IN LINE {line}. F6: RETRACT AND RESUME. Y: START OVER</source>
+      <translation>PARADO EN LA LÍNEA {line}. F6: RETIRAR Y REANUDAR. Y: EMPEZAR DE NUEVO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/interrupted_notice.py" />
+      <source>STOPPED IN LINE {line}. JOG THE TOOL CLEAR. Y: START OVER</source>
+      <translation>PARADO EN LA LÍNEA {line}. SAQUE LA HERRAMIENTA EN JOG. Y: EMPEZAR DE NUEVO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/interrupted_notice.py" />
+      <source>T{tool} MAY BE IN THE PART ({program}, LINE {line}). PRESS Y TO CANCEL THE INTERRUPTED JOB AND LOAD {name}, N TO KEEP THE INTERRUPTED JOB</source>
+      <translation>T{tool} PUEDE ESTAR DENTRO DE LA PIEZA ({program}, LÍNEA {line}). PULSE Y PARA CANCELAR EL TRABAJO INTERRUMPIDO Y CARGAR {name}, N PARA CONSERVAR EL TRABAJO INTERRUMPIDO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/interrupted_notice.py" />
+      <source>UNKNOWN: {what} · LAST KNOWN VALUES ARE SHOWN</source>
+      <translation>DESCONOCIDO: {what} · SE MUESTRAN LOS ÚLTIMOS VALORES CONOCIDOS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/interrupted_notice.py" />
+      <source>{what} UNKNOWN: NO RESPONSE FROM THE MACHINE</source>
+      <translation>{what}: DESCONOCIDO, LA MÁQUINA NO RESPONDE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_file_changes.py" />
+      <source>MACHINE FILE CHANGED ({count}). F10: REVIEW AND ACCEPT</source>
+      <translation>ARCHIVO DE MÁQUINA CAMBIADO ({count}). F10: REVISAR Y ACEPTAR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>ALARM {number}: {alarms}</source>
+      <translation>ALARMA {number}: {alarms}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>AT SPEED</source>
+      <translation>A SU VELOCIDAD</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>COLLET</source>
+      <translation>PINZA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>COLLET MOVING: PROGRAM CONTINUES AUTOMATICALLY</source>
+      <translation>LA PINZA SE MUEVE: EL PROGRAMA CONTINÚA AUTOMÁTICAMENTE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>DWELL</source>
+      <translation>ESPERA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>F10, 3, ENTER, F4: SWITCH SIMULATED INPUTS</source>
+      <translation>F10, 3, ENTER, F4: CONMUTAR LAS ENTRADAS SIMULADAS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>FEED HOLD BEHIND THE TAP</source>
+      <translation>RETENCIÓN DE AVANCE TRAS EL MACHO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>FEED HOLD {number}: {stop}</source>
+      <translation>RETENCIÓN DE AVANCE {number}: {stop}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>FEED OVERRIDE AT 0</source>
+      <translation>AJUSTE DE AVANCE EN 0</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>FEED OVERRIDE IS AT 0: TURN IT UP (+)</source>
+      <translation>EL AJUSTE DE AVANCE ESTÁ EN 0: SÚBALO (+)</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>GUARD OPEN</source>
+      <translation>GUARDA ABIERTA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>INPUT {name} TO TURN {state}</source>
+      <translation>QUE LA ENTRADA {name} PASE A {state}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>NOT HOMED</source>
+      <translation>SIN REF</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>OFF</source>
+      <translation>APAGADO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>ON</source>
+      <translation>ENCENDIDO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>PAUSE (FEED HOLD), THEN R: CANCEL THE PROGRAM</source>
+      <translation>PAUSA (RETENCIÓN DE AVANCE), LUEGO R: CANCELAR EL PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>PROGRAM DWELL (G04): CONTINUES AUTOMATICALLY</source>
+      <translation>PAUSA DEL PROGRAMA (G04): CONTINÚA AUTOMÁTICAMENTE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>PROGRAM STOP</source>
+      <translation>PARO DE PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>PROGRAM WAITING FOR {what}</source>
+      <translation>EL PROGRAMA ESPERA: {what}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>SPINDLE COMING TO SPEED: PROGRAM CONTINUES AUTOMATICALLY</source>
+      <translation>EL HUSILLO ALCANZA SU VELOCIDAD: EL PROGRAMA CONTINÚA AUTOMÁTICAMENTE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>SPINDLE OVERRIDE AT 0</source>
+      <translation>AJUSTE DEL HUSILLO EN 0</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>SPINDLE OVERRIDE IS AT 0. TO RAISE IT, PRESS THE DOT KEY (.)</source>
+      <translation>EL AJUSTE DEL HUSILLO ESTÁ EN 0. PARA SUBIRLO, PULSE LA TECLA PUNTO (.)</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>SPINDLE STOP</source>
+      <translation>PARO DE HUSILLO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>SPINDLE STOPPED</source>
+      <translation>HUSILLO PARADO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>SPINDLE STOPPING: PROGRAM CONTINUES AUTOMATICALLY</source>
+      <translation>EL HUSILLO SE DETIENE: EL PROGRAMA CONTINÚA AUTOMÁTICAMENTE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>SPINDLE SWITCH IS OFF. A: SWITCH TO AUTO</source>
+      <translation>EL INTERRUPTOR DEL HUSILLO ESTÁ EN OFF. A: PONERLO EN AUTO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>SPINDLE SWITCH OFF</source>
+      <translation>INTERRUPTOR DEL HUSILLO APAGADO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>THE GUARD IS OPEN: CLOSE IT</source>
+      <translation>LA PROTECCIÓN ESTÁ ABIERTA: CIÉRRELA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>THE TAP BACKS OUT OF THE HOLE FIRST. E-STOP: STOP AT ONCE</source>
+      <translation>EL MACHO SALE PRIMERO DEL AGUJERO. PARO DE EMERGENCIA: DETENER EN EL ACTO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>TURN SPINDLE SWITCH OFF, THEN TO AUTO (A). PRESS CYCLE START</source>
+      <translation>PONGA EL INTERRUPTOR DEL HUSILLO EN OFF Y LUEGO EN AUTO (A). PULSE ARRANQUE DE CICLO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>WAITING: {what}</source>
+      <translation>ESPERANDO: {what}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/modal_rows.py" />
+      <source>C AXIS</source>
+      <translation>EJE C</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/modal_rows.py" />
+      <source>COARSE FEED</source>
+      <translation>AVANCE BURDO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/modal_rows.py" />
+      <source>COMMENT</source>
+      <translation>COMENTARIO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/modal_rows.py" />
+      <source>COOLANT</source>
+      <translation>REFRIG.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/modal_rows.py" />
+      <source>D OFFSET</source>
+      <translation>CORRECTOR D</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/modal_rows.py" />
+      <source>DATUM SHIFT</source>
+      <translation>DECALAJE DE ORIGEN</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/modal_rows.py" />
+      <source>DISTANCE</source>
+      <translation>DISTANCIA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/modal_rows.py" />
+      <source>FEED</source>
+      <translation>AVANCE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/modal_rows.py" />
+      <source>FEED MODE</source>
+      <translation>MODO DE AVANCE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/modal_rows.py" />
+      <source>FREE</source>
+      <translation>LIBRE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/modal_rows.py" />
+      <source>G01 FEED</source>
+      <translation>AVANCE G01</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/modal_rows.py" />
+      <source>G10 ACTIVE</source>
+      <translation>G10 ACTIVO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/modal_rows.py" />
+      <source>G10 FROM NEXT T</source>
+      <translation>G10 DESDE LA SIGUIENTE T</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/modal_rows.py" />
+      <source>G70 INCH</source>
+      <translation>G70 PULGADAS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/modal_rows.py" />
+      <source>G92 PRESET</source>
+      <translation>PRESET G92</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/modal_rows.py" />
+      <source>G97 {rpm} RPM</source>
+      <translation>G97 {rpm} RPM</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/modal_rows.py" />
+      <source>LENGTH, RADIUS</source>
+      <translation>LONGITUD, RADIO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/modal_rows.py" />
+      <source>LOCKED</source>
+      <translation>BLOQUEADO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/modal_rows.py" />
+      <source>M FUNCTIONS</source>
+      <translation>FUNCIONES M</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/modal_rows.py" />
+      <source>MIRROR, ROT, SCALE</source>
+      <translation>ESPEJO, ROT, ESCALA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/modal_rows.py" />
+      <source>MOTION</source>
+      <translation>MOVIMIENTO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/modal_rows.py" />
+      <source>NOSE COMP</source>
+      <translation>COMP DE PUNTA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/modal_rows.py" />
+      <source>PRESET</source>
+      <translation>PRESET</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/modal_rows.py" />
+      <source>RAPID</source>
+      <translation>RÁPIDO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/modal_rows.py" />
+      <source>RAPID (FIRST F)</source>
+      <translation>RÁPIDO (PRIMERA F)</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/modal_rows.py" />
+      <source>RAPID RATE</source>
+      <translation>VELOCIDAD RÁPIDO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/modal_rows.py" />
+      <source>SFM</source>
+      <translation>PIES/MIN</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/modal_rows.py" />
+      <source>SPEED</source>
+      <translation>VELOC</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/modal_rows.py" />
+      <source>TCPM</source>
+      <translation>TCPM</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/modal_rows.py" />
+      <source>TILTED PLANE</source>
+      <translation>PLANO INCLINADO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/modal_rows.py" />
+      <source>TOOL</source>
+      <translation>HERRAMIENTA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/modal_rows.py" />
+      <source>TOOL OFFSET</source>
+      <translation>COMP HERRAM</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/modal_rows.py" />
+      <source>TRANS</source>
+      <translation>TRANS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/modal_rows.py" />
+      <source>TRANSFORMATION</source>
+      <translation>TRANSFORMACIÓN</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/modal_rows.py" />
+      <source>UNITS</source>
+      <translation>UNIDADES</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/modal_rows.py" />
+      <source>X VALUES</source>
+      <translation>VALORES X</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/modal_rows.py" />
+      <source>ZERO OFFSET</source>
+      <translation>DECALAJE DE CERO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/modal_rows.py" />
+      <source>cut feed</source>
+      <translation>avance de corte</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/modal_rows.py" />
+      <source>feed mode</source>
+      <translation>modo de avance</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/modal_rows.py" />
+      <source>first feed</source>
+      <translation>primer avance</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/modal_rows.py" />
+      <source>rapid rate</source>
+      <translation>velocidad de rápido</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/modal_rows.py" />
+      <source>tool offset</source>
+      <translation>corrector de herramienta</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/prompt_line.py" />
+      <source> {reached} BLOCKS</source>
+      <translation> {reached} BLOQUES</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/prompt_line.py" />
+      <source>ALARM: CORRECT THE CAUSE, THEN PRESS R TO ACKNOWLEDGE</source>
+      <translation>ALARMA: CORRIJA LA CAUSA Y PULSE R PARA RECONOCERLA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/prompt_line.py" />
+      <source>CANNOT START: A BACKUP IS BEING RESTORED</source>
+      <translation>NO PUEDE ARRANCAR: SE ESTÁ RESTAURANDO UN RESPALDO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/prompt_line.py" />
+      <source>CANNOT START: THE PROGRAM IS BEING RELOADED</source>
+      <translation>NO PUEDE ARRANCAR: SE ESTÁ VOLVIENDO A CARGAR EL PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/prompt_line.py" />
+      <source>CANNOT START: {refused}</source>
+      <translation>NO PUEDE ARRANCAR: {refused}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/prompt_line.py" />
+      <source>CAUSE: {stop}</source>
+      <translation>CAUSA: {stop}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/prompt_line.py" />
+      <source>CONTROL NOT RESPONDING. PRESS E-STOP. SCREEN IS NOT LIVE</source>
+      <translation>EL CONTROL NO RESPONDE. PULSE EL PARO DE EMERGENCIA. LA PANTALLA NO ESTÁ ACTUALIZADA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/prompt_line.py" />
+      <source>DRIVES ARE OFF: PRESS D FOR DRIVES ON</source>
+      <translation>SERVOS APAGADOS: PULSE D PARA ENCENDERLOS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/prompt_line.py" />
+      <source>E-STOP: MAKE THE MACHINE SAFE. {release}. THEN D: DRIVES ON</source>
+      <translation>PARO DE EMERGENCIA: PONGA LA MÁQUINA SEGURA. {release}. LUEGO D: ENCENDER SERVOS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/prompt_line.py" />
+      <source>ERRORS FOUND WHEN PROVING</source>
+      <translation>LA COMPROBACIÓN DIO ERRORES</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/prompt_line.py" />
+      <source>FEED HOLD: PAUSE, H OR ESC   E-STOP: SCROLL LOCK (STOP)</source>
+      <translation>RETENCIÓN DE AVANCE: PAUSA, H O ESC   PARO DE EMERGENCIA: BLOQ DESPL (PARO)</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/prompt_line.py" />
+      <source>FILE NOT FOUND, PRESS ANY KEY TO CONTINUE</source>
+      <translation>NO SE ENCONTRÓ EL ARCHIVO, PULSE CUALQUIER TECLA PARA CONTINUAR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/prompt_line.py" />
+      <source>FILE TO BE PROCESSED</source>
+      <translation>ARCHIVO A PROCESAR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/prompt_line.py" />
+      <source>HOMING THE AXES</source>
+      <translation>REFERENCIANDO LOS EJES</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/prompt_line.py" />
+      <source>LINE {line}: {first}  ·  {hint}</source>
+      <translation>LÍNEA {line}: {first}  ·  {hint}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/prompt_line.py" />
+      <source>NOT COUNTED AS A PART: {event}</source>
+      <translation>NO CONTADO COMO PIEZA: {event}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/prompt_line.py" />
+      <source>ONLY ONE PALM BUTTON PRESSED: PRESS BOTH WITHIN 0.5 S</source>
+      <translation>SÓLO SE PULSÓ UN PULSADOR: PULSE LOS DOS EN 0.5 S</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/prompt_line.py" />
+      <source>PRESS BOTH PALM BUTTONS WITHIN 0.5 S. ONE-HAND MODE: F10, 7</source>
+      <translation>PULSE LOS DOS PULSADORES EN 0.5 S. CON UNA MANO: F10, 7</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/prompt_line.py" />
+      <source>PRESS E-STOP ON THE MACHINE. THIS KEY ONLY STARTED FEED HOLD</source>
+      <translation>PULSE EL PARO DE EMERGENCIA DE LA MÁQUINA. ESTA TECLA SÓLO ACTIVÓ LA RETENCIÓN DE AVANCE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/prompt_line.py" />
+      <source>PRESS F2 TO CHOOSE A PROGRAM</source>
+      <translation>PULSE F2 PARA ELEGIR UN PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/prompt_line.py" />
+      <source>PRESS Y TO CANCEL THE PROGRAM, N TO KEEP IT</source>
+      <translation>PULSE Y PARA CANCELAR EL PROGRAMA, N PARA CONSERVARLO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/prompt_line.py" />
+      <source>PRESS Y TO RELEASE THE E-STOP, N TO LEAVE IT PRESSED</source>
+      <translation>PULSE Y PARA SOLTAR EL PARO DE EMERGENCIA, N PARA DEJARLO PULSADO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/prompt_line.py" />
+      <source>RELEASE BOTH PALM BUTTONS, THEN PRESS BOTH WITHIN 0.5 S</source>
+      <translation>SUELTE LOS DOS PULSADORES Y PULSE LOS DOS EN 0.5 S</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/prompt_line.py" />
+      <source>RELEASE THE STOP KEY FIRST</source>
+      <translation>SUELTE PRIMERO LA TECLA DE PARO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/prompt_line.py" />
+      <source>RESUME AT THIS LINE: {start}. ESC: CANCEL</source>
+      <translation>REANUDAR EN ESTA LÍNEA: {start}. ESC: CANCELAR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/prompt_line.py" />
+      <source>START CYCLES ON THE AUTOMATIC PAGE: PRESS F1, THEN F2</source>
+      <translation>ARRANQUE LOS CICLOS EN LA PÁGINA AUTOMÁTICO: PULSE F1 Y LUEGO F2</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/prompt_line.py" />
+      <source>STOP KEYS DO NOT WORK. TAP THIS WINDOW OR USE THE BUTTONS</source>
+      <translation>LAS TECLAS DE PARO NO ACTÚAN. TOQUE ESTA VENTANA O USE LOS BOTONES</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/prompt_line.py" />
+      <source>STOPPING</source>
+      <translation>DETENIÉNDOSE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/prompt_line.py" />
+      <source>THE PROGRAM IS NOT PROVED YET AND WILL NOT START</source>
+      <translation>EL PROGRAMA AÚN NO ESTÁ COMPROBADO Y NO ARRANCARÁ</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/prompt_line.py" />
+      <source>TO CONTINUE: {start}. R: CANCEL THE PROGRAM</source>
+      <translation>PARA CONTINUAR: {start}. R: CANCELAR EL PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/prompt_line.py" />
+      <source>TO EDIT, FIRST TYPE A NAME OR SELECT ONE WITH THE ARROWS</source>
+      <translation>PARA EDITAR, ESCRIBA ANTES UN NOMBRE O ELÍJALO CON LAS FLECHAS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/prompt_line.py" />
+      <source>TO START: </source>
+      <translation>PARA ARRANCAR: </translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/prompt_line.py" />
+      <source>TO START: {start}</source>
+      <translation>PARA ARRANCAR: {start}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/prompt_line.py" />
+      <source>TYPE A NAME OR SELECT A PROGRAM   ENTER: LOAD   ESC: CLOSE</source>
+      <translation>ESCRIBA UN NOMBRE O ELIJA UN PROGRAMA   ENTER: CARGAR   ESC: CERRAR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/prompt_line.py" />
+      <source>WHAT TO DO: {remedy}  ·  F1: LEAVE THE PAGE, THEN R: ACKNOWLEDGE</source>
+      <translation>QUÉ HACER: {remedy}  ·  F1: SALIR DE LA PÁGINA, LUEGO R: RECONOCER</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/prompt_line.py" />
+      <source>WHAT TO DO: {remedy}  ·  R: ACKNOWLEDGE   F7: ALARM LIST</source>
+      <translation>QUÉ HACER: {remedy}  ·  R: RECONOCER   F7: LISTA DE ALARMAS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/prompt_line.py" />
+      <source>WILL NOT RUN: LINE {line}: {text}</source>
+      <translation>NO CORRERÁ: LÍNEA {line}: {text}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/prompt_line.py" />
+      <source>WILL NOT RUN: {text}</source>
+      <translation>NO CORRERÁ: {text}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/prompt_line.py" />
+      <source>WILL NOT START</source>
+      <translation>NO ARRANCARÁ</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/prompt_line.py" />
+      <source>WILL NOT START: NO OFFSET SET FOR {missing}. SET IT WITH F8</source>
+      <translation>NO ARRANCARÁ: SIN CORRECTOR PARA {missing}. PÓNGALO CON F8</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/prompt_line.py" />
+      <source>WILL NOT START: {missing} NOT IN THE TOOL TABLE (F8)</source>
+      <translation>NO ARRANCA: {missing} NO ESTÁ EN LA TABLA DE HERRAMIENTAS (F8)</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/prompt_line.py" />
+      <source>WILL NOT START: {next_barred}</source>
+      <translation>NO ARRANCARÁ: {next_barred}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/prompt_line.py" />
+      <source>{cause}  ·  WHAT TO DO: {remedy}</source>
+      <translation>{cause}  ·  QUÉ HACER: {remedy}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/prompt_line.py" />
+      <source>{first_error} ({more} MORE)</source>
+      <translation>{first_error} ({more} MÁS)</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/prompt_line.py" />
+      <source>{loaded} CANNOT BE LOADED: {problem}. F2: CHOOSE ANOTHER PROGRAM</source>
+      <translation>NO SE PUEDE CARGAR {loaded}: {problem}. F2: ELEGIR OTRO PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/readouts.py" />
+      <source>BLOCK DELETE</source>
+      <translation>SALTO BLOQUE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/readouts.py" />
+      <source>COLLET ?</source>
+      <translation>PINZA ?</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/readouts.py" />
+      <source>COLLET CLOSED</source>
+      <translation>PINZA CERRADA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/readouts.py" />
+      <source>COLLET OPEN</source>
+      <translation>PINZA ABIERTA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/readouts.py" />
+      <source>CONTROL USES G72 Ø</source>
+      <translation>EL CONTROL USA G72 Ø</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/readouts.py" />
+      <source>CONTROL USES G73 R</source>
+      <translation>EL CONTROL USA G73 R</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/readouts.py" />
+      <source>CYCLE REPEAT</source>
+      <translation>REPETIR CICLO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/readouts.py" />
+      <source>DRIVES ?</source>
+      <translation>SERVOS ?</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/readouts.py" />
+      <source>DRIVES ON</source>
+      <translation>SERVOS ACTIVOS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/readouts.py" />
+      <source>HEAD ROTATED</source>
+      <translation>CABEZAL GIRADO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/readouts.py" />
+      <source>LIVE TOOL</source>
+      <translation>HERR MOTORIZADA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/readouts.py" />
+      <source>M03 FWD</source>
+      <translation>M03 ADEL</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/readouts.py" />
+      <source>M04 REV</source>
+      <translation>M04 REV</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/readouts.py" />
+      <source>M05 OFF</source>
+      <translation>M05 PARADO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/readouts.py" />
+      <source>M3 FWD</source>
+      <translation>M3 ADEL</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/readouts.py" />
+      <source>M4 REV</source>
+      <translation>M4 REV</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/readouts.py" />
+      <source>M5 OFF</source>
+      <translation>M5 PARADO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/readouts.py" />
+      <source>MACHINE</source>
+      <translation>MÁQUINA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/readouts.py" />
+      <source>MANUAL COLLET</source>
+      <translation>PINZA MANUAL</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/readouts.py" />
+      <source>OPTIONAL STOP</source>
+      <translation>PARO OPCIONAL</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/readouts.py" />
+      <source>ORIENTED {angle}</source>
+      <translation>ORIENTADO {angle}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/readouts.py" />
+      <source>SINGLE BLOCK</source>
+      <translation>BLOQUE A BLOQUE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/readouts.py" />
+      <source>SPINDLE COASTING</source>
+      <translation>HUSILLO POR INERCIA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/readouts.py" />
+      <source>SPINDLE FWD</source>
+      <translation>HUSILLO ADELANTE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/readouts.py" />
+      <source>SPINDLE ORIENTED</source>
+      <translation>HUSILLO ORIENTADO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/readouts.py" />
+      <source>SPINDLE ORIENTING</source>
+      <translation>HUSILLO ORIENTÁNDOSE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/readouts.py" />
+      <source>SPINDLE REV</source>
+      <translation>HUSILLO REVERSA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/readouts.py" />
+      <source>SPINDLE UNKNOWN</source>
+      <translation>HUSILLO DESCONOCIDO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/readouts.py" />
+      <source>TABLE ROTATED</source>
+      <translation>MESA GIRADA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/readouts.py" />
+      <source>TILTED PLANE FROM LINE {line}</source>
+      <translation>PLANO INCLINADO DE LA LÍNEA {line}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/readouts.py" />
+      <source>UNKNOWN</source>
+      <translation>DESCONOCIDO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/readouts.py" />
+      <source>WORKPIECE</source>
+      <translation>PIEZA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/readouts.py" />
+      <source>X IS A DIAMETER</source>
+      <translation>X ES DIÁMETRO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/readouts.py" />
+      <source>X IS A RADIUS</source>
+      <translation>X ES RADIO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/readouts.py" />
+      <source>{names}  ·  CONTROL USES {names2}</source>
+      <translation>{names}  ·  EL CONTROL USA {names2}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/sounds.py" />
+      <source>{command} did not finish in time</source>
+      <translation>{command} no terminó a tiempo</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/sounds.py" />
+      <source>{command} failed</source>
+      <translation>{command} ha fallado</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/standing_prompt.py" />
+      <source>CHECKING THE FIRST MOVE FOR COLLISION WITH THE PART</source>
+      <translation>COMPROBANDO SI EL PRIMER MOVIMIENTO CHOCA CON LA PIEZA</translation>
     </message>
     <message>
       <location filename="app/desk/stored_shapes.py" />
       <source>a profile needs at least three points, each with Z and X in mm, for example 0,0 2.5,0 1.2,1.5</source>
       <translation>un perfil necesita al menos tres puntos, cada uno con Z y X en mm, por ejemplo 0,0 2.5,0 1.2,1.5</translation>
-    </message>
-    <message>
-      <location filename="app/desk/unheard_notice.py" />
-      <source>INPUTS</source>
-      <translation>ENTRADAS</translation>
-    </message>
-    <message>
-      <location filename="app/desk/unheard_notice.py" />
-      <source>OUTPUTS</source>
-      <translation>SALIDAS</translation>
-    </message>
-    <message>
-      <location filename="app/desk/unheard_notice.py" />
-      <source>POSITIONS</source>
-      <translation>POSICIONES</translation>
-    </message>
-    <message>
-      <location filename="app/desk/unheard_notice.py" />
-      <source>SPINDLE UNKNOWN – SPINDLE MAY BE TURNING: PRESS E-STOP</source>
-      <translation>HUSILLO DESCONOCIDO – PUEDE ESTAR GIRANDO: PULSE PARO DE EMERGENCIA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/unheard_notice.py" />
-      <source>UNKNOWN: {what} · LAST KNOWN VALUES ARE SHOWN</source>
-      <translation>DESCONOCIDO: {what} · SE MUESTRAN LOS ÚLTIMOS VALORES CONOCIDOS</translation>
-    </message>
-    <message>
-      <location filename="app/desk/unheard_notice.py" />
-      <source>{what} UNKNOWN: NO RESPONSE FROM THE MACHINE</source>
-      <translation>{what}: DESCONOCIDO, LA MÁQUINA NO RESPONDE</translation>
-    </message>
-    <message>
-      <location filename="app/desk/waiting.py" />
-      <source>AT SPEED</source>
-      <translation>A SU VELOCIDAD</translation>
-    </message>
-    <message>
-      <location filename="app/desk/waiting.py" />
-      <source>COLLET MOVING: PROGRAM CONTINUES AUTOMATICALLY</source>
-      <translation>LA PINZA SE MUEVE: EL PROGRAMA CONTINÚA AUTOMÁTICAMENTE</translation>
-    </message>
-    <message>
-      <location filename="app/desk/waiting.py" />
-      <source>DWELL</source>
-      <translation>ESPERA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/waiting.py" />
-      <source>F10, 3, ENTER, F4: SWITCH SIMULATED INPUTS</source>
-      <translation>F10, 3, ENTER, F4: CONMUTAR LAS ENTRADAS SIMULADAS</translation>
-    </message>
-    <message>
-      <location filename="app/desk/waiting.py" />
-      <source>FEED HOLD BEHIND THE TAP</source>
-      <translation>RETENCIÓN DE AVANCE TRAS EL MACHO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/waiting.py" />
-      <source>FEED OVERRIDE AT 0</source>
-      <translation>AJUSTE DE AVANCE EN 0</translation>
-    </message>
-    <message>
-      <location filename="app/desk/waiting.py" />
-      <source>FEED OVERRIDE IS AT 0: TURN IT UP (+)</source>
-      <translation>EL AJUSTE DE AVANCE ESTÁ EN 0: SÚBALO (+)</translation>
-    </message>
-    <message>
-      <location filename="app/desk/waiting.py" />
-      <source>GUARD OPEN</source>
-      <translation>GUARDA ABIERTA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/waiting.py" />
-      <source>INPUT {name} TO TURN {state}</source>
-      <translation>QUE LA ENTRADA {name} PASE A {state}</translation>
-    </message>
-    <message>
-      <location filename="app/desk/waiting.py" />
-      <source>ON</source>
-      <translation>ENCENDIDO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/waiting.py" />
-      <source>PAUSE (FEED HOLD), THEN R: CANCEL THE PROGRAM</source>
-      <translation>PAUSA (RETENCIÓN DE AVANCE), LUEGO R: CANCELAR EL PROGRAMA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/waiting.py" />
-      <source>PROGRAM DWELL (G04): CONTINUES AUTOMATICALLY</source>
-      <translation>PAUSA DEL PROGRAMA (G04): CONTINÚA AUTOMÁTICAMENTE</translation>
-    </message>
-    <message>
-      <location filename="app/desk/waiting.py" />
-      <source>PROGRAM WAITING FOR {what}</source>
-      <translation>EL PROGRAMA ESPERA: {what}</translation>
-    </message>
-    <message>
-      <location filename="app/desk/waiting.py" />
-      <source>SPINDLE COMING TO SPEED: PROGRAM CONTINUES AUTOMATICALLY</source>
-      <translation>EL HUSILLO ALCANZA SU VELOCIDAD: EL PROGRAMA CONTINÚA AUTOMÁTICAMENTE</translation>
-    </message>
-    <message>
-      <location filename="app/desk/waiting.py" />
-      <source>SPINDLE OVERRIDE AT 0</source>
-      <translation>AJUSTE DEL HUSILLO EN 0</translation>
-    </message>
-    <message>
-      <location filename="app/desk/waiting.py" />
-      <source>SPINDLE OVERRIDE IS AT 0. TO RAISE IT, PRESS THE DOT KEY (.)</source>
-      <translation>EL AJUSTE DEL HUSILLO ESTÁ EN 0. PARA SUBIRLO, PULSE LA TECLA PUNTO (.)</translation>
-    </message>
-    <message>
-      <location filename="app/desk/waiting.py" />
-      <source>SPINDLE STOP</source>
-      <translation>PARO DE HUSILLO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/waiting.py" />
-      <source>SPINDLE STOPPED</source>
-      <translation>HUSILLO PARADO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/waiting.py" />
-      <source>SPINDLE STOPPING: PROGRAM CONTINUES AUTOMATICALLY</source>
-      <translation>EL HUSILLO SE DETIENE: EL PROGRAMA CONTINÚA AUTOMÁTICAMENTE</translation>
-    </message>
-    <message>
-      <location filename="app/desk/waiting.py" />
-      <source>SPINDLE SWITCH IS OFF. A: SWITCH TO AUTO</source>
-      <translation>EL INTERRUPTOR DEL HUSILLO ESTÁ EN OFF. A: PONERLO EN AUTO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/waiting.py" />
-      <source>SPINDLE SWITCH OFF</source>
-      <translation>INTERRUPTOR DEL HUSILLO APAGADO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/waiting.py" />
-      <source>THE GUARD IS OPEN: CLOSE IT</source>
-      <translation>LA PROTECCIÓN ESTÁ ABIERTA: CIÉRRELA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/waiting.py" />
-      <source>THE TAP BACKS OUT OF THE HOLE FIRST. E-STOP: STOP AT ONCE</source>
-      <translation>EL MACHO SALE PRIMERO DEL AGUJERO. PARO DE EMERGENCIA: DETENER EN EL ACTO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/waiting.py" />
-      <source>TURN SPINDLE SWITCH OFF, THEN TO AUTO (A). PRESS CYCLE START</source>
-      <translation>PONGA EL INTERRUPTOR DEL HUSILLO EN OFF Y LUEGO EN AUTO (A). PULSE ARRANQUE DE CICLO</translation>
     </message>
     <message>
       <location filename="app/editor/code_help_view.py" />

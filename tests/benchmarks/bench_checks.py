@@ -13,8 +13,8 @@ from dataclasses import replace
 from unittest import mock
 
 from app.compose.known_part import known_part
-from app.compose.machine_files import load_machine
-from app.compose.machine_setup import setup_for
+from app.compose.machine.machine_files import load_machine
+from app.compose.machine.machine_setup import setup_for
 from core.interpreter.job_setup import ToolOffset
 from core.language.source import Source
 from core.part.cutter import Cutter

@@ -37,10 +37,10 @@ import numpy as np
 from can.interfaces.socketcan.socketcan import build_can_frame, dissect_can_frame
 
 import resources
-from app.compose.canopen_backend import canopen_peers
-from app.compose.feeder_process import driven
-from app.compose.machine_files import load_machine
-from app.compose.played_machine import play_peers
+from app.compose.backends.canopen_backend import canopen_peers
+from app.compose.backends.feeder_process import driven
+from app.compose.backends.played_machine import play_peers
+from app.compose.machine.machine_files import load_machine
 from core.ports import DriverError, FloatArray, MachinePorts, Segments
 from drivers.canopen.position_modes import CyclicFollower, SyncSchedule
 from drivers.feeder.feeder_line import Line, SocketLink

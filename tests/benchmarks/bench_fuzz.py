@@ -10,8 +10,8 @@ import resource
 import sys
 import time
 
-from app.compose.machine_files import shipped_machine
-from app.compose.machine_setup import setup_for
+from app.compose.machine.machine_files import shipped_machine
+from app.compose.machine.machine_setup import setup_for
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import Dialect, Source
 from core.machine.machine_model import Machine

@@ -16,8 +16,8 @@ from pathlib import Path
 
 import numpy as np
 
-from app.compose.hal_backend import hal_config
-from app.compose.machine_files import load_machine
+from app.compose.backends.hal_backend import hal_config
+from app.compose.machine.machine_files import load_machine
 from drivers.hal.bridge.packets import Head, number
 from drivers.hal.hal_machine import HalMachine
 from drivers.hal.hal_session import HalSession

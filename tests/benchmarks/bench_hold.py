@@ -11,8 +11,8 @@ import statistics
 import sys
 import time
 
-from app.compose.machine_setup import read_machine, setup_for
-from app.compose.simulated_backend import simulated
+from app.compose.backends.simulated_backend import simulated
+from app.compose.machine.machine_setup import read_machine, setup_for
 from core.executor.commands import CycleStart, EnableDrives, FeedHold, LoadJob
 from core.executor.executor import Executor
 from core.executor.job import Proof, make_job

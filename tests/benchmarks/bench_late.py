@@ -22,7 +22,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import resources
-from app.compose.machine_setup import setup_for
+from app.compose.machine.machine_setup import setup_for
 from core.executor.commands import CycleStart, EnableDrives, FeedHold, Jog, LoadJob, Reset
 from core.executor.job import Proof, make_job
 from core.interpreter.job_setup import ToolOffset

@@ -15,7 +15,7 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
-from app.compose.machine_setup import read_machine, setup_for
+from app.compose.machine.machine_setup import read_machine, setup_for
 from core.interpreter.dialects import interpretation
 from core.interpreter.job_setup import Setup, ToolOffset
 from core.language.source import Source

@@ -23,7 +23,7 @@ import numpy as np
 from PySide6.QtCore import QCoreApplication, QSize
 from PySide6.QtWidgets import QApplication
 
-from app.desk.program_loading import Phase
+from app.desk.programs.program_loading import Phase
 from app.scope.scope_model import Scope
 from app.scope.scope_view import ScopePage
 from app.screen import page_table

@@ -46,9 +46,9 @@ HEADLESS = """
 import gc, os, sys
 gc.set_threshold(200_000)  # as the command does
 from pathlib import Path
-from app.compose.machine_setup import read_machine, setup_for
+from app.compose.machine.machine_setup import read_machine, setup_for
 from app.compose.stored_offsets import chosen_offsets
-from app.compose.simulated_backend import simulated
+from app.compose.backends.simulated_backend import simulated
 from core.executor.commands import CycleStart, EnableDrives, LoadJob
 from core.executor.executor import Executor
 from core.executor.job import Proof, make_job

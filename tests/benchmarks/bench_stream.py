@@ -12,8 +12,8 @@ import time
 
 import numpy as np
 
-from app.compose.backends import connect
-from app.compose.machine_setup import read_machine, setup_for
+from app.compose.backends.connection import connect
+from app.compose.machine.machine_setup import read_machine, setup_for
 from core.executor.commands import Command, CycleStart, EnableDrives, LoadJob
 from core.executor.executor import Executor
 from core.executor.job import Proof, make_job

@@ -10,7 +10,7 @@ from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from app.desk.program_loading import Phase
+from app.desk.programs.program_loading import Phase
 from app.screen.page_table import PAGES, class_of
 from app.special.special_functions import SpecialFunction, SpecialFunctions
 from app.special.tool_life_function import ToolLifeFunction

@@ -12,12 +12,13 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 
-from app.compose.error_log import Log
-from app.compose.journal import Journal
+from app.compose.runs.error_log import Log
+from app.compose.runs.journal import Journal
 from app.compose.screen_desk import desk_and_executor
 from app.compose.stored_offsets import stored_offsets
 from app.desk.data_folder import RECORDS, data_folder
 from app.desk.desk import Desk
+from app.desk.status.standing_prompt import prompt
 from app.production.parts_book import PartsBook
 from app.production.parts_watch import PartsWatch
 from app.programs.whole_file import write_whole
@@ -187,7 +188,7 @@ class NightShift:
     def frame(self) -> None:
         """What the window asks for in a frame, without its drawing."""
         shot, _view, loaded = self.desk.look()
-        self.desk.prompt(shot, loaded)
+        prompt(self.desk, shot, loaded)
 
     def run(self, seconds: float) -> None:
         """So much time of the machine."""

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import pytest
 
 from app.cli.main import main
-from app.compose import headless_run
+from app.compose.runs import headless_run
 from core.access.access_table import Level
 from core.message import CodedError
 from core.store import people

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from app.cli.inputs_file import read_inputs
+from app.cli.program_options import read_inputs
 from app.compose.stored_offsets import NONE, read_offsets
 from app.desk.command_errors import CommandError
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset

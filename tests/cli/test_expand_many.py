@@ -10,10 +10,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.cli.decimal_columns import decimals, rounded
-from app.cli.omniturn_figures import block_json, row, series_json, series_rows
-from app.compose.machine_files import load_machine
-from app.compose.machine_setup import setup_for
+from app.cli.figures.omniturn_figures import block_json, decimals, rounded, row, series_json, series_rows
+from app.compose.machine.machine_files import load_machine
+from app.compose.machine.machine_setup import setup_for
 from core.interpreter.elementary_blocks import Series, TimedSeries
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import Source

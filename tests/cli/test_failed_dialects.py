@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from app.compose.machine_files import shipped_machine
+from app.compose.machine.machine_files import shipped_machine
 from tests.cli.conftest import Turndesk
 from tests.sinumerik.test_linear_third_axis import SLIDE
 

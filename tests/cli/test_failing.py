@@ -14,8 +14,8 @@ import pytest
 
 from app.cli.crash_report import report_crash, report_thread
 from app.cli.main import main
-from app.compose import error_log
-from app.compose.error_log import Log
+from app.compose.runs import error_log
+from app.compose.runs.error_log import Log
 from core.executor.raised_alarm import AlarmError, alarm_and_reaction, log_alarm
 
 CODE = "from app.cli.main import console; import sys; sys.argv = ['turndesk']; sys.exit(console())"

@@ -15,11 +15,11 @@ from typing import Any
 
 import pytest
 
-from app.cli.proof_cache import ProofCache, plain
-from app.cli.proof_job import ProofJob
-from app.cli.proof_pool import KILLED, Proving, Workers
-from app.cli.proof_work import Proof
-from app.compose.machine_setup import read_machine, setup_for
+from app.cli.proofs.proof_cache import ProofCache, plain
+from app.cli.proofs.proof_job import ProofJob
+from app.cli.proofs.proof_pool import KILLED, Proving, Workers
+from app.cli.proofs.proof_work import Proof
+from app.compose.machine.machine_setup import read_machine, setup_for
 from core.language.source import Source
 from core.proving.program_tools import PartSetting
 from tests.benchmarks.bench_folder import program

@@ -9,8 +9,8 @@ from typing import NamedTuple
 import pytest
 
 import resources
-from app.cli import json_keys
-from app.cli.json_page import document, main
+from app.cli.json_reference import json_keys
+from app.cli.json_reference.json_page import document, main
 from app.shopfloor import json_keys as floor_keys
 from core.json_key import keys, row_keys
 from core.store.store import Store
@@ -29,7 +29,7 @@ HEAD = "G90G94F300\nM03S600\nT1\n"
 
 @WHOLE_PRODUCT
 def test_the_page_is_up_to_date() -> None:
-    assert PAGE.read_text("utf-8") == document(), "python -m app.cli.json_page docs/json.md"
+    assert PAGE.read_text("utf-8") == document(), "python -m app.cli.json_reference.json_page docs/json.md"
 
 
 def test_the_command_writes_the_page(tmp_path: Path) -> None:
@@ -45,7 +45,7 @@ def test_meanings_are_sentences() -> None:
 
 
 def test_every_command_with_json_is_on_the_page() -> None:
-    folder = Path(json_keys.__file__).parent
+    folder = Path(json_keys.__file__).parents[1]
     commands = {
         path.stem.removesuffix("_command")
         for path in (*folder.glob("*_command.py"), *folder.parent.glob("extras/*/*_command.py"))

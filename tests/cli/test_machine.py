@@ -10,10 +10,9 @@ import pytest
 import resources
 from app.cli.machine_command import summary, table
 from app.cli.main import main
-from app.compose import simulated_backend
-from app.compose.backend_entry import Backend, backend_of
-from app.compose.check_rows import FAILED, Row
-from app.compose.machine_files import shipped_machine
+from app.compose.backends import simulated_backend
+from app.compose.backends.backend_entry import FAILED, Backend, Row, backend_of
+from app.compose.machine.machine_files import shipped_machine
 from drivers.simulated.simulated_machine import SimIO
 
 Captured = pytest.CaptureFixture[str]

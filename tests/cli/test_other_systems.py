@@ -46,9 +46,9 @@ setup save desk.setup --machine mine.toml
 setup load desk.setup
 setup load desk.setup
 """
-DESK = r"""from app.compose import backends
+DESK = r"""from app.compose.backends import connection
 from app.compose.screen_desk import build_desk
-assert not backends.FEEDER
+assert not connection.FEEDER
 desk = build_desk()
 assert not desk.book.locked
 desk.close()

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from app.compose import run_log
-from app.compose.error_log import Log
-from app.compose.run_log import EventLog
+from app.compose.runs import run_log
+from app.compose.runs.error_log import Log
+from app.compose.runs.run_log import EventLog
 from core.executor.snapshot import Event
 
 DAY = 86_400.0

@@ -19,7 +19,7 @@ import pytest
 
 import resources
 from app.cli.setup_command import SHELLS
-from app.compose import setup_archive
+from app.compose.machine import setup_archive
 from tests.cli.conftest import Turndesk
 
 
@@ -154,7 +154,7 @@ def test_a_setup_that_cannot_be_written_leaves_nothing(
         target.write_bytes(b"P")
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
-    monkeypatch.setattr("app.compose.setup_file.shutil.copyfile", full)
+    monkeypatch.setattr("app.compose.machine.setup_file.shutil.copyfile", full)
     before = sorted(tmp_path.iterdir())
     told = turndesk("setup", "save", tmp_path / "b.setup")
     assert (told.status, told.code) == (2, "cannot-write")

@@ -11,7 +11,7 @@ from typing import TypeVar
 import pytest
 
 import resources
-from app.compose.journal import Journal
+from app.compose.runs.journal import Journal
 from app.compose.screen_desk import desk_and_executor
 from app.compose.stored_offsets import stored_offsets
 from app.desk.access import Access, Session

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from app.compose.journal import Journal
+from app.compose.runs.journal import Journal
 from app.editor.editor import Editor
 from app.offsets.offset_history import OffsetHistory
 from app.offsets.offset_questions import OffsetQuestions
@@ -51,10 +51,10 @@ WRITES = re.compile(
     r"|\b(write_whole|write_new|write_out|write_in_place|store_new|ForceOutput|SpindleLimit)\("
 )
 BEHIND_A_RULE = {
-    "compose/accepted_machine.py": "asked by machine_file_acceptance.py",
-    "compose/journal.py": "does what pages ask that have asked",
-    "compose/kept_stock.py": "asked by part_options.py and part_sheet.py",
-    "compose/setup_file.py": "asked by setup_command.py",
+    "compose/machine/accepted_machine.py": "asked by machine_file_acceptance.py",
+    "compose/runs/journal.py": "does what pages ask that have asked",
+    "compose/known_part.py": "asked by part_options.py and part_sheet.py",
+    "compose/machine/setup_file.py": "asked by setup_command.py",
     "extras/sharing/sharing_desk.py": "asked by share_command.py",
     "extras/access/pin_question.py": "asked by who_changes.py, which has asked",
     "extras/access/sign_in.py": "asked by access_levels.py",
@@ -66,22 +66,22 @@ BEHIND_A_RULE = {
     "transfer/line_transfer.py": "asked by serial_command.py and serial_transfer.py",
 }
 NO_CHANGE = {
-    "cli/desktop_entry.py": "the menu of the system's user",
-    "cli/json_page.py": "a page of the manual",
-    "cli/proof_cache.py": "proofs that can be made again",
-    "cli/report_file.py": "a report, to a file of whoever asks",
+    "cli/actions/desktop_entry.py": "the menu of the system's user",
+    "cli/json_reference/json_page.py": "a page of the manual",
+    "cli/proofs/proof_cache.py": "proofs that can be made again",
+    "cli/proofs/report_file.py": "a report, to a file of whoever asks",
     "extras/quality/shift_command.py": "a report",
     "cli/trace_command.py": "setpoints, to a file of whoever asks",
     "compose/demo_store.py": "a store for trying",
     "compose/dialects_page.py": "a page of the manual",
-    "compose/headless_run.py": "inputs of a run that is simulated",
-    "compose/machine_in_use.py": "which machine the screen was opened for",
+    "compose/runs/headless_run.py": "inputs of a run that is simulated",
+    "compose/machine/machine_setup.py": "which machine the screen was opened for",
     "compose/machine_file_page.py": "a page of the manual",
-    "compose/played_machine.py": "the other end of a machine that is simulated",
-    "compose/run_log.py": "old files of the machine's own log",
+    "compose/backends/played_machine.py": "the other end of a machine that is simulated",
+    "compose/runs/run_log.py": "old files of the machine's own log",
     "compose/thumbnails.py": "pictures that can be made again",
     "desk/daily_backup.py": "the machine's own backups",
-    "desk/first_job.py": "how far the first job has come",
+    "desk/pages/first_job.py": "how far the first job has come",
     "editor/drafts.py": "what is typed and not saved",
     "jog/hand_functions.py": "coolant off: it brings to rest",
     "mdi/mdi_line.py": "the lines that were typed",

@@ -63,14 +63,14 @@ def desk_of(machine: FakeMachine, closings: Closings) -> Desk:
     """A desk whose every step of closing is noted."""
     desk = desk_on(machine)
     step = partial(partial, closings.run)
-    desk.wait = closings.wait
-    desk.stops = [ClosingStep("executor", step("executor"))]
-    desk.shut = step("drivers")
+    desk.closing.wait = closings.wait
+    desk.closing.stops = [ClosingStep("executor", step("executor"))]
+    desk.closing.shut = step("drivers")
     desk.session = Part(step("loading"))  # type: ignore[assignment]
     desk.access = Part(step("levels"))  # type: ignore[assignment]
     desk.attach(Part(step("Part")))
-    desk.workers = [ClosingStep(name, step(name)) for name in ("broker", "backup")]
-    desk.ends = [ClosingStep(name, step(name)) for name in ("store", "log")]
+    desk.closing.workers = [ClosingStep(name, step(name)) for name in ("broker", "backup")]
+    desk.closing.ends = [ClosingStep(name, step(name)) for name in ("store", "log")]
     return desk
 
 
@@ -108,13 +108,13 @@ def test_a_load_that_hangs_does_not_keep_the_machine_running(
     desk.post(EnableDrives())
     desk.session.worker.ask(hang, lambda _: None, lambda _: None)
     assert reads.wait(LONG)
-    let_go = desk.shut
+    let_go = desk.closing.shut
 
     def shut() -> None:
         let_go()
         off.set()
 
-    desk.shut = shut
+    desk.closing.shut = shut
     closing = threading.Thread(target=desk.close, daemon=True)
     closing.start()
     safe = off.wait(10.0)

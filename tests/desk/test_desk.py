@@ -9,10 +9,11 @@ from pathlib import Path
 import pytest
 
 from app.desk.desk import SILENT, Desk
-from app.desk.machine_status import Tone
-from app.desk.program_folder import ProgramFolders
-from app.desk.program_loading import LoadingSteps, Phase, ProgramLoader
-from app.desk.prompt_line import CONTROL_SILENT, GIVE_UP, ONE_HAND, ONE_PALM, RESTORING
+from app.desk.programs.program_folder import ProgramFolders
+from app.desk.programs.program_loading import LoadingSteps, Phase, ProgramLoader
+from app.desk.status.machine_status import Tone
+from app.desk.status.prompt_line import CONTROL_SILENT, GIVE_UP, ONE_HAND, ONE_PALM, RESTORING
+from app.desk.status.standing_prompt import prompt, time_left
 from core.executor.commands import CycleStart, EnableDrives, FeedHold, FeedOverride, Reset, SetSwitch
 from core.executor.snapshot import Alarm, Event, State
 from tests.screen.desks import desk_on
@@ -224,7 +225,7 @@ def test_an_answer_outlives_the_state_and_never_covers_it(desk: Desk, machine: F
     desk.say("AN ANSWER")
     at(machine, State.DISABLED)
     snapshot, _view, loaded = desk.look()
-    assert desk.prompt(snapshot, loaded) == text("screen.drives-off")
+    assert prompt(desk, snapshot, loaded) == text("screen.drives-off")
     assert desk.answers.answer == "AN ANSWER"
 
 
@@ -296,7 +297,7 @@ def test_a_control_that_has_died_is_told_and_its_figures_are_not_believed(
         seconds[0] += 0.1
         snapshot, view, loaded = desk.look()
     assert (view.state, view.tone) == (SILENT, Tone.ALARM)
-    assert desk.prompt(snapshot, loaded) == CONTROL_SILENT
+    assert prompt(desk, snapshot, loaded) == CONTROL_SILENT
     machine.alive = True
     assert desk.look()[1].tone is Tone.RUN
 
@@ -311,7 +312,7 @@ def test_a_screen_that_was_away_does_not_blame_the_control(desk: Desk) -> None:
 
 def test_time_left_stands_still_at_override_zero(desk: Desk, machine: FakeMachine) -> None:
     snapshot, _view, loaded = desk.look()
-    assert desk.time_left(snapshot, loaded) == float("inf")
+    assert time_left(snapshot, loaded) == float("inf")
 
 
 def _no_workshop() -> LoadingSteps:

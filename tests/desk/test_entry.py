@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.desk.sheet import Entry
+from app.desk.pages.sheet import Entry
 
 
 def test_the_first_character_replaces_what_is_offered() -> None:

@@ -7,8 +7,8 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import cast
 
-from app.desk.first_job import STEPS, FirstJob
-from app.desk.program_loading import Loaded, Phase
+from app.desk.pages.first_job import STEPS, FirstJob
+from app.desk.programs.program_loading import Loaded, Phase
 from core.executor.snapshot import Snapshot, State
 from tests.texts import text
 

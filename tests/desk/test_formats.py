@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.desk import formats
+from app.desk.status import formats
 
 
 @pytest.mark.parametrize(

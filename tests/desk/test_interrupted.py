@@ -8,11 +8,12 @@ from pathlib import Path
 
 import pytest
 
-from app.desk import interrupted_notice
 from app.desk.desk import Desk
-from app.desk.formats import wall_time
-from app.desk.program_loading import Loaded
+from app.desk.programs.first_program import begin_with
+from app.desk.programs.program_loading import Loaded
 from app.desk.screen_settings import Units
+from app.desk.status import interrupted_notice
+from app.desk.status.formats import wall_time
 from app.programs.copy_rename_delete import RENAME
 from app.programs.program_list import ProgramList
 from core.executor.commands import ConfirmStart, LoadJob
@@ -217,7 +218,7 @@ def test_the_same_program_is_read_again_without_a_question(desk: Desk) -> None:
 
 
 def test_at_the_start_the_interrupted_program_goes_before_the_one_of_the_command_line(desk: Desk) -> None:
-    desk.begin_with("OTHER.NC")
+    begin_with(desk, "OTHER.NC")
     assert desk.session.settled(20).name == "PIN.NC"
     assert desk.notice == text("desk.not-loaded-interrupted", name="OTHER.NC")
     desk.close()
@@ -225,7 +226,7 @@ def test_at_the_start_the_interrupted_program_goes_before_the_one_of_the_command
 
 def test_at_the_start_an_interrupted_program_that_is_not_there_is_told(desk: Desk, tmp_path: Path) -> None:
     (tmp_path / "PIN.NC").unlink()
-    desk.begin_with(None)
+    begin_with(desk, None)
     assert desk.notice == text("desk.interrupted-not-in-folder", name="PIN.NC")
     desk.close()
 

@@ -9,7 +9,7 @@ from typing import NoReturn
 
 import pytest
 
-from app.compose.journal import UNDER_WAY, Journal
+from app.compose.runs.journal import UNDER_WAY, Journal
 from app.desk.persistence import Persistence
 from app.offsets.offset_values import not_set
 from core.executor.snapshot import Event, plain
@@ -114,7 +114,7 @@ def away(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Journal]:
         store.set_tool(3, "test", x=1.25).result(60)
         store.set_setting(UNDER_WAY, plain(broken_off(line=8))).result(60)
     full = Cause.FULL.error(tmp_path / "home" / "turndesk.db", "")
-    monkeypatch.setattr("app.compose.journal.AGAIN", 1e6)  # the test opens it
+    monkeypatch.setattr("app.compose.runs.journal.AGAIN", 1e6)  # the test opens it
     with monkeypatch.context() as disk:
         disk.setattr("core.store.store.open_to_write", raising(full))
         journal = Journal(tmp_path / "home")
@@ -197,7 +197,7 @@ def test_a_store_that_could_not_be_read_at_the_start_is_read_by_the_second_try(
     with Store.open(tmp_path / "home") as store:
         store.set_setting(UNDER_WAY, plain(broken_off(line=8))).result(60)
     locked = Cause.LOCKED.error(tmp_path / "home" / "turndesk.db", "")
-    monkeypatch.setattr("app.compose.journal.AGAIN", 1e6)  # the test tries again
+    monkeypatch.setattr("app.compose.runs.journal.AGAIN", 1e6)  # the test tries again
     with monkeypatch.context() as disk:
         disk.setattr(Store, "damaged", raising(locked))
         journal = Journal(tmp_path / "home")

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
-from app.desk.latest import AbandonedError, Latest, Request, Watch
+from app.desk.background_work import AbandonedError, Latest, Request, Watch
 
 LIMIT = 60.0
 

@@ -10,13 +10,14 @@ from pathlib import Path
 import pytest
 
 import resources
-from app.compose.accepted_machine import differences, key_of, record_of
-from app.compose.journal import Journal
-from app.compose.machine_files import load_machine
+from app.compose.machine.accepted_machine import differences, key_of, record_of
+from app.compose.machine.machine_files import load_machine
+from app.compose.runs.journal import Journal
 from app.compose.screen_desk import desk_and_executor
 from app.compose.stored_offsets import NONE
 from app.desk.desk import Desk
 from app.desk.persistence import Persistence
+from app.desk.status.standing_prompt import prompt
 from app.special.machine_file_acceptance import MachineFileAcceptance
 from app.special.special_functions import SpecialFunctions
 from core.executor.executor import Executor
@@ -48,7 +49,7 @@ class Room:
 
     @property
     def prompt(self) -> str:
-        return self.desk.prompt(self.desk.snapshot(), self.desk.session.now)
+        return prompt(self.desk, self.desk.snapshot(), self.desk.session.now)
 
     @property
     def section(self) -> MachineFileAcceptance:

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import pytest
 
-from app.desk.machine_status import Tone, status_of
-from app.desk.readouts import Lamp, Readout, coordinates, drives_lamp
+from app.desk.status.machine_status import Tone, status_of
+from app.desk.status.readouts import Lamp, Readout, coordinates, drives_lamp
 from core.alarms import CATALOGUE
 from core.executor.raised_alarm import make_alarm
 from core.executor.snapshot import Alarm, Snapshot, State

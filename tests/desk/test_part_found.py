@@ -10,14 +10,14 @@ from pathlib import Path
 import pytest
 
 from app.compose.desk_part import NO_STOCK, NOT_MADE
-from app.compose.machine_files import load_machine
+from app.compose.machine.machine_files import load_machine
 from app.compose.stored_offsets import Offsets
 from app.compose.workshop import workshop
+from app.desk.background_work import Watch
 from app.desk.kept_part import NOTHING_KEPT, KeptPart
-from app.desk.latest import Watch
-from app.desk.program_loading import Loaded, PartProved, Phase, ProgramLoader
-from app.desk.program_renewal import RunningRenewal
-from app.desk.prompt_line import announced, remedy
+from app.desk.programs.program_loading import Loaded, PartProved, Phase, ProgramLoader
+from app.desk.programs.program_renewal import RunningRenewal
+from app.desk.status.prompt_line import announced, remedy
 from app.path.path_picture import Picture
 from core.executor.commands import Command, GiveProof, LoadJob, Renew
 from core.executor.snapshot import Snapshot, State

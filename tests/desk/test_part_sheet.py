@@ -9,15 +9,15 @@ from pathlib import Path
 import pytest
 
 import resources
-from app.compose.machine_files import load_machine, parse_machine
+from app.compose.machine.machine_files import load_machine, parse_machine
 from app.compose.stored_offsets import Offsets
 from app.compose.workshop import workshop
 from app.desk.arithmetic import EntryError
 from app.desk.desk import Desk
 from app.desk.kept_part import KeptPart, kept_part
 from app.desk.persistence import Persistence
-from app.desk.program_folder import ProgramFolders
-from app.desk.program_loading import Phase, ProgramLoader
+from app.desk.programs.program_folder import ProgramFolders
+from app.desk.programs.program_loading import Phase, ProgramLoader
 from app.part.part_sheet import PartSheet, Section
 from app.part.part_tables import table
 from app.part.stock_entry import StockEntry, StockField, StockKind

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from app.desk import program_folder
-from app.desk.program_folder import ProgramFile, ProgramFolders
-from app.desk.program_loading import Loaded, Phase
+from app.desk.programs import program_folder
+from app.desk.programs.program_folder import ProgramFile, ProgramFolders
+from app.desk.programs.program_loading import Loaded, Phase
 from core.language.source import load_source
 from drivers.waiting import StepClock
 from tests.texts import begins

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from app.desk.latest import Watch
-from app.desk.program_loading import Loaded, LoadingSteps, Phase, ProgramLoader, Proved
-from app.desk.prompt_line import prompt, refusal
+from app.desk.background_work import Watch
+from app.desk.programs.program_loading import Loaded, LoadingSteps, Phase, ProgramLoader, Proved
+from app.desk.status.prompt_line import prompt, refusal
 from app.path.path_picture import Picture, PictureBuilder
 from core.executor.commands import Command, GiveProof, LoadJob
 from core.executor.job import Job, Proof

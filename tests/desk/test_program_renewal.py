@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from app.desk.program_loading import LoadingSteps, Phase
-from app.desk.program_renewal import RunningRenewal
+from app.desk.programs.program_loading import LoadingSteps, Phase
+from app.desk.programs.program_renewal import RunningRenewal
 from core.executor.commands import Renew
 from core.executor.job import Job
 from core.executor.snapshot import Snapshot, State

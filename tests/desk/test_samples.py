@@ -6,8 +6,8 @@ import math
 
 import pytest
 
-from app.compose.machine_files import load_machine, named_machine
-from app.compose.machine_setup import setup_for
+from app.compose.machine.machine_files import load_machine, named_machine
+from app.compose.machine.machine_setup import setup_for
 from app.compose.stored_offsets import read_offsets
 from core.geometry.rotation_frames import applied, plus
 from core.interpreter.dialects import interpretation

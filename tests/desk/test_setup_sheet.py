@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import pytest
 
-from app.compose.machine_files import load_machine, shipped_machine
-from app.compose.machine_setup import setup_for
+from app.compose.machine.machine_files import load_machine, shipped_machine
+from app.compose.machine.machine_setup import setup_for
 from app.special.setup_sheet import SetupSheet, setup_sheet
 from core.geometry.rotary_axes import DatumPreset
 from core.interpreter.dialects import ReadProgram

@@ -14,10 +14,10 @@ from typing import cast
 import numpy as np
 import pytest
 
-from app.desk import sounds
 from app.desk.desk import Desk
 from app.desk.persistence import Persistence
-from app.desk.sounds import Sounds, play_aloud, tune
+from app.desk.status import sounds
+from app.desk.status.sounds import Sounds, play_aloud, tune
 from app.special.lamps_and_sound import DeskSounds
 from core.executor.snapshot import Snapshot, State
 from core.machine.hardware_model import SIGNALS

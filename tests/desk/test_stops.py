@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from app.desk.alarm_log import KEPT, AlarmLog, read_back
+from app.desk.status.alarm_log import KEPT, AlarmLog, read_back
 from core.alarms import CATALOGUE, Code
 from core.executor.raised_alarm import log_line, make_alarm
 from core.executor.snapshot import Event

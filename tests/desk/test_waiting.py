@@ -6,10 +6,9 @@ from dataclasses import replace
 
 import pytest
 
-from app.desk.machine_status import NOT_HOMED, Tone, status_of
-from app.desk.prompt_line import PromptAnswers, Sort
-from app.desk.readouts import Readout
-from app.desk.waiting import GIVES_UP, how_it_ends, waits_for
+from app.desk.status.machine_status import GIVES_UP, NOT_HOMED, Tone, how_it_ends, status_of, waits_for
+from app.desk.status.prompt_line import PromptAnswers, Sort
+from app.desk.status.readouts import Readout
 from core.executor.snapshot import Snapshot, State
 from tests.texts import text
 

@@ -29,8 +29,8 @@ from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 
-from app.compose.machine_files import shipped_machine
-from app.compose.machine_setup import setup_for
+from app.compose.machine.machine_files import shipped_machine
+from app.compose.machine.machine_setup import setup_for
 from core.interpreter.dialects import ReadProgram, code_book
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.job_setup import ToolOffset

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import pytest
 
-from app.compose.machine_files import load_machine, parse_machine
+from app.compose.machine.machine_files import load_machine, parse_machine
 from core.faults import code_of
 from core.ports import DriverError
 from core.table_schema import MachineFileError

@@ -7,11 +7,11 @@ from dataclasses import dataclass, field
 from hashlib import sha256
 from pathlib import Path
 
-from app.compose.machine_files import load_machine
-from app.compose.machine_setup import setup_for
+from app.compose.machine.machine_files import load_machine
+from app.compose.machine.machine_setup import setup_for
 from app.compose.workshop import proof_of
-from app.desk.latest import Watch
-from app.desk.program_loading import LoadingSteps, Proved
+from app.desk.background_work import Watch
+from app.desk.programs.program_loading import LoadingSteps, Proved
 from app.editor.editor import Editor, LeftProgram
 from app.path.path_picture import Picture, picture_of
 from core.executor.job import Job

@@ -9,8 +9,8 @@ from dataclasses import replace
 
 import pytest
 
-from app.desk.latest import Watch
-from app.desk.program_loading import Proved
+from app.desk.background_work import Watch
+from app.desk.programs.program_loading import Proved
 from app.editor.live_proof import Findings, LiveProof, by_line
 from core.executor.job import Job, Proof
 from core.language.diagnostics import Diagnostic, Severity

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-from app.compose.machine_setup import control_limits
+from app.compose.machine.machine_setup import control_limits
 from app.compose.workshop import proof_of
 from app.searchto.searchto_plan import now_of
 from core.executor.commands import CycleStart, Prepare

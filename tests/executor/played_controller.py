@@ -6,8 +6,8 @@ import dataclasses
 import math
 from dataclasses import dataclass, field
 
-from app.compose.machine_files import load_machine
-from app.compose.simulated_backend import simulated
+from app.compose.backends.simulated_backend import simulated
+from app.compose.machine.machine_files import load_machine
 from core.executor.machine_context import MachineContext
 from core.executor.signals import CommandedOutputs, StationSignals
 from core.executor.snapshot import Event

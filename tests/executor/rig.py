@@ -7,9 +7,9 @@ import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 
-from app.compose.machine_files import load_machine
-from app.compose.machine_setup import control_limits
-from app.compose.simulated_backend import simulated
+from app.compose.backends.simulated_backend import simulated
+from app.compose.machine.machine_files import load_machine
+from app.compose.machine.machine_setup import control_limits
 from core.executor.commands import Command, ConfirmStart, CycleStart, EnableDrives, LoadJob
 from core.executor.executor import Executor
 from core.executor.job import Job, ProgramPass, Proof, interpret, make_job

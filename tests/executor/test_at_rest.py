@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import pytest
 
-from app.compose.machine_files import load_machine
-from app.compose.simulated_backend import sim_config
+from app.compose.backends.simulated_backend import sim_config
+from app.compose.machine.machine_files import load_machine
 from core.executor.commands import EnableDrives, ForceOutput, Jog, SetSwitch
 from core.executor.executor import RESTS, Executor
 from core.executor.snapshot import State

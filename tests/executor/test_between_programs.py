@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from app.compose.machine_files import shipped_machine
+from app.compose.machine.machine_files import shipped_machine
 from core.executor.commands import (
     CycleStart,
     FeedHold,

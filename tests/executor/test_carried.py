@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from app.compose.machine_files import load_machine
+from app.compose.machine.machine_files import load_machine
 from core.executor.commands import CycleStart, LoadJob, Prepare, SetSwitch
 from core.executor.job import Job, Proof, make_job
 from core.executor.snapshot import State

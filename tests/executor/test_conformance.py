@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from app.compose.machine_setup import setup_for
+from app.compose.machine.machine_setup import setup_for
 from core.executor.commands import CycleStart, LoadJob
 from core.executor.job import Proof, make_job
 from core.executor.snapshot import State

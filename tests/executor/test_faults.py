@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 import pytest
 
-from app.compose.machine_files import load_machine
+from app.compose.machine.machine_files import load_machine
 from core.executor.commands import Command, CycleStart, EnableDrives, FeedHold, Home, Reset, SetSwitch
 from core.executor.safety.watchdog import ExecutorThread
 from core.executor.snapshot import Snapshot, State

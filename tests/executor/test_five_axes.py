@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from app.compose.machine_files import parse_machine
+from app.compose.machine.machine_files import parse_machine
 from core.executor.commands import FeedHold
 from core.executor.snapshot import Snapshot, State
 from core.geometry.rotary_axes import Kinematics, PivotMove, Rotary, Slide

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import pytest
 
-from app.compose.machine_files import load_machine
+from app.compose.machine.machine_files import load_machine
 from core.executor.commands import CycleStart, EnableDrives, FeedHold, FeedOverride, Jog, Reset, SetSwitch
 from core.executor.raised_alarm import AlarmError
 from core.executor.safety.supervision import FollowingErrorWatch

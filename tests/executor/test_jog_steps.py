@@ -8,7 +8,7 @@ import re
 
 import pytest
 
-from app.compose.machine_files import load_machine
+from app.compose.machine.machine_files import load_machine
 from core.executor.commands import (
     CycleStart,
     EnableDrives,

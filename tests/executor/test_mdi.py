@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from app.compose.machine_files import shipped_machine
+from app.compose.machine.machine_files import shipped_machine
 from app.compose.workshop import proof_of
 from core.executor.commands import CycleStart, FeedHold, Prepare, Reset, SetSwitch
 from core.executor.snapshot import Starts, State

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 
-from app.compose.machine_files import load_machine
+from app.compose.machine.machine_files import load_machine
 from core.executor.snapshot import State
 from tests.executor.rig import Rig
 

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import pytest
 
-from app.compose.machine_files import shipped_machine
-from app.compose.machine_setup import setup_for
+from app.compose.machine.machine_files import shipped_machine
+from app.compose.machine.machine_setup import setup_for
 from core.executor.commands import CycleStart, FeedHold, Reset
 from core.executor.job import Proof
 from core.executor.snapshot import State

@@ -9,7 +9,7 @@ import re
 
 import pytest
 
-from app.compose.machine_files import load_machine
+from app.compose.machine.machine_files import load_machine
 from core.executor.hand_motion.drive_test import DriveTester, DriveTestPath, Shape
 from core.executor.hand_motion.jogging import Jogger
 from core.executor.job import Job, Proof, check_block, make_job, outdated

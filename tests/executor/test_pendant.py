@@ -6,7 +6,7 @@ import dataclasses
 
 import pytest
 
-from app.compose.machine_files import load_machine
+from app.compose.machine.machine_files import load_machine
 from core.executor.commands import CycleStart, Jog, Wheel
 from core.executor.snapshot import State
 from core.machine.hardware_model import AnalogModel

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.compose.machine_files import load_machine
+from app.compose.machine.machine_files import load_machine
 from core.executor.commands import CycleStart, EnableDrives
 from core.executor.executor import Executor
 from core.executor.recorder import KEPT, Recorder, recorded_of, rotate

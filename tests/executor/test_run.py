@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from app.compose.machine_setup import setup_for
+from app.compose.machine.machine_setup import setup_for
 from core.executor.commands import CycleStart, FeedHold, FeedOverride, Jog, SetSwitch
 from core.executor.snapshot import State
 from core.interpreter.omniturn.omniturn_interpreter import Interpreter

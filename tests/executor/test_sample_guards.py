@@ -7,7 +7,7 @@ import dataclasses
 import pytest
 
 import resources
-from app.compose.machine_files import parse_machine
+from app.compose.machine.machine_files import parse_machine
 from core.executor.snapshot import State
 from core.machine.machine_model import Machine
 from tests.executor.rig import Rig

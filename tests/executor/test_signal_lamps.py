@@ -6,7 +6,7 @@ import dataclasses
 
 import pytest
 
-from app.compose.machine_files import load_machine, parse_machine
+from app.compose.machine.machine_files import load_machine, parse_machine
 from core.executor.commands import BarNextPart, CycleStart, FeedHold, ForceOutput, Reset, SetSwitch
 from core.executor.executor import Executor
 from core.executor.snapshot import State

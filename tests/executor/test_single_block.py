@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from app.compose.machine_files import load_machine, shipped_machine
-from app.compose.machine_setup import setup_for
+from app.compose.machine.machine_files import load_machine, shipped_machine
+from app.compose.machine.machine_setup import setup_for
 from app.compose.stored_offsets import read_offsets
 from core.executor.commands import CycleStart, FeedHold, SetSwitch
 from core.executor.snapshot import State

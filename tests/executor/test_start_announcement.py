@@ -7,7 +7,7 @@ import re
 
 import pytest
 
-from app.compose.machine_files import load_machine
+from app.compose.machine.machine_files import load_machine
 from core.executor.commands import CycleStart, FeedHold, ForceOutput, GiveProof, Prepare, Reset, SpindleLimit
 from core.executor.job import Proof
 from core.executor.snapshot import Starts, State

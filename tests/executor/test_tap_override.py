@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.compose.machine_files import shipped_machine
-from app.compose.machine_setup import setup_for
+from app.compose.machine.machine_files import shipped_machine
+from app.compose.machine.machine_setup import setup_for
 from core.executor.program_motion.path_section import Overrides, PathSection
 from core.executor.snapshot_publisher import _feed
 from core.interpreter.dialects import interpretation

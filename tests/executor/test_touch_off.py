@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import pytest
 
-from app.compose.machine_files import load_machine
+from app.compose.machine.machine_files import load_machine
 from core.executor.commands import EnableDrives, Jog, JogStep, JogStop, Reset, Touch, Wheel
 from core.executor.snapshot import State, TouchPhase
 from core.machine.hardware_model import AnalogModel

@@ -18,12 +18,11 @@ import numpy as np
 
 import resources
 from app.cli import scope_command
-from app.cli.inputs_file import read_inputs
-from app.compose.machine_drivers import read_machine_file
-from app.compose.machine_files import shipped_machine
-from app.compose.machine_setup import setup_for
-from app.compose.setup_archive import FORMAT, MANIFEST
-from app.compose.setup_file import check_setup
+from app.cli.program_options import read_inputs
+from app.compose.machine.machine_files import parse_machine, shipped_machine
+from app.compose.machine.machine_setup import setup_for
+from app.compose.machine.setup_archive import FORMAT, MANIFEST
+from app.compose.machine.setup_file import check_setup
 from app.desk.command_errors import CommandError
 from app.offsets.offsets_file import read_rows, read_tool_shapes
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
@@ -85,7 +84,7 @@ _VALUES = ("0", "-1", "1e308", "nan", "inf", "true", '""', '"x"', "[]", "[1, 2]"
 
 
 def _machine(data: bytes) -> Iterable[str]:
-    read_machine_file(text_of(_file("fuzz.toml", data)), "fuzz.toml")
+    parse_machine(text_of(_file("fuzz.toml", data)), "fuzz.toml")
     return ()
 
 

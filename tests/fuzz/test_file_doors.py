@@ -11,8 +11,8 @@ from typing import NamedTuple
 import canopen
 import pytest
 
-from app.cli.inputs_file import read_inputs
-from app.compose.setup_file import check_setup
+from app.cli.program_options import read_inputs
+from app.compose.machine.setup_file import check_setup
 from app.desk.command_errors import CommandError
 from app.offsets.offsets_file import read_rows, read_tool_shapes
 from app.programs.whole_file import FileError, present

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 import resources
-from app.compose.kinematics_chain import kinematics_of
-from app.compose.machine_files import named_machine
+from app.compose.machine.kinematics_chain import kinematics_of
+from app.compose.machine.machine_files import named_machine
 from core.geometry.rotary_axes import Kinematics
 
 MILLS = ("ac-table-mill", "bc-table-mill", "fork-head-mill", "head-table-mill")

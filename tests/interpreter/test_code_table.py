@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from app.compose.machine_files import load_machine
-from app.compose.machine_setup import setup_for
+from app.compose.machine.machine_files import load_machine
+from app.compose.machine.machine_setup import setup_for
 from core.interpreter.actions import Dwell
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset

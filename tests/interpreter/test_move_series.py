@@ -14,8 +14,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.compose.machine_files import load_machine
-from app.compose.machine_setup import setup_for
+from app.compose.machine.machine_files import load_machine
+from app.compose.machine.machine_setup import setup_for
 from core.interpreter.elementary_blocks import Block, Series
 from core.interpreter.job_setup import Setup, ToolOffset
 from core.interpreter.omniturn.omniturn_interpreter import Interpreter

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from app.compose.machine_files import load_machine
-from app.compose.machine_setup import setup_for
+from app.compose.machine.machine_files import load_machine
+from app.compose.machine.machine_setup import setup_for
 from app.compose.stored_offsets import read_offsets
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset

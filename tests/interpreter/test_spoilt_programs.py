@@ -6,8 +6,8 @@ import random
 
 import pytest
 
-from app.compose.machine_files import shipped_machine
-from app.compose.machine_setup import setup_for
+from app.compose.machine.machine_files import shipped_machine
+from app.compose.machine.machine_setup import setup_for
 from core.interpreter.job_setup import ToolOffset
 from core.language.source import Dialect, Source
 from core.proving.prove_program import prove

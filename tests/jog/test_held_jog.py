@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import pytest
 
-from app.compose.machine_files import load_machine
+from app.compose.machine.machine_files import load_machine
 from app.jog.held_jog import HeldJog
 from app.jog.jog_speeds import CONTINUOUS, JogSpeeds
 from core.executor.commands import Command, Jog, JogStep, JogStop

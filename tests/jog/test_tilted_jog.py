@@ -8,8 +8,8 @@ from math import cos, radians, sin, sqrt
 import numpy as np
 import pytest
 
-from app.compose.kinematics_chain import kinematics_of
-from app.compose.machine_files import parse_machine, shipped_machine
+from app.compose.machine.kinematics_chain import kinematics_of
+from app.compose.machine.machine_files import parse_machine, shipped_machine
 from app.jog.tilted_jog import JogFrame, TiltedJog, jog_frame
 from core.executor.commands import Jog, JogStep, JogStop
 from core.executor.hand_motion.jog_line import JogLine

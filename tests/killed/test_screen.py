@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import resources
-from app.compose.journal import Journal
+from app.compose.runs.journal import Journal
 from core.alarms import CATALOGUE
 from core.records.record import Record
 from core.records.ring_file import LAST, NOW, read_ring

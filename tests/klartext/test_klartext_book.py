@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from app.compose.machine_files import shipped_machine
-from app.compose.machine_setup import setup_for
+from app.compose.machine.machine_files import shipped_machine
+from app.compose.machine.machine_setup import setup_for
 from core.interpreter.code_book_page import page
 from core.interpreter.dialects import code_book
 from core.interpreter.job_setup import ToolOffset

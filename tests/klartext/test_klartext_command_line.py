@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 from app.cli.main import main
-from app.compose.kinematics_chain import kinematics_of
-from app.compose.machine_files import parse_machine, shipped_machine
+from app.compose.machine.kinematics_chain import kinematics_of
+from app.compose.machine.machine_files import parse_machine, shipped_machine
 from core.table_schema import MachineFileError
 from resources import machine_file
 from tests.cli.conftest import Turndesk, home, offsets, turndesk

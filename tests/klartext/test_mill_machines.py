@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from app.compose.kinematics_chain import kinematics_of
-from app.compose.machine_files import parse_machine
+from app.compose.machine.kinematics_chain import kinematics_of
+from app.compose.machine.machine_files import parse_machine
 from resources import machine_file
 from tests.cli.conftest import Turndesk, home, offsets, turndesk
 from tests.klartext.running import whole

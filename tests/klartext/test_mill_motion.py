@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from app.compose.machine_files import shipped_machine
-from app.compose.machine_setup import setup_for
+from app.compose.machine.machine_files import shipped_machine
+from app.compose.machine.machine_setup import setup_for
 from core.interpreter.job_setup import ToolOffset
 from core.language.source import Dialect, Source
 from core.machine.machine_model import Machine

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.compose.machine_files import load_machine, shipped_machine
+from app.compose.machine.machine_files import load_machine, shipped_machine
 from app.jog.jog_speeds import JogSpeeds, directions_of
 from app.offsets.offset_values import Mode
 

@@ -7,10 +7,10 @@ import dataclasses
 import numpy as np
 import pytest
 
-from app.compose.kinematics_chain import kinematics_of
-from app.compose.machine_files import shipped_machine
-from app.desk.machine_status import status_of
-from app.desk.readouts import Lamp, Readout, lamps_of
+from app.compose.machine.kinematics_chain import kinematics_of
+from app.compose.machine.machine_files import shipped_machine
+from app.desk.status.machine_status import status_of
+from app.desk.status.readouts import Lamp, Readout, lamps_of
 from app.path.path_picture import picture_of
 from app.working_plane.plane_drawing import ASPECTS, Camera, Figure, camera_for, figure
 from app.working_plane.plane_instant import Instant, at_line, plane_words, running, title_of

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 import resources
-from app.compose.machine_drivers import DRIVERS
+from app.compose.machine.machine_files import DRIVERS
 from core.machine.driver_tables import tables_of
 
 SPEC = Path(__file__).parents[2].parent / "shared" / "spec" / "drivers.md"

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 import resources
-from app.compose.hal_file import hal_file
-from app.compose.machine_files import parse_machine
+from app.compose.backends.hal_file import hal_file
+from app.compose.machine.machine_files import parse_machine
 from app.desk.command_errors import CommandError
 from core.table_schema import Finding, MachineFileError
 from drivers.hal.boards.hal_lines import text_of

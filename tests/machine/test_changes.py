@@ -7,7 +7,7 @@ import tomllib
 import pytest
 
 import resources
-from app.compose.machine_files import parse_machine
+from app.compose.machine.machine_files import parse_machine
 from core.machine.machine_file import ABSENT, changes
 from core.table_schema import HIDDEN, MachineFileError
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 import resources
-from app.compose.machine_files import parse_machine
+from app.compose.machine.machine_files import parse_machine
 from drivers.canopen.canopen_table import EncoderTable
 from drivers.inverter.inverter_table import InverterTable
 from tests.machine.test_hardware import CAN, assert_refused, changed

@@ -7,7 +7,7 @@ import re
 import pytest
 
 import resources
-from app.compose.machine_files import parse_machine
+from app.compose.machine.machine_files import parse_machine
 from core.table_schema import Finding, MachineFileError
 from drivers.hal.hal_table import HalTable
 

@@ -7,7 +7,7 @@ import re
 import pytest
 
 import resources
-from app.compose.machine_files import load_machine, parse_machine
+from app.compose.machine.machine_files import load_machine, parse_machine
 from core.machine.desk_tables import DncModel
 from core.table_schema import Finding, MachineFileError
 from drivers.canopen.canopen_nodes import CanTerminal, can_terminal

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import resources
-from app.compose.machine_files import load_machine, parse_machine
+from app.compose.machine.machine_files import load_machine, parse_machine
 from core.table_schema import Finding, MachineFileError
 from tests.coded import raises_code
 from tests.texts import text as wording

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from app.compose.machine_files import named_machine, parse_machine
+from app.compose.machine.machine_files import named_machine, parse_machine
 from core.table_schema import MachineFileError
 from tests.machine.mill import MILL
 

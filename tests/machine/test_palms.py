@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from app.compose.machine_files import parse_machine
+from app.compose.machine.machine_files import parse_machine
 from tests.machine.test_hardware import CAN, assert_refused, changed
 
 

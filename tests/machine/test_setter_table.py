@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 import resources
-from app.compose.machine_files import parse_machine
+from app.compose.machine.machine_files import parse_machine
 from core.machine.setter_table import SetterModel
 from core.table_schema import MachineFileError
 from tests.texts import text as wording

@@ -6,7 +6,7 @@ import pytest
 
 import resources
 from app.compose.known_part import OF_MACHINE, known_part
-from app.compose.machine_files import SHIPPED, parse_machine
+from app.compose.machine.machine_files import SHIPPED, parse_machine
 from core.machine.machine_model import Machine
 from core.proving.checks.part_checks import CHECKS
 from core.table_schema import MachineFileError

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 import resources
-from app.compose.machine_files import load_machine, parse_machine
+from app.compose.machine.machine_files import load_machine, parse_machine
 from core.table_schema import Finding, MachineFileError
 from tests.machine.spoil import spec_text
 from tests.texts import text as wording

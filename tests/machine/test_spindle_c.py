@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.compose.machine_files import parse_machine
+from app.compose.machine.machine_files import parse_machine
 from tests.machine.test_hardware import CAN, assert_refused, changed
 
 ON = "in rpm, amax in rpm/s\nenabled = "

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from app.compose.machine_files import parse_machine
+from app.compose.machine.machine_files import parse_machine
 from core.table_schema import MachineFileError
 from tests.machine.spoil import Place, leaves, path_of, sample, with_value
 

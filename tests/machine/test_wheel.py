@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 import resources
-from app.compose.machine_files import parse_machine
+from app.compose.machine.machine_files import parse_machine
 from tests.machine.test_hardware import assert_refused, changed
 from tests.texts import text as wording
 

@@ -8,8 +8,8 @@ from math import atan2, cos, degrees, radians
 
 import pytest
 
-from app.compose.machine_files import named_machine
-from app.compose.machine_setup import setup_for
+from app.compose.machine.machine_files import named_machine
+from app.compose.machine.machine_setup import setup_for
 from core.executor.control_status import modal_given_up
 from core.interpreter.actions import ToolChange
 from core.interpreter.checkpoint import Begin, Checkpoint

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import resources
-from app.cli.proof_json import report_json
-from app.compose.machine_files import parse_machine
-from app.compose.machine_setup import setup_for
+from app.cli.figures.proof_json import report_json
+from app.compose.machine.machine_files import parse_machine
+from app.compose.machine.machine_setup import setup_for
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.job_setup import ToolOffset
 from core.language.source import Source

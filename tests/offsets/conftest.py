@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from app.desk.desk import Desk
-from app.desk.program_folder import ProgramFolders
-from app.desk.program_loading import LoadingSteps, ProgramLoader, Proved
+from app.desk.programs.program_folder import ProgramFolders
+from app.desk.programs.program_loading import LoadingSteps, ProgramLoader, Proved
 from app.offsets.offset_book import OffsetBook
 from app.offsets.secondary_offsets import SecondaryOffsets
 from app.offsets.tool_offsets import ToolOffsets

@@ -7,10 +7,10 @@ from collections.abc import Iterator, Mapping
 
 import pytest
 
-from app.compose.machine_files import load_machine
-from app.compose.machine_setup import setup_for
+from app.compose.machine.machine_files import load_machine
+from app.compose.machine.machine_setup import setup_for
 from app.compose.workshop import drawer
-from app.desk.latest import Watch
+from app.desk.background_work import Watch
 from app.offsets.offset_effect import Compared, Effect, Tables
 from app.path.path_picture import Picture
 from core.executor.job import Job, make_job

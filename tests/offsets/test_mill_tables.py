@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from app.compose.kinematics_chain import kinematics_of
-from app.compose.machine_files import named_machine
-from app.compose.machine_setup import setup_for
+from app.compose.machine.kinematics_chain import kinematics_of
+from app.compose.machine.machine_files import named_machine
+from app.compose.machine.machine_setup import setup_for
 from app.compose.stored_offsets import book_of, read_offsets, setup_with
-from app.desk.machine_status import Tone
+from app.desk.status.machine_status import Tone
 from app.offsets.cell_table import CellTable
 from app.offsets.mill_lives import MillLives
 from app.offsets.mill_offsets import MillOffsets, with_mill

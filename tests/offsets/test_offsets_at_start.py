@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from app.desk.prompt_line import NOT_HERE, STALE
+from app.desk.status.prompt_line import NOT_HERE, STALE
 from core.executor.commands import Command, CycleStart, UseOffsets
 from core.executor.snapshot import State
 from core.interpreter.job_setup import SecondaryOffset

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from app.compose.machine_files import load_machine
+from app.compose.machine.machine_files import load_machine
 from app.compose.stored_offsets import Offsets
 from app.compose.workshop import drawer, part_comparer, workshop
 from app.desk.desk import Desk

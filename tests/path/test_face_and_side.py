@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.compose.machine_setup import read_machine, setup_for
+from app.compose.machine.machine_setup import read_machine, setup_for
 from app.path.face_and_side import face_point
 from app.path.path_picture import Picture, PictureBuilder, picture_of
 from app.path.polyline import CHORD_ERROR, Polyline, Stroke

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import pytest
 
 import resources
-from app.compose.machine_files import load_machine, parse_machine
+from app.compose.machine.machine_files import load_machine, parse_machine
 from app.compose.stored_offsets import NONE, Offsets
 from app.compose.workshop import workshop
 from app.path.part_player import FAST, PartPlayer, PartPlayers, SolidLook

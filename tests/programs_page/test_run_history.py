@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from app.desk.persistence import Persistence
-from app.desk.program_loading import Loaded, Phase
+from app.desk.programs.program_loading import Loaded, Phase
 from app.programs.run_history import RunHistory
 from core.executor.job import Proof
 from core.executor.snapshot import Alarm, Snapshot, State

@@ -10,12 +10,12 @@ import pytest
 
 import resources
 from app.compose.desk_part import PartDesk
-from app.compose.machine_files import load_machine, parse_machine
+from app.compose.machine.machine_files import load_machine, parse_machine
 from app.compose.stored_offsets import Offsets
 from app.compose.thumbnails import HIGH, WIDE, Thumbnails
 from app.compose.workshop import workshop
+from app.desk.background_work import Watch
 from app.desk.kept_part import NOTHING_KEPT, KeptPart
-from app.desk.latest import Watch
 from app.programs.preview import Preview, Thumbnail
 from app.programs.program_rows import Program
 from core.executor.job import Job

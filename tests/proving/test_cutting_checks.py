@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from app.cli.main import main
-from app.compose.machine_files import load_machine
-from app.compose.machine_setup import setup_for
+from app.compose.machine.machine_files import load_machine
+from app.compose.machine.machine_setup import setup_for
 from core.interpreter.job_setup import ToolOffset
 from core.language.source import Source
 from core.machine.machine_model import Machine

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from app.compose.machine_files import load_machine
-from app.compose.machine_setup import setup_for
+from app.compose.machine.machine_files import load_machine
+from app.compose.machine.machine_setup import setup_for
 from app.compose.stored_offsets import read_offsets
 from core.interpreter.job_setup import SecondaryOffset, Setup
 from core.language.source import Source, load_source

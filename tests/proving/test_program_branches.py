@@ -10,8 +10,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.compose.machine_files import load_machine, shipped_machine
-from app.compose.machine_setup import setup_for
+from app.compose.machine.machine_files import load_machine, shipped_machine
+from app.compose.machine.machine_setup import setup_for
 from app.compose.stored_offsets import read_offsets
 from core.interpreter.dialects import ReadProgram
 from core.interpreter.job_setup import Setup, ToolOffset

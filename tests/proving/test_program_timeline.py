@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from app.compose.machine_files import load_machine
-from app.compose.machine_setup import setup_for
+from app.compose.machine.machine_files import load_machine
+from app.compose.machine.machine_setup import setup_for
 from core.interpreter.elementary_blocks import Kind
 from core.interpreter.job_setup import ToolOffset
 from core.language.source import Dialect, Source

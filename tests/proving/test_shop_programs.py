@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 from app.compose.known_part import known_part
-from app.compose.machine_files import load_machine
-from app.compose.machine_setup import setup_for
+from app.compose.machine.machine_files import load_machine
+from app.compose.machine.machine_setup import setup_for
 from app.offsets.offsets_file import read_tool_shapes
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import Source

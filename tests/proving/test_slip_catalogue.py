@@ -17,8 +17,8 @@ from typing import Any
 import pytest
 
 from app.compose.known_part import known_part
-from app.compose.machine_files import load_machine
-from app.compose.machine_setup import setup_for
+from app.compose.machine.machine_files import load_machine
+from app.compose.machine.machine_setup import setup_for
 from app.compose.said_stock import ProgramBefore, said_stock
 from app.offsets.offsets_file import read_tool_shapes
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset

@@ -2,7 +2,7 @@
 
 import pytest
 
-from app.compose.machine_files import load_machine
+from app.compose.machine.machine_files import load_machine
 from core.proving.spindle_forecast import SpindleForecast
 
 

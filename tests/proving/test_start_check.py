@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import pytest
 
-from app.compose.machine_files import load_machine
-from app.compose.machine_setup import setup_for
+from app.compose.machine.machine_files import load_machine
+from app.compose.machine.machine_setup import setup_for
 from core.executor.job import Job, interpret, make_job
 from core.interpreter.checkpoint import Begin, Checkpoint
 from core.interpreter.elementary_blocks import Block

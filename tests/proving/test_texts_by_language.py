@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from app.compose.machine_files import shipped_machine
-from app.compose.machine_setup import setup_for
+from app.compose.machine.machine_files import shipped_machine
+from app.compose.machine.machine_setup import setup_for
 from core.interpreter.job_setup import ToolOffset
 from core.language.diagnostics import Diagnostic
 from core.language.source import Source

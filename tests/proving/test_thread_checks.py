@@ -8,8 +8,8 @@ from dataclasses import replace
 import pytest
 
 from app.compose.known_part import known_part
-from app.compose.machine_files import load_machine
-from app.compose.machine_setup import setup_for
+from app.compose.machine.machine_files import load_machine
+from app.compose.machine.machine_setup import setup_for
 from core.interpreter.elementary_blocks import Kind
 from core.interpreter.job_setup import ToolOffset
 from core.interpreter.modal_state import Modal

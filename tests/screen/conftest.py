@@ -16,7 +16,7 @@ from PySide6.QtCore import QCoreApplication, QEvent, QThread, QTimer
 from PySide6.QtWidgets import QApplication, QWidget
 from pytestqt.qtbot import QtBot
 
-from app.compose.journal import Journal
+from app.compose.runs.journal import Journal
 from app.desk.desk import Desk
 from app.desk.translation import ENGLISH
 from app.screen import event_times

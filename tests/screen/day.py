@@ -15,7 +15,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.compose.journal import Journal
+from app.compose.runs.journal import Journal
 from app.compose.screen_desk import desk_and_executor
 from app.compose.stored_offsets import stored_offsets
 from app.desk.data_folder import data_folder

@@ -5,19 +5,17 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from app.compose.desk_functions import furnish
+from app.compose.desk_functions import furnish, give_production, give_scope
 from app.compose.extra import drawing_endings, extras
-from app.compose.journal import Journal
-from app.compose.machine_files import load_machine
-from app.compose.machine_setup import setup_for
-from app.compose.production_desk import give_production
-from app.compose.scope_desk import give_scope
+from app.compose.machine.machine_files import load_machine
+from app.compose.machine.machine_setup import setup_for
+from app.compose.runs.journal import Journal
 from app.compose.workshop import drawer, proof_of
+from app.desk.background_work import Watch
 from app.desk.desk import Desk
-from app.desk.latest import Watch
 from app.desk.persistence import Persistence
-from app.desk.program_folder import ProgramFolders
-from app.desk.program_loading import LoadingSteps, ProgramLoader, Proved
+from app.desk.programs.program_folder import ProgramFolders
+from app.desk.programs.program_loading import LoadingSteps, ProgramLoader, Proved
 from app.editor.editor import Editor
 from app.editor.versions import Archive, NoArchive
 from app.jog.hand_functions import HandFunctions

@@ -12,7 +12,7 @@ from PySide6.QtGui import QAccessible, QAccessibleInterface
 from PySide6.QtWidgets import QLineEdit, QWidget
 from pytestqt.qtbot import QtBot
 
-from app.desk.sheet import Row, Sheet
+from app.desk.pages.sheet import Row, Sheet
 from app.screen import accessible, page_table
 from app.screen.look import Look, Painter
 from app.screen.main_window import MainWindow

@@ -6,9 +6,9 @@ import pytest
 from PySide6.QtGui import QFontMetricsF
 from PySide6.QtWidgets import QApplication
 
-from app.desk.machine_status import status_of
-from app.desk.prompt_line import alarm_of, exactly, reason
-from app.desk.readouts import Readout
+from app.desk.status.machine_status import status_of
+from app.desk.status.prompt_line import alarm_of, exactly, reason
+from app.desk.status.readouts import Readout
 from app.screen.look import Look, load_fonts
 from app.screen.readout_panels import stop_words
 from app.screen.theme import DARK

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from app.compose.journal import Journal
+from app.compose.runs.journal import Journal
 from app.compose.screen_desk import build_desk
 from app.compose.stored_offsets import NONE, book_of, chosen_offsets, stored_offsets
 from app.desk.command_errors import CommandError

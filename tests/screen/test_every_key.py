@@ -16,7 +16,8 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.desk.data_folder import data_folder
-from app.desk.prompt_line import MOVING, Sort
+from app.desk.status.prompt_line import MOVING, Sort
+from app.desk.status.standing_prompt import start_refusal
 from app.jog import hand_functions
 from app.programs.whole_file import write_whole
 from app.screen import page_table
@@ -273,7 +274,7 @@ def test_every_key_does_what_the_page_offers(day: Day, typists: list[Typist]) ->
         typist.opens(entry.name)
         faults += faults_of_page(typist, entry.name)
         assert day.frame.dock is not None
-        if typist.opens(entry.name) and day.frame.dock.barred is not bool(day.desk.start_refusal(day.shot)):
+        if typist.opens(entry.name) and day.frame.dock.barred is not bool(start_refusal(day.desk, day.shot)):
             faults.append(f"{entry.name}: the palm buttons are not as they are drawn")
     typist.opens(page_table.AUTOMATIC)
     assert faults == [], "\n".join(faults)

@@ -13,7 +13,7 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
-from app.compose.journal import Journal
+from app.compose.runs.journal import Journal
 from app.programs.copy_rename_delete import checked_name, without_ending
 from app.programs.program_list import ProgramList
 from app.programs.programs_view import ProgramsPage

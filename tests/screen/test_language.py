@@ -16,8 +16,8 @@ from PySide6.QtGui import QFont, QPainter, QRawFont
 
 import app
 from app.compose.extra import NAMES, extras
-from app.desk.modal_rows import NONE, rows_of
-from app.desk.prompt_line import exactly
+from app.desk.status.modal_rows import NONE, rows_of
+from app.desk.status.prompt_line import exactly
 from app.desk.translation import tr
 from app.screen import look
 from app.screen.language import CONTEXT, speak_in

@@ -16,9 +16,9 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
-from app.desk.machine_status import Tone
-from app.desk.program_folder import ProgramFolders
-from app.desk.sheet import Row, Sheet
+from app.desk.pages.sheet import Row, Sheet
+from app.desk.programs.program_folder import ProgramFolders
+from app.desk.status.machine_status import Tone
 from app.editor.findings_view import FindingList
 from app.editor.live_proof import Findings
 from app.offsets.cell_table_view import CellPanel

@@ -32,7 +32,7 @@ def test_a_desk_that_cannot_be_built_ends_the_screen_with_its_reason(theme: str)
 
 def test_the_screen_opens_loads_and_closes(machine: FakeMachine) -> None:
     desk, closed = desk_on(machine), []
-    desk.shut = lambda: closed.append(True)
+    desk.closing.shut = lambda: closed.append(True)
 
     def leave() -> None:
         if desk.session.now.picture is None:
@@ -49,7 +49,7 @@ def test_the_screen_opens_loads_and_closes(machine: FakeMachine) -> None:
 
 def test_a_computer_going_down_ends_the_screen_in_the_middle_of_a_program(machine: FakeMachine) -> None:
     desk, closed = desk_on(machine), []
-    desk.shut = lambda: closed.append(machine.now.state)
+    desk.closing.shut = lambda: closed.append(machine.now.state)
 
     def strike() -> None:
         if desk.session.now.picture is None:

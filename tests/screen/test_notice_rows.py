@@ -8,7 +8,7 @@ import pytest
 from PySide6.QtGui import QPainter
 from PySide6.QtWidgets import QApplication
 
-from app.desk.interrupted_notice import NoticeRow, _uncertain
+from app.desk.status.interrupted_notice import NoticeRow, _uncertain
 from app.desk.translation import tr
 from app.screen import page_table
 from app.screen.language import speak_in

@@ -10,7 +10,7 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
-from app.desk.program_loading import Phase
+from app.desk.programs.program_loading import Phase
 from app.offsets.offset_book import OffsetBook
 from app.offsets.secondary_offsets_view import SecondaryOffsetsPage
 from app.offsets.tool_offsets_view import ToolOffsetsPage

@@ -7,7 +7,7 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
 from app.desk.page_description import PageEntry
-from app.desk.prompt_line import NOT_HERE
+from app.desk.status.prompt_line import NOT_HERE
 from app.screen import page_table
 from app.screen.page_table import PAGES, class_of
 from core.executor.commands import CycleStart, FeedHold

@@ -11,7 +11,7 @@ from PySide6.QtTest import QTest
 
 from app.desk.desk import Desk
 from app.desk.page_description import PageEntry
-from app.desk.program_loading import Phase
+from app.desk.programs.program_loading import Phase
 from app.scope.scope_view import ScopePage
 from app.screen import page_table, pages_ahead
 from app.screen.page_base import Page

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from app.desk.prompt_line import CHOOSE_FILE, GIVE_UP, Sort
+from app.desk.status.prompt_line import CHOOSE_FILE, GIVE_UP, Sort
 from app.screen.page_table import menu_of
 from core.executor.commands import Reset
 from core.executor.snapshot import State

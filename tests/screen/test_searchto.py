@@ -6,7 +6,7 @@ import pytest
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtTest import QTest
 
-from app.desk.prompt_line import HOW_TO_HOLD
+from app.desk.status.prompt_line import HOW_TO_HOLD
 from app.screen import page_table
 from app.screen.panel import Panel
 from app.screen.window_layout import FINGER

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from app.compose.journal import Journal
+from app.compose.runs.journal import Journal
 from app.compose.stored_offsets import read_offsets
 from app.compose.workshop import samples
 from app.desk.desk import Desk

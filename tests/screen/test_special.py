@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from app.compose.journal import Journal
+from app.compose.runs.journal import Journal
 from app.desk.data_folder import data_folder
 from app.desk.desk import Desk
 from app.programs.removable_media import Stick

@@ -10,7 +10,7 @@ import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 
-from app.desk.prompt_line import MOVING
+from app.desk.status.prompt_line import MOVING
 from app.screen import page_table
 from app.screen.page_table import pages_of
 from core.executor.snapshot import State

@@ -9,8 +9,8 @@ from PySide6.QtCore import QEvent, Qt
 from PySide6.QtGui import QKeyEvent
 from PySide6.QtWidgets import QApplication
 
-from app.desk.program_loading import Phase
-from app.desk.prompt_line import GIVE_UP, NOT_FOUND, ONE_PALM
+from app.desk.programs.program_loading import Phase
+from app.desk.status.prompt_line import GIVE_UP, NOT_FOUND, ONE_PALM
 from core.executor.commands import CycleStart, FeedHold, Reset
 from core.executor.snapshot import Alarm, State
 from tests.screen.hands import Hands, Key

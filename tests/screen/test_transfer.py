@@ -11,8 +11,8 @@ from typing import Generic, TypeVar
 import pytest
 from pytestqt.qtbot import QtBot
 
-from app.compose.journal import Journal
-from app.desk.prompt_line import Sort
+from app.compose.runs.journal import Journal
+from app.desk.status.prompt_line import Sort
 from app.special.special_functions import SpecialFunctions
 from app.special.special_view import SpecialPage
 from app.transfer.line_transfer import Received

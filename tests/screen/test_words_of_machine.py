@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import pytest
 
-from app.compose.machine_files import shipped_machine
-from app.desk.readouts import spindle_figures
+from app.compose.machine.machine_files import shipped_machine
+from app.desk.status.readouts import spindle_figures
 from app.screen.page_table import menu_keys
 from app.special.inputs_outputs import InputsOutputs
 from core.executor.snapshot import Snapshot

@@ -16,9 +16,9 @@ import pytest
 from PySide6.QtCore import QCoreApplication, QEvent, Qt
 from PySide6.QtGui import QKeyEvent
 
+from app.desk.background_work import Latest
 from app.desk.data_folder import data_folder
-from app.desk.latest import Latest
-from app.desk.program_loading import ProgramLoader
+from app.desk.programs.program_loading import ProgramLoader
 from app.editor.editor import Stage
 from app.editor.editor_view import EditorPage
 from app.screen import page_table

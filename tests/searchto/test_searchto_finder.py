@@ -7,7 +7,7 @@ import threading
 import pytest
 
 from app.compose.workshop import rebuilt
-from app.desk.program_loading import Proved
+from app.desk.programs.program_loading import Proved
 from app.searchto.searchto_cursor import LineCursor
 from app.searchto.searchto_finder import LineFinder
 from core.executor.job import Job, Proof, make_job

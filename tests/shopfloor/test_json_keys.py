@@ -6,7 +6,7 @@ import json
 from dataclasses import replace
 from pathlib import Path
 
-from app.compose.machine_files import shipped_machine
+from app.compose.machine.machine_files import shipped_machine
 from app.shopfloor.floor_reading import FloorReader
 from app.shopfloor.json_keys import FILE
 from app.shopfloor.status_file import StatusFile, status_of

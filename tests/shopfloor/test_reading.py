@@ -8,7 +8,7 @@ from typing import cast
 
 import pytest
 
-from app.compose.machine_files import load_machine, shipped_machine
+from app.compose.machine.machine_files import load_machine, shipped_machine
 from app.shopfloor.floor_reading import PLACES, FloorReader, Value, condition_keys
 from core.alarms import CATALOGUE, Code
 from core.executor.raised_alarm import AlarmError, alarm_and_reaction, make_alarm

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from app.compose.machine_files import parse_machine, shipped_machine
-from app.compose.machine_setup import control_limits
+from app.compose.machine.machine_files import parse_machine, shipped_machine
+from app.compose.machine.machine_setup import control_limits
 from core.interpreter.dialects import code_book
 from core.interpreter.job_setup import Setup
 from core.language.sinumerik.control_differences import CONTROLS, LACKS

@@ -6,7 +6,7 @@ import re
 
 import pytest
 
-from app.compose.machine_files import parse_machine, shipped_machine
+from app.compose.machine.machine_files import parse_machine, shipped_machine
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.job_setup import ZeroOffset
 from core.machine.machine_model import Machine

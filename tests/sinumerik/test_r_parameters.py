@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from app.compose.journal import Journal
+from app.compose.runs.journal import Journal
 from app.compose.screen_desk import desk_and_executor
 from app.compose.stored_offsets import offsets_of, setup_with, stored_offsets
 from app.offsets.offsets_in_force import R_PARAMETERS, r_parameters

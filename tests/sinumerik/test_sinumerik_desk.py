@@ -8,13 +8,13 @@ from pathlib import Path
 
 import pytest
 
-from app.compose.journal import Journal
+from app.compose.runs.journal import Journal
 from app.compose.screen_desk import desk_and_executor
 from app.compose.stored_offsets import stored_offsets
 from app.desk.desk import Desk
-from app.desk.machine_status import status_of
-from app.desk.program_loading import Phase
-from app.desk.readouts import Readout
+from app.desk.programs.program_loading import Phase
+from app.desk.status.machine_status import status_of
+from app.desk.status.readouts import Readout
 from app.editor.editor import Editor
 from core.executor.executor import Executor
 from core.executor.snapshot import Snapshot, State

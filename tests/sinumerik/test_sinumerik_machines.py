@@ -7,8 +7,8 @@ from dataclasses import replace
 import pytest
 
 import resources
-from app.compose.machine_files import load_machine, parse_machine
-from app.compose.machine_setup import control_limits
+from app.compose.machine.machine_files import load_machine, parse_machine
+from app.compose.machine.machine_setup import control_limits
 from core.executor.job import check_block
 from core.executor.raised_alarm import AlarmError
 from core.machine.machine_model import Machine

@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from app.compose.simulated_backend import simulated
+from app.compose.backends.simulated_backend import simulated
 from app.compose.workshop import proof_of
 from core.executor.commands import CycleStart, EnableDrives, LoadJob
 from core.executor.executor import Executor

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from app.compose.machine_files import shipped_machine
+from app.compose.machine.machine_files import shipped_machine
 from core.interpreter.actions import ProgramStop, SpindleLock, SpindleRun, SpindleStop
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.job_setup import Setup

@@ -8,7 +8,7 @@ from math import atan2, cos, degrees, hypot, pi, radians, sin
 import numpy as np
 import pytest
 
-from app.compose.machine_files import shipped_machine
+from app.compose.machine.machine_files import shipped_machine
 from core.interpreter.actions import Output, SpindleLock
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.job_setup import Setup, ToolOffset, ZeroOffset

@@ -8,7 +8,7 @@ from math import cos, hypot, radians, sin, sqrt
 
 import pytest
 
-from app.compose.machine_files import load_machine
+from app.compose.machine.machine_files import load_machine
 from core.interpreter.actions import Dwell, Output, SpindleLock
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.job_setup import Setup, ToolOffset

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from app.compose.machine_files import shipped_machine
+from app.compose.machine.machine_files import shipped_machine
 from core.interpreter.dialects import code_book
 from core.interpreter.elementary_blocks import Kind
 from core.interpreter.job_setup import Setup, ToolOffset, ZeroOffset

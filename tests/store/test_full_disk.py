@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from app.cli.main import main
-from app.compose.journal import Journal
+from app.compose.runs.journal import Journal
 from core.executor.snapshot import Event
 from core.store import store_writer
 from core.store.store import Store, StoreError
@@ -126,7 +126,7 @@ def test_closing_says_what_is_lost(disk: Disk) -> None:
 def test_a_control_that_comes_up_with_a_full_disk_keeps_its_parts_later(
     disk: Disk, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("app.compose.journal.AGAIN", 0.02)
+    monkeypatch.setattr("app.compose.runs.journal.AGAIN", 0.02)
     disk.fill()
     journal = Journal(disk.path / "home")
     assert str(Cause.FULL.error(disk.path / "home" / FILE_NAME, "")) in journal.trouble

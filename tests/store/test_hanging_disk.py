@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from app.compose.journal import Journal
+from app.compose.runs.journal import Journal
 from core.executor.snapshot import Event
 from core.store.store import Store
 from core.store.store_errors import Cause

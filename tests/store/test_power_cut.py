@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.desk.latest import Latest
+from app.desk.background_work import Latest
 from app.editor.document import Document
 from app.editor.drafts import Drafts
 from app.editor.versions import NoArchive

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from app.compose.journal import Journal
-from app.desk.program_folder import ProgramFolders
+from app.compose.runs.journal import Journal
+from app.desk.programs.program_folder import ProgramFolders
 from app.programs.program_rows import Program, list_programs
 from core.language.source import load_source
 from core.store import program_records

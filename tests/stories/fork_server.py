@@ -22,7 +22,7 @@ from typing import Any, BinaryIO
 
 _PRELOADED = (
     "app.compose.screen_desk",
-    "app.compose.simulated_backend",
+    "app.compose.backends.simulated_backend",
     "app.compose.stored_offsets",
     "app.screen.display",
     "app.screen.run_screen",

@@ -8,9 +8,9 @@ from functools import partial
 
 from app.desk.access import Access
 from app.desk.desk import Desk
-from app.desk.machine_status import Tone
+from app.desk.pages.sheet import Entry, Key, Row, Sheet, following
 from app.desk.persistence import Persistence
-from app.desk.sheet import Entry, Key, Row, Sheet, following
+from app.desk.status.machine_status import Tone
 from app.desk.translation import data, tr
 from app.extras.access.access_reset import AccessReset
 from app.extras.access.sign_in import MINUTES, SignIn

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from functools import partial
 
 from app.desk.access import Access
-from app.desk.latest import Latest
+from app.desk.background_work import Latest
 from app.desk.translation import data, tr
 from core.access.access_table import Level
 from core.executor.snapshot import Snapshot

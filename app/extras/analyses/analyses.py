@@ -16,10 +16,10 @@ from operator import itemgetter
 import numpy as np
 import numpy.typing as npt
 
-from app.desk import formats
+from app.desk.background_work import Latest
 from app.desk.desk import Desk
-from app.desk.latest import Latest
-from app.desk.sheet import STEPS, Row, Sheet
+from app.desk.pages.sheet import STEPS, Row, Sheet
+from app.desk.status import formats
 from app.desk.translation import tr
 from app.extras.analyses.axis_response import AxisResponse, last_move, response_drawing, response_sheet
 from app.extras.analyses.drawing import Drawing

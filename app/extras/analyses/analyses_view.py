@@ -9,9 +9,9 @@ from PySide6.QtCore import QRect, QRectF
 from PySide6.QtGui import QResizeEvent, QWheelEvent
 from PySide6.QtWidgets import QWidget
 
-from app.desk.machine_status import MachineStatus
-from app.desk.program_loading import Loaded
-from app.desk.sheet import Key
+from app.desk.pages.sheet import Key
+from app.desk.programs.program_loading import Loaded
+from app.desk.status.machine_status import MachineStatus
 from app.desk.translation import tr
 from app.extras.analyses.analyses import Analyses, Kind
 from app.extras.analyses.drawing_room_view import DrawingRoom

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from app.desk import formats
-from app.desk.sheet import Row, Sheet
+from app.desk.pages.sheet import Row, Sheet
+from app.desk.status import formats
 from app.desk.translation import tr
 from app.extras.analyses.drawing import Drawing
 from core.extras.analyses.step_response import (

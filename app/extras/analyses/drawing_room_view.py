@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QRect
 from PySide6.QtWidgets import QWidget
 
-from app.desk.formats import MM_PER_INCH
-from app.desk.latest import Latest
+from app.desk.background_work import Latest
+from app.desk.status.formats import MM_PER_INCH
 from app.extras.analyses.analyses import scaled
 from app.extras.analyses.drawing import Drawing
 from app.screen.look import Look

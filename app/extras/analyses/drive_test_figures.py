@@ -14,8 +14,8 @@ from enum import Enum
 import numpy as np
 import numpy.typing as npt
 
-from app.desk import formats
-from app.desk.sheet import Row, Sheet
+from app.desk.pages.sheet import Row, Sheet
+from app.desk.status import formats
 from app.desk.translation import tr
 from app.extras.analyses.axis_response import SHARES, Moved, Units, moved, step_rows, stretches, window_rows
 from core.executor.hand_motion.drive_test import PAUSE, DriveTestPath, Shape

@@ -10,11 +10,11 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
-from app.desk import formats
 from app.desk.desk import Desk
-from app.desk.formats import MM_PER_INCH
-from app.desk.prompt_line import STOP_HELD
-from app.desk.sheet import Row, Sheet, following
+from app.desk.pages.sheet import Row, Sheet, following
+from app.desk.status import formats
+from app.desk.status.formats import MM_PER_INCH
+from app.desk.status.prompt_line import STOP_HELD
 from app.desk.translation import tr
 from app.extras.analyses.axis_response import Units, response_drawing
 from app.extras.analyses.drawing import Drawing

@@ -9,9 +9,9 @@ from app.compose.extra import Extra
 from app.desk.page_description import PageEntry
 
 if TYPE_CHECKING:
-    from app.compose.journal import Journal
+    from app.compose.runs.journal import Journal
     from app.desk.desk import Desk
-    from app.desk.program_loading import LoadingSteps
+    from app.desk.programs.program_loading import LoadingSteps
     from app.extras.analyses.analyses import Analyses
     from app.extras.analyses.drive_test_model import DriveTests
     from app.scope.scope_model import Scope

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
-from app.desk.latest import Latest, Watch
-from app.desk.sheet import Key
+from app.desk.background_work import Latest, Watch
+from app.desk.pages.sheet import Key
 from app.desk.translation import tr
 from app.extras.drawings.drawing_form import PROFILE, DrawingForm
 from app.extras.drawings.drawing_plan import Plan, Planner

@@ -9,7 +9,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.desk.latest import Watch
+from app.desk.background_work import Watch
 from core.extras.drawings.contour_walk import Net
 from core.extras.drawings.drawing import Drawing, DrawingError
 from core.extras.drawings.drawing_view import (

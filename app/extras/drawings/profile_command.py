@@ -20,7 +20,7 @@ from core.message import Message
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from app.cli.figures import Json
+    from app.cli.figures.units import Json
     from app.cli.program_options import SubParsers
     from app.extras.drawings.profile_trial_desk import Trial
     from core.extras.drawings.contour_walk import Net
@@ -146,7 +146,7 @@ def run(args: argparse.Namespace) -> int:
 
 def _run(args: argparse.Namespace) -> int:
     from app.cli.progress_bar import Progress
-    from app.compose.machine_setup import read_machine
+    from app.compose.machine.machine_setup import read_machine
     from core.extras.drawings.drawing_process import read_in_process
 
     machine = read_machine(args.machine)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 from app.compose.known_part import known_part
-from app.compose.machine_setup import setup_for
+from app.compose.machine.machine_setup import setup_for
 from core.extras.drawings.drawing_view import Profile, Side
 from core.extras.drawings.part_against_drawing import Comparison, compared
 from core.extras.drawings.profile_program import NoseOffset

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from app.desk.formats import local_time
+from app.desk.status.formats import local_time
 from app.desk.translation import tr
 from core.language.diagnostics import Diagnostic, Severity
 from core.message import Message

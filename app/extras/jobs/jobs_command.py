@@ -98,7 +98,7 @@ def _line(place: int, row: JobRow) -> str:
 def _add(store: Store, args: argparse.Namespace) -> str:
     from app.compose.workshop import samples
     from app.desk.data_folder import data_folder
-    from app.desk.program_folder import ProgramFolders
+    from app.desk.programs.program_folder import ProgramFolders
     from core.store.production import job_queue
 
     folder = data_folder() / "programs"

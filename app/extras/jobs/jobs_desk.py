@@ -6,14 +6,14 @@ from collections.abc import Callable
 from functools import partial
 
 from app.compose.desk_part import PartDesk
-from app.compose.journal import Journal
+from app.compose.runs.journal import Journal
 from app.compose.stored_offsets import shapes_at_hand
+from app.desk.background_work import Watch
 from app.desk.desk import Desk
 from app.desk.kept_part import kept_part
-from app.desk.latest import Watch
 from app.desk.page_description import ProgramKey
 from app.desk.persistence import Persistence
-from app.desk.program_loading import LoadingSteps
+from app.desk.programs.program_loading import LoadingSteps
 from app.desk.translation import tr
 from app.extras.jobs.job_setup import ProvedJob
 from app.extras.jobs.jobs_model import JobsModel

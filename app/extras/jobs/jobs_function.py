@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from app.desk.formats import NOTHING
-from app.desk.sheet import Row
+from app.desk.pages.sheet import Row
+from app.desk.status.formats import NOTHING
 from app.desk.translation import tr
 from app.extras.jobs.jobs_watch import JobsWatch
 from app.special.special_functions import PageFunction

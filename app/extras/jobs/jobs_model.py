@@ -10,11 +10,11 @@ from textwrap import wrap
 
 from app.desk.arithmetic import EntryError
 from app.desk.desk import Desk
-from app.desk.formats import NOTHING, duration
-from app.desk.machine_status import Tone
-from app.desk.page_entry import program_barred
-from app.desk.prompt_line import UNDER_WAY
-from app.desk.sheet import STEPS, Entry, Key, Row, Sheet, refused
+from app.desk.pages.page_entry import program_barred
+from app.desk.pages.sheet import STEPS, Entry, Key, Row, Sheet, refused
+from app.desk.status.formats import NOTHING, duration
+from app.desk.status.machine_status import Tone
+from app.desk.status.prompt_line import UNDER_WAY
 from app.desk.translation import tr
 from app.extras.jobs.job_setup import ProvedJob, Station, findings, missing, stations, tool_name
 from app.extras.jobs.jobs_watch import JobsWatch

@@ -10,11 +10,11 @@ from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 
+from app.desk.background_work import Latest, Watch
 from app.desk.desk import Desk
-from app.desk.interrupted_notice import NoticeRow
-from app.desk.latest import Latest, Watch
-from app.desk.program_loading import Loaded
-from app.desk.prompt_line import UNDER_WAY
+from app.desk.programs.program_loading import Loaded
+from app.desk.status.interrupted_notice import NoticeRow
+from app.desk.status.prompt_line import UNDER_WAY
 from app.desk.translation import tr
 from app.extras.jobs.job_setup import ProvedJob, missing
 from app.production.parts_watch import PartsWatch

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from app.compose.extra import Close, Extra, Tell
 
 if TYPE_CHECKING:
-    from app.compose.check_rows import Answers
-    from app.compose.journal import Journal
+    from app.compose.backends.backend_entry import Answers
+    from app.compose.runs.journal import Journal
     from app.desk.desk import Desk
     from core.executor.snapshot import Snapshot
     from core.machine.machine_model import Machine

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.compose.check_rows import Answers, Row
+from app.compose.backends.backend_entry import Answers, Row
 from app.extras.mtconnect.driver.mtconnect_table import MtconnectTable
 from app.extras.mtconnect.shop_floor import try_shop_floor
 from core.machine.machine_model import Machine

@@ -23,7 +23,7 @@ def add_parser(actions: SubParsers) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Write ``Devices.xml`` of a machine file to stdout. Raises CommandError."""
-    from app.compose.machine_setup import read_machine
+    from app.compose.machine.machine_setup import read_machine
     from app.extras.mtconnect.shop_floor import device_model, told_to_agents
     from core.ports import DriverError
 

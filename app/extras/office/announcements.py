@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from app.desk.repeating_thread import RepeatingThread
+from app.desk.background_work import RepeatingThread
 from app.shopfloor.status_file import Status
 from core.message import Message
 

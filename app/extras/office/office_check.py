@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import socket
 
-from app.compose.check_rows import Answers, Row
+from app.compose.backends.backend_entry import Answers, Row
 from app.extras.office.page_server import listening_at
 from core.extras.office.shop_network_tables import AnnounceTable, StatusPageTable, broker_of
 from core.machine.machine_model import Machine

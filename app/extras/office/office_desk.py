@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING
 from app.compose.stored_offsets import shapes_at_hand
 from app.compose.workshop import thumbnails
 from app.desk.kept_part import kept_part
-from app.desk.prompt_line import UNDER_WAY
+from app.desk.status.prompt_line import UNDER_WAY
+from app.desk.status.standing_prompt import time_left
 from app.extras.office.office_status import OfficeLook
 from app.extras.office.page_server import PageServer, listening_at
 from app.production.parts_watch import PartsWatch
@@ -23,7 +24,7 @@ from core.extras.office.shop_network_tables import AnnounceTable, StatusPageTabl
 from core.ports import DriverError
 
 if TYPE_CHECKING:
-    from app.compose.journal import Journal
+    from app.compose.runs.journal import Journal
     from app.desk.desk import Desk
     from app.extras.office.announcements import Told
     from app.extras.office.status_page import OtherDesk
@@ -63,7 +64,7 @@ def _look(desk: Desk, machine: Machine) -> OfficeLook:
     reader = FloorReader(machine, time.monotonic)
 
     def left(snapshot: Snapshot) -> float:
-        return desk.time_left(snapshot, desk.session.now)
+        return time_left(snapshot, desk.session.now)
 
     def stops() -> Sequence[StopRow]:
         watch = desk.attached(PartsWatch)

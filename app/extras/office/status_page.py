@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 from urllib.parse import parse_qs
 from zlib import crc32
 
-from app.desk.formats import duration
+from app.desk.status.formats import duration
 from app.desk.translation import spoken, tr
 from app.shopfloor.status_file import Status
 

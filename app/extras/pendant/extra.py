@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from app.compose.extra import Extra
 
 if TYPE_CHECKING:
-    from app.compose.backend_entry import Connected
+    from app.compose.backends.backend_entry import Connected
     from core.machine.machine_model import Machine
     from core.table_schema import Driver
 

@@ -8,8 +8,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import replace
 
-from app.compose.backend_entry import Connected
-from app.compose.check_rows import Row
+from app.compose.backends.backend_entry import Connected, Row
 from app.extras.pendant.driver.input_devices import EventSource, KernelDevice, chosen, entries
 from app.extras.pendant.driver.pendant_station import Pendant, PendantIO, PendantStation
 from app.extras.pendant.driver.pendant_table import (

@@ -5,9 +5,9 @@ from __future__ import annotations
 from itertools import pairwise
 
 from app.desk.desk import Desk
-from app.desk.formats import NOTHING, fixed
-from app.desk.machine_status import Tone
-from app.desk.sheet import Row, Sheet
+from app.desk.pages.sheet import Row, Sheet
+from app.desk.status.formats import NOTHING, fixed
+from app.desk.status.machine_status import Tone
 from app.desk.translation import tr
 from app.extras.quality.parts_data import feature_of
 from app.extras.quality.plots import ChartDrawing, control_plots

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from app.desk.desk import Desk
-from app.desk.sheet import Sheet
+from app.desk.pages.sheet import Sheet
 from app.desk.translation import tr
 from app.extras.quality.plots import ChartDrawing, correction_plot
 from app.extras.quality.section import signed_size

@@ -9,11 +9,11 @@ from app.compose.extra import Extra
 from app.desk.page_description import PageEntry
 
 if TYPE_CHECKING:
-    from app.compose.journal import Journal
+    from app.compose.runs.journal import Journal
+    from app.desk.background_work import Latest
     from app.desk.desk import Desk
-    from app.desk.latest import Latest
     from app.desk.persistence import Persistence
-    from app.desk.program_loading import LoadingSteps
+    from app.desk.programs.program_loading import LoadingSteps
     from app.special.special_functions import SpecialFunction
     from core.json_key import Output
     from core.machine.machine_model import Machine

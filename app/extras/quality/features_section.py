@@ -8,7 +8,7 @@ from functools import partial
 
 from app.desk.arithmetic import CHARACTERS, EntryError, value_of
 from app.desk.desk import Desk
-from app.desk.sheet import Key, Row, Sheet, edited
+from app.desk.pages.sheet import Key, Row, Sheet, edited
 from app.desk.translation import tr
 from app.extras.quality.parts_data import feature_of, row_of
 from app.extras.quality.sample_plan import SamplePlan

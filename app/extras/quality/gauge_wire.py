@@ -7,7 +7,7 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 
-from app.compose.serial_ports import open_wire
+from app.compose.backends.serial_ports import open_wire
 from app.desk.translation import tr
 from app.extras.quality.gauge_line import LineReader, Reading, reading_of
 from app.extras.quality.gauge_table import GaugeModel

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from app.desk.formats import NOTHING
-from app.desk.sheet import Row
+from app.desk.pages.sheet import Row
+from app.desk.status.formats import NOTHING
 from app.desk.translation import tr
 from app.extras.quality.parts_data import parts_of
 from app.production.parts_watch import PartsWatch

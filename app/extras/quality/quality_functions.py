@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from app.desk.latest import Latest
+from app.desk.background_work import Latest
 from app.special.special_functions import SpecialFunction, SpecialFunctions
 
 Make = Callable[[], Sequence[SpecialFunction]]

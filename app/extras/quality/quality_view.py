@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtWidgets import QWidget
 
-from app.desk.machine_status import MachineStatus
-from app.desk.program_loading import Loaded
+from app.desk.programs.program_loading import Loaded
+from app.desk.status.machine_status import MachineStatus
 from app.extras.quality.quality_functions import QualityFunctions
 from app.extras.quality.section import QualitySection
 from app.screen.page_base import Host

@@ -7,7 +7,7 @@ import io
 from collections.abc import Iterator
 from pathlib import Path
 
-from app.desk.formats import MM_PER_INCH
+from app.desk.status.formats import MM_PER_INCH
 from app.extras.quality.parts_data import PartsData, feature_of
 from core.file_placing import write_in_place
 

@@ -9,8 +9,8 @@ from pathlib import Path
 
 from app.desk.arithmetic import EntryError, value_of
 from app.desk.desk import Desk
-from app.desk.machine_status import Tone
-from app.desk.sheet import Key, Row, Sheet
+from app.desk.pages.sheet import Key, Row, Sheet
+from app.desk.status.machine_status import Tone
 from app.desk.translation import tr
 from app.extras.quality.correction_effect import CorrectionEffect
 from app.extras.quality.gauge_line import Gauge, NoGauge, Reading

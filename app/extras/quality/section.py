@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from app.desk.desk import Desk
-from app.desk.formats import fixed
+from app.desk.status.formats import fixed
 from app.extras.quality.parts_data import PartsData, parts_of
 from app.extras.quality.plots import ChartDrawing
 from app.offsets.offset_values import Mode, to_mm

@@ -93,7 +93,7 @@ def _write(found: ShiftFigures, path: Path, *, metric: bool) -> None:
 
 
 def _text(found: ShiftFigures) -> str:
-    from app.desk.formats import duration
+    from app.desk.status.formats import duration
     from app.extras.quality.shift_page import facts, title_of
 
     lines = [title_of(found, ""), *found.notes, *(f"{name}: {words}" for name, words in facts(found))]

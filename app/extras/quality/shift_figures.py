@@ -11,7 +11,7 @@ from datetime import datetime
 from itertools import pairwise
 from typing import NamedTuple
 
-from app.desk.formats import duration, local_time
+from app.desk.status.formats import duration, local_time
 from app.desk.translation import tr
 from app.extras.quality.parts_data import feature_of
 from app.extras.quality.shift_times import Shift

@@ -7,10 +7,10 @@ from datetime import datetime
 from functools import partial
 from pathlib import Path
 
+from app.desk.background_work import Latest
 from app.desk.desk import Desk
-from app.desk.formats import duration
-from app.desk.latest import Latest
-from app.desk.sheet import Key, Row, Sheet
+from app.desk.pages.sheet import Key, Row, Sheet
+from app.desk.status.formats import duration
 from app.desk.translation import tr
 from app.extras.quality.shift_figures import ShiftFigures, shift_figures
 from app.extras.quality.shift_page import facts, shift_html, title_of

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from datetime import datetime
 from html import escape
 
-from app.desk.formats import duration, fixed, local_time
+from app.desk.status.formats import duration, fixed, local_time
 from app.desk.translation import spoken, tr
 from app.extras.quality.parts_data import feature_of
 from app.extras.quality.shift_figures import ProgramFigures, ShiftFigures, stamp

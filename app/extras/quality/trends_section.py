@@ -9,8 +9,8 @@ import numpy as np
 
 from app.desk.arithmetic import EntryError
 from app.desk.desk import Desk
-from app.desk.formats import NOTHING, duration, fixed
-from app.desk.sheet import Row, Sheet, edited
+from app.desk.pages.sheet import Row, Sheet, edited
+from app.desk.status.formats import NOTHING, duration, fixed
 from app.desk.translation import tr
 from app.extras.quality.plots import ChartDrawing, Curve, Level, Plot
 from app.extras.quality.section import QualitySection

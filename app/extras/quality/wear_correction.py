@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from app.desk.arithmetic import EntryError
 from app.desk.desk import Desk
-from app.desk.formats import fixed
+from app.desk.status.formats import fixed
 from app.desk.translation import tr
 from app.extras.quality.parts_data import PartsData, feature_of
 from app.extras.quality.section import size

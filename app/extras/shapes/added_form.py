@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
-from app.desk.sheet import Key
+from app.desk.pages.sheet import Key
 from app.extras.shapes.shape_form import ShapeForm
 from core.extras.shapes.shape import Shape
 from core.extras.shapes.shape_setting import Setting

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 from app.compose.extra import Extra
 
 if TYPE_CHECKING:
-    from app.compose.journal import Journal
+    from app.compose.runs.journal import Journal
     from app.desk.desk import Desk
-    from app.desk.program_loading import LoadingSteps
+    from app.desk.programs.program_loading import LoadingSteps
     from app.extras.shapes.shapes_model import Shapes
     from core.json_key import Output
     from core.machine.machine_model import Machine

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from app.desk.arithmetic import CHARACTERS, EntryError, value_of
-from app.desk.sheet import edited
+from app.desk.pages.sheet import edited
 from app.desk.translation import tr
 from core.extras.shapes.contour import Row, row_word
 from core.extras.shapes.number_words import plain

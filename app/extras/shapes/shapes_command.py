@@ -73,7 +73,7 @@ def add_parser(subparsers: SubParsers) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Write the program and prove it; 1 when it would have errors. Raises CommandError."""
-    from app.compose.machine_setup import read_machine
+    from app.compose.machine.machine_setup import read_machine
 
     machine = read_machine(args.machine)
     dialect = _language(args.out, machine)

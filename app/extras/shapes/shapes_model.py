@@ -6,9 +6,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from app.desk.editor_panel import PanelModel
-from app.desk.latest import Latest
-from app.desk.sheet import STEPS, Key
+from app.desk.background_work import Latest
+from app.desk.pages.editor_panel import PanelModel
+from app.desk.pages.sheet import STEPS, Key
 from app.desk.translation import tr
 from app.extras.shapes.added_form import AddedForm
 from app.extras.shapes.shape_form import ShapeForm

@@ -9,10 +9,10 @@ from app.compose.extra import Close, Extra, Tell
 from app.desk.page_description import PageEntry
 
 if TYPE_CHECKING:
-    from app.compose.check_rows import Answers
-    from app.compose.journal import Journal
+    from app.compose.backends.backend_entry import Answers
+    from app.compose.runs.journal import Journal
     from app.desk.desk import Desk
-    from app.desk.program_loading import LoadingSteps
+    from app.desk.programs.program_loading import LoadingSteps
     from core.json_key import Output
     from core.machine.machine_model import Machine
     from core.table_schema import Driver

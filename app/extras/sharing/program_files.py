@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from hashlib import sha256
 from pathlib import Path
 
-from app.desk.program_folder import ENDINGS
+from app.desk.programs.program_folder import ENDINGS
 from core.extras.sharing.shared_versions import key_of
 from core.extras.sharing.version_record import MOST_BYTES
 from core.input_file import input_bytes

@@ -61,7 +61,7 @@ def add_parser(subparsers: SubParsers) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Does what ``args`` asks; raises CommandError with one sentence."""
-    from app.compose.machine_setup import read_machine
+    from app.compose.machine.machine_setup import read_machine
     from app.extras.sharing.place_answer import answered
     from app.extras.sharing.sharing import TakeError
     from app.extras.sharing.sharing_desk import sharing_of

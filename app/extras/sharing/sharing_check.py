@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.compose.check_rows import Answers, Row
+from app.compose.backends.backend_entry import Answers, Row
 from app.extras.sharing.sharing_desk import place_of
 from core.extras.sharing.sharing_errors import SharingError
 from core.extras.sharing.sharing_table import SharingTable

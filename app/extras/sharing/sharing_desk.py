@@ -9,7 +9,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.compose.journal import Journal
+from app.compose.runs.journal import Journal
 from app.desk.command_errors import CommandError
 from app.desk.data_folder import data_folder
 from app.desk.desk import Desk

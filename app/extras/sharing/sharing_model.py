@@ -7,12 +7,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from textwrap import wrap
 
+from app.desk.background_work import Latest
 from app.desk.desk import Desk
-from app.desk.formats import NOTHING, local_time
-from app.desk.latest import Latest
-from app.desk.machine_status import Tone
-from app.desk.prompt_line import UNDER_WAY
-from app.desk.sheet import STEPS, Key, Row, Sheet
+from app.desk.pages.sheet import STEPS, Key, Row, Sheet
+from app.desk.status.formats import NOTHING, local_time
+from app.desk.status.machine_status import Tone
+from app.desk.status.prompt_line import UNDER_WAY
 from app.desk.translation import tr
 from app.editor.versions import NoArchive, VersionHistory, lines_of
 from app.extras.sharing.sharing import Shared, Sharing

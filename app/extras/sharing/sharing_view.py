@@ -8,9 +8,9 @@ from functools import partial
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QWidget
 
-from app.desk.machine_status import MachineStatus
-from app.desk.program_loading import Loaded
-from app.desk.sheet import Key
+from app.desk.pages.sheet import Key
+from app.desk.programs.program_loading import Loaded
+from app.desk.status.machine_status import MachineStatus
 from app.editor.versions_view import VersionList
 from app.extras.sharing.sharing_model import SharingModel
 from app.screen.page_base import Host, KeyActions

@@ -12,8 +12,8 @@ import can.interfaces.virtual
 from can.interfaces.virtual import VirtualBus
 
 import resources
-from app.compose.canopen_backend import canopen_machine, canopen_peers
-from app.compose.machine_files import parse_machine
+from app.compose.backends.canopen_backend import canopen_machine, canopen_peers
+from app.compose.machine.machine_files import parse_machine
 from core.machine.machine_model import Machine
 from drivers.canopen.canopen_machine import CanopenMachine
 from drivers.simulators.canopen_devices import CanopenDevices

@@ -5,9 +5,9 @@ from __future__ import annotations
 import dataclasses
 
 import resources
-from app.compose.backends import connect
-from app.compose.canopen_backend import can_driven
-from app.compose.machine_files import load_machine, parse_machine
+from app.compose.backends.canopen_backend import can_driven
+from app.compose.backends.connection import connect
+from app.compose.machine.machine_files import load_machine, parse_machine
 from core.machine.machine_model import Machine
 from core.ports import DriverError
 from drivers.operator_station import PanelStation

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 import resources
-from app.compose.machine_files import parse_machine
+from app.compose.machine.machine_files import parse_machine
 from core.ports import Segments
 from core.table_schema import Finding, MachineFileError
 from drivers.canopen.canopen_config import AxisConfig

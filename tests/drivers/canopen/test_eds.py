@@ -8,7 +8,7 @@ from pathlib import Path
 import canopen
 import pytest
 
-from app.compose.canopen_backend import canopen_config
+from app.compose.backends.canopen_backend import canopen_config
 from core.machine.machine_model import Machine
 from core.ports import DriverError
 from drivers.canopen.canopen_objects import drive_objects

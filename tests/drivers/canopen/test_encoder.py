@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from app.compose.canopen_backend import canopen_config, canopen_peers
+from app.compose.backends.canopen_backend import canopen_config, canopen_peers
 from core.faults import code_of
 from core.machine.machine_model import Machine
 from core.ports import DriverError

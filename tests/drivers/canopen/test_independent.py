@@ -9,7 +9,7 @@ import canopen
 import pytest
 from canopen.profiles.p402 import BaseNode402
 
-from app.compose.canopen_backend import canopen_peers
+from app.compose.backends.canopen_backend import canopen_peers
 from drivers.canopen.canopen_objects import drive_objects
 from drivers.canopen.canopen_table import CanopenTable
 from drivers.simulators.canopen_devices import CanopenDevices

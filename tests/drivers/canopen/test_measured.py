@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from app.compose.inverter_backend import ClearingAxes
+from app.compose.backends.inverter_backend import ClearingAxes
 from core.executor.commands import Reset
 from core.executor.executor import Executor
 from core.executor.snapshot import State

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import resources
-from app.compose.machine_files import parse_machine
+from app.compose.machine.machine_files import parse_machine
 from core.machine.machine_model import Machine
 from core.ports import Segments
 from tests.drivers.canopen.bench import CanBench

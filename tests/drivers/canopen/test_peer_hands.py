@@ -6,7 +6,7 @@ import os
 
 import pytest
 
-from app.compose.played_machine import HELP, Typed, obey
+from app.compose.backends.played_machine import HELP, Typed, obey
 from tests.drivers.canopen.bench import CanBench
 from tests.texts import opening, text
 

@@ -15,7 +15,7 @@ import pytest
 from canopen import ObjectDictionary
 from canopen.objectdictionary import ODVariable
 
-from app.compose.canopen_backend import canopen_machine, canopen_peers
+from app.compose.backends.canopen_backend import canopen_machine, canopen_peers
 from core.machine.machine_model import Machine
 from core.ports import DriverError
 from drivers.canopen import canopen_objects as od

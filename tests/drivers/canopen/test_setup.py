@@ -8,7 +8,7 @@ from collections.abc import Callable
 import pytest
 from canopen.sdo.exceptions import SdoAbortedError
 
-from app.compose.canopen_backend import canopen_machine, canopen_peers
+from app.compose.backends.canopen_backend import canopen_machine, canopen_peers
 from core.faults import code_of
 from core.machine.machine_model import Machine
 from core.ports import DriverError

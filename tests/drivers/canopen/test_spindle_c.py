@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
-from app.compose.backends import connect
+from app.compose.backends.connection import connect
 from core.executor.commands import CycleStart, EnableDrives, FeedHold, Jog, Reset
 from core.executor.snapshot import State
 from core.machine.machine_model import Machine

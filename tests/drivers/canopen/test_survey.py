@@ -7,7 +7,7 @@ import re
 
 import pytest
 
-from app.compose.canopen_backend import canopen_config, canopen_peers
+from app.compose.backends.canopen_backend import canopen_config, canopen_peers
 from core.machine.machine_model import Machine
 from core.ports import DriverError
 from drivers.canopen.canopen_survey import Answer, survey

@@ -9,7 +9,7 @@ from typing import ClassVar
 
 import can
 
-from app.compose.canopen_backend import canopen_machine
+from app.compose.backends.canopen_backend import canopen_machine
 from core.machine.machine_model import Machine
 from core.ports import ALL_UNKNOWN, DriverError, Unknown
 from drivers.canopen.canopen_machine import CanopenMachine

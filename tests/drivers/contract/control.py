@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from app.compose.machine_setup import setup_for
+from app.compose.machine.machine_setup import setup_for
 from app.compose.workshop import proof_of
 from core.executor.commands import Command, ConfirmStart, EnableDrives, LoadJob
 from core.executor.executor import Executor

@@ -6,7 +6,7 @@ from collections import deque
 from collections.abc import Callable, Mapping
 from typing import ClassVar
 
-from app.compose.grblhal_backend import grblhal_config
+from app.compose.backends.grblhal_backend import grblhal_config
 from core.machine.machine_model import Machine
 from core.ports import ALL_UNKNOWN
 from drivers.grblhal.grblhal_machine import GrblMachine

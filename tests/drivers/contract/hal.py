@@ -10,9 +10,9 @@ from dataclasses import replace
 from typing import ClassVar
 
 import resources
-from app.compose.hal_backend import hal_config
-from app.compose.machine_files import parse_machine
-from app.compose.simulated_backend import sim_config
+from app.compose.backends.hal_backend import hal_config
+from app.compose.backends.simulated_backend import sim_config
+from app.compose.machine.machine_files import parse_machine
 from core.machine.machine_model import Machine
 from core.ports import ALL_UNKNOWN
 from drivers.hal.hal_machine import HalMachine

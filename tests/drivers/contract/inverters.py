@@ -9,8 +9,8 @@ from functools import partial
 from typing import ClassVar
 
 import resources
-from app.compose.inverter_backend import ClearingAxes, halt_with, unknown_with
-from app.compose.machine_files import parse_machine
+from app.compose.backends.inverter_backend import ClearingAxes, halt_with, unknown_with
+from app.compose.machine.machine_files import parse_machine
 from core.ports import Unknown
 from drivers.inverter.inverter_attendant import PRESS, AttendantThread
 from drivers.inverter.inverter_spindle import InverterSpindle, attendant

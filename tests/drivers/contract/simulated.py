@@ -6,8 +6,8 @@ import dataclasses
 from collections.abc import Callable, Mapping
 from typing import ClassVar
 
-from app.compose.machine_files import load_machine
-from app.compose.simulated_backend import simulated
+from app.compose.backends.simulated_backend import simulated
+from app.compose.machine.machine_files import load_machine
 from core.machine.machine_model import InputModel, Machine
 from core.ports import ALL_UNKNOWN, DriverError, MachinePorts
 from drivers.feeder.feeder_line import Line, Link, LoopLink, cleared

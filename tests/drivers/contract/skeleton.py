@@ -10,8 +10,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import ClassVar
 
-from app.compose.machine_files import load_machine
-from app.compose.simulated_backend import sim_config
+from app.compose.backends.simulated_backend import sim_config
+from app.compose.machine.machine_files import load_machine
 from core.message import Message
 from core.ports import (
     ALL_UNKNOWN,

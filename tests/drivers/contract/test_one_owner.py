@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
-from app.compose.serial_ports import open_wire as open_line
+from app.compose.backends.serial_ports import open_wire as open_line
 from core.ports import DriverError
 from drivers.grblhal.grblhal_wire import open_wire as open_controller
 from drivers.serial_line import LineSettings

@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterator
 import pytest
 
 import resources
-from app.compose.machine_files import parse_machine, shipped_machine
-from app.compose.machine_setup import setup_for
+from app.compose.machine.machine_files import parse_machine, shipped_machine
+from app.compose.machine.machine_setup import setup_for
 from app.compose.workshop import proof_of
 from core.executor.commands import LoadJob
 from core.executor.job import make_job

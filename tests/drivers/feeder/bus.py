@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 import resources
-from app.compose.canopen_backend import canopen_peers
-from app.compose.machine_files import load_machine
+from app.compose.backends.canopen_backend import canopen_peers
+from app.compose.machine.machine_files import load_machine
 from core.ports import DriverError
 from drivers.simulators.canopen_devices import CanopenDevices
 from drivers.waiting import StepClock

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from app.compose.feeder_process import FeederProcess
-from app.compose.machine_files import load_machine
+from app.compose.backends.feeder_process import FeederProcess
+from app.compose.machine.machine_files import load_machine
 from core.faults import code_of
 from core.ports import Segments
 from drivers.feeder.feeder_ports import feeder_ports

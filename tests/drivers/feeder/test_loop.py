@@ -15,9 +15,9 @@ from collections.abc import Iterator
 import pytest
 
 import resources
-from app.compose.backend_entry import NO_PRIORITY
-from app.compose.feeder_process import FeederProcess, beat, without_priority
-from app.compose.machine_files import parse_machine
+from app.compose.backends.backend_entry import NO_PRIORITY
+from app.compose.backends.feeder_process import FeederProcess, beat, without_priority
+from app.compose.machine.machine_files import parse_machine
 from core.faults import code_of
 from core.ports import DriverError, MachinePorts
 from drivers.feeder import feeder_line, feeder_loop

@@ -7,8 +7,8 @@ import threading
 import pytest
 
 import resources
-from app.compose.feeder_process import FeederProcess
-from app.compose.machine_files import parse_machine
+from app.compose.backends.feeder_process import FeederProcess
+from app.compose.machine.machine_files import parse_machine
 from drivers.waiting import RealClock
 
 

@@ -7,9 +7,9 @@ from collections.abc import Callable
 from typing import Any
 
 import resources
-from app.compose.grblhal_backend import grblhal_config
-from app.compose.machine_files import parse_machine
-from app.compose.machine_setup import setup_for
+from app.compose.backends.grblhal_backend import grblhal_config
+from app.compose.machine.machine_files import parse_machine
+from app.compose.machine.machine_setup import setup_for
 from app.compose.workshop import proof_of
 from core.executor.commands import Command, ConfirmStart, EnableDrives, LoadJob
 from core.executor.executor import Executor

@@ -7,7 +7,7 @@ import threading
 
 import pytest
 
-from app.compose.grblhal_backend import grblhal_config
+from app.compose.backends.grblhal_backend import grblhal_config
 from core.executor.commands import EnableDrives, Reset
 from core.executor.snapshot import State
 from core.ports import DriverError, LineOp

@@ -11,9 +11,9 @@ from pathlib import Path
 import pytest
 
 from app.cli.main import main
-from app.compose.backends import connect
-from app.compose.grblhal_backend import grblhal_config
-from app.compose.machine_files import load_machine, parse_machine
+from app.compose.backends.connection import connect
+from app.compose.backends.grblhal_backend import grblhal_config
+from app.compose.machine.machine_files import load_machine, parse_machine
 from core.ports import DriverError
 from core.table_schema import MachineFileError
 from drivers.simulators.grblhal_far_end import TcpEnd, serve

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from app.compose.grblhal_backend import grblhal_config
+from app.compose.backends.grblhal_backend import grblhal_config
 from core.ports import ArcOp, DriverError, LineOp, RapidOp, ThreadOp
 from drivers.grblhal.grblhal_codes import jog_line, line_of, number
 from drivers.grblhal.grblhal_machine import GrblMachine

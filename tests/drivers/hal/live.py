@@ -11,9 +11,9 @@ from pathlib import Path
 
 import pytest
 
-from app.compose.backends import connect
-from app.compose.machine_files import load_machine
-from app.compose.machine_setup import setup_for
+from app.compose.backends.connection import connect
+from app.compose.machine.machine_files import load_machine
+from app.compose.machine.machine_setup import setup_for
 from app.compose.workshop import proof_of
 from core.executor.commands import Command, ConfirmStart, CycleStart, EnableDrives, LoadJob, Reset
 from core.executor.executor import TICK, Executor

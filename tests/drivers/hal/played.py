@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from app.compose.hal_backend import hal_config
-from app.compose.machine_files import parse_machine
-from app.compose.simulated_backend import sim_config
+from app.compose.backends.hal_backend import hal_config
+from app.compose.backends.simulated_backend import sim_config
+from app.compose.machine.machine_files import parse_machine
 from drivers.hal.bridge.packets import flat
 from drivers.hal.hal_machine import HalMachine
 from drivers.setpoint_pieces import Piece

@@ -15,8 +15,8 @@ from pathlib import Path
 import pytest
 
 import resources
-from app.compose.hal_file import hal_file
-from app.compose.machine_files import shipped_machine
+from app.compose.backends.hal_file import hal_file
+from app.compose.machine.machine_files import shipped_machine
 from drivers.hal.boards.hal_lines import HalFile, text_of
 from tests.drivers.hal.board_pins import PINS, without_board
 

@@ -7,7 +7,7 @@ import math
 import pytest
 
 import resources
-from app.compose.machine_files import parse_machine
+from app.compose.machine.machine_files import parse_machine
 from core.faults import code_of
 from core.ports import ALL_UNKNOWN, DriverError
 from core.table_schema import MachineFileError

@@ -25,7 +25,7 @@ PROGRAM = f"G90G94\nM03S1000\nM08\nG01X{{}}Z0F{SPEED / 25.4 * 60:.0f}\nM30\n"
 FAR = 3.9  # in of X, to which it goes from the other side
 AHEAD = 0.1  # s that HAL holds
 RAMP = SPEED**2 / (2 * 3048.0)  # mm
-BRIDGE, FEEDER, THREAD = "bridge_process.py", "app.compose.feeder_process", "rtapi_app"
+BRIDGE, FEEDER, THREAD = "bridge_process.py", "app.compose.backends.feeder_process", "rtapi_app"
 
 
 @pytest.fixture(scope="module")

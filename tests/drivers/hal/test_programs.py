@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from app.compose.machine_answers import check_ports
-from app.compose.machine_files import load_machine, shipped_machine
+from app.compose.backends.machine_answers import check_ports
+from app.compose.machine.machine_files import load_machine, shipped_machine
 from tests.drivers.hal.lathes import PATIENT, lathe, run
 from tests.texts import text
 

@@ -8,8 +8,8 @@ from typing import cast
 import pytest
 
 import resources
-from app.compose.hal_backend import hal_config
-from app.compose.machine_files import parse_machine
+from app.compose.backends.hal_backend import hal_config
+from app.compose.machine.machine_files import parse_machine
 from core.faults import code_of
 from core.ports import DriverError
 from drivers.hal.hal_axes import HalAxes

@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 import resources
-from app.compose.hal_backend import hal_config
-from app.compose.machine_files import parse_machine
+from app.compose.backends.hal_backend import hal_config
+from app.compose.machine.machine_files import parse_machine
 from core.ports import DriverError
 from drivers.hal.hal_config import HalConfig
 from drivers.hal.hal_session import PREFIX, HalSession

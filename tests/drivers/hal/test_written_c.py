@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 import resources
-from app.compose.hal_file import hal_file
-from app.compose.machine_files import parse_machine
+from app.compose.backends.hal_file import hal_file
+from app.compose.machine.machine_files import parse_machine
 from core.table_schema import MachineFileError
 from drivers.hal.boards.hal_lines import HalFile, text_of
 from tests.drivers.hal.lathes import Changes, changed

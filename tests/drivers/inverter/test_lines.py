@@ -12,10 +12,10 @@ import pytest
 
 import resources
 from app.cli.main import main
-from app.compose.backend_entry import Connected
-from app.compose.backends import connect
-from app.compose.machine_answers import check_ports
-from app.compose.machine_files import load_machine
+from app.compose.backends.backend_entry import Connected
+from app.compose.backends.connection import connect
+from app.compose.backends.machine_answers import check_ports
+from app.compose.machine.machine_files import load_machine
 from core.faults import code_of
 from core.machine.machine_model import Machine
 from core.ports import DriverError

@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 
-from app.compose.inverter_backend import SlidesAlone
+from app.compose.backends.inverter_backend import SlidesAlone
 from core.ports import FloatArray
 from drivers.inverter.inverter_family import Look
 from drivers.inverter.inverter_spindle import InverterSpindle

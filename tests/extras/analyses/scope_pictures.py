@@ -16,7 +16,7 @@ from typing import Any
 
 from PySide6.QtWidgets import QApplication
 
-from app.compose.journal import Journal
+from app.compose.runs.journal import Journal
 from app.extras.analyses.analyses import Analyses
 from app.scope.scope_model import Scope
 from app.screen.look import Look, dress, load_fonts

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.compose.machine_files import load_machine
+from app.compose.machine.machine_files import load_machine
 from app.extras.analyses.analyses import Kind, analysed
 from app.extras.analyses.axis_response import last_move, response_sheet
 from core.records.record import AnalysisError

@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 
-from app.compose.machine_files import load_machine
+from app.compose.machine.machine_files import load_machine
 from app.extras.analyses.analyses import Kind, analysed
 from app.extras.analyses.drive_test_figures import (
     TESTED,

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from app.compose.machine_files import load_machine
+from app.compose.machine.machine_files import load_machine
 from app.extras.analyses.analyses import Analyses, Kind, analysed, scaled
 from app.extras.analyses.spindle_response import SpindleResponse, last_run_up
 from core.records.record import AnalysisError, FloatArray, Record

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from app.desk.latest import AbandonedError, Watch
+from app.desk.background_work import AbandonedError, Watch
 from app.extras.drawings.added_drawing import AddedDrawing
 from app.extras.drawings.drawing_form import DrawingForm
 from app.extras.drawings.drawing_plan import Planner

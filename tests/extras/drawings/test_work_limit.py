@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from app.desk.latest import AbandonedError
+from app.desk.background_work import AbandonedError
 from app.extras.drawings.drawing_plan import Asked, Planner
 from core.extras.drawings.contour_walk import nets, outer_side
 from core.extras.drawings.drawing import Drawing, DrawingError, Drawn

@@ -15,7 +15,7 @@ from xml.etree import ElementTree
 import pytest
 
 import resources
-from app.compose.machine_files import load_machine, named_machine
+from app.compose.machine.machine_files import load_machine, named_machine
 from app.compose.screen_desk import build_desk
 from app.extras.mtconnect.driver.mtconnect_table import MtconnectTable
 from app.extras.mtconnect.shop_floor import adapter_of, device_model, device_of

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import partial
 
-from app.compose.machine_files import load_machine
+from app.compose.machine.machine_files import load_machine
 from app.compose.stored_offsets import read_offsets, setup_with
 from app.compose.workshop import samples, thumbnails
 from app.desk.kept_part import kept_part

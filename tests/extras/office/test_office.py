@@ -20,8 +20,8 @@ import numpy as np
 import pytest
 from PySide6.QtGui import QImage
 
-from app.compose.machine_answers import check_ports
-from app.compose.machine_files import load_machine, parse_machine
+from app.compose.backends.machine_answers import check_ports
+from app.compose.machine.machine_files import load_machine, parse_machine
 from app.extras.office import other_desks
 from app.extras.office.alarm_drawing import HIGH, alarm_drawing
 from app.extras.office.office_desk import AlarmDrawing, PartPicture

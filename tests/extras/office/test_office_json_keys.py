@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from datetime import UTC, datetime
 
-from app.compose.machine_files import shipped_machine
+from app.compose.machine.machine_files import shipped_machine
 from app.extras.office.announcements import Announcement
 from app.extras.office.office_json_keys import EVENT, OFFICE
 from app.extras.office.office_status import OfficeLook

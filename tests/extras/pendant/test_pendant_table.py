@@ -7,9 +7,9 @@ from dataclasses import replace
 import pytest
 
 import resources
-from app.compose.backends import connect
-from app.compose.machine_answers import check_ports
-from app.compose.machine_files import parse_machine
+from app.compose.backends.connection import connect
+from app.compose.backends.machine_answers import check_ports
+from app.compose.machine.machine_files import parse_machine
 from app.extras.pendant.driver.input_devices import AxisRange
 from app.extras.pendant.driver.pendant_table import PendantModel
 from app.extras.pendant.pendant_wire import wired, with_pendant

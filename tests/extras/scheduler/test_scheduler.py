@@ -14,8 +14,8 @@ from typing import NamedTuple
 
 import pytest
 
-from app.cli import proof_work
-from app.cli.proof_work import OtherVersionError, proof_of
+from app.cli.proofs import proof_work
+from app.cli.proofs.proof_work import OtherVersionError, proof_of
 from core.language.source import Source
 from tests.benchmarks.bench_folder import program
 from tests.cli.conftest import Turndesk, home, offsets, turndesk

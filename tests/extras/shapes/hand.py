@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from functools import cache
 
-from app.compose.machine_files import load_machine
-from app.compose.machine_setup import setup_for
+from app.compose.machine.machine_files import load_machine
+from app.compose.machine.machine_setup import setup_for
 from app.extras.shapes.shapes_model import Shapes
 from core.extras.shapes.shape_setting import Shop
 from core.interpreter.job_setup import SecondaryOffset, Setup, ToolOffset

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from app.compose.journal import Journal
+from app.compose.runs.journal import Journal
 from app.desk.desk import Desk
 from app.screen.page_base import Page
 

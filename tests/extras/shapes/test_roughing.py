@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 import resources
-from app.compose.machine_files import parse_machine
+from app.compose.machine.machine_files import parse_machine
 from app.extras.shapes.shapes_desk import shop_of
 from core.extras.shapes.contour import Row
 from core.extras.shapes.cutting_data import MATERIALS

@@ -8,8 +8,8 @@ from math import atan2, degrees, hypot
 
 import pytest
 
-from app.compose.machine_files import shipped_machine
-from app.compose.machine_setup import setup_for
+from app.compose.machine.machine_files import shipped_machine
+from app.compose.machine.machine_setup import setup_for
 from core.extras.shapes.pieces import pieces, setting_at, with_shape
 from core.extras.shapes.shape import filled
 from core.extras.shapes.shape_fields import Value

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.compose.machine_setup import setup_for
+from app.compose.machine.machine_setup import setup_for
 from app.extras.shapes.shapes_model import Shapes
 from core.extras.shapes.contour import Row
 from core.extras.shapes.pieces import pieces, renewed, setting_at, with_shape

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 import resources
-from app.compose.machine_answers import check_ports
-from app.compose.machine_files import parse_machine
+from app.compose.backends.machine_answers import check_ports
+from app.compose.machine.machine_files import parse_machine
 from app.extras.sharing import share_json_keys
 from core.store.store import Store
 from core.table_schema import MachineFileError

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import pytest
 
-from app.compose.machine_files import named_machine
-from app.compose.machine_setup import setup_for
+from app.compose.machine.machine_files import named_machine
+from app.compose.machine.machine_setup import setup_for
 from core.interpreter.actions import ProgramStop, SpindleRun, ToolChange
 from core.interpreter.checkpoint import AxesLeg, Begin, Checkpoint, FunctionStep
 from core.interpreter.dialects import ReadProgram

@@ -11,10 +11,10 @@ from PySide6.QtGui import QColor
 from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
-from app.compose.journal import Journal
+from app.compose.runs.journal import Journal
 from app.compose.screen_desk import desk_and_executor
 from app.compose.stored_offsets import NONE
-from app.desk.formats import local_time
+from app.desk.status.formats import local_time
 from app.editor.editor import Editor, Stage, enter
 from app.editor.findings_view import FindingList
 from app.editor.heading_view import editor_places

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 from PySide6.QtCore import Qt
 
-from app.desk import page_entry
-from app.desk.program_loading import Phase
+from app.desk.pages import page_entry
+from app.desk.programs.program_loading import Phase
 from app.editor import editor_messages as messages
 from app.editor.editor import Stage
 from app.programs.program_list import ProgramList

@@ -11,7 +11,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QDialog
 from pytestqt.qtbot import QtBot
 
-from app.desk.interrupted_notice import NoticeRow
+from app.desk.status.interrupted_notice import NoticeRow
 from app.screen.window_layout import FINGER
 from core.executor.snapshot import State
 from tests.screen.jog.bench import INCH, JogBench, Key

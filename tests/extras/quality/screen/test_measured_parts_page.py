@@ -11,7 +11,7 @@ from threading import Event
 import pytest
 from pytestqt.qtbot import QtBot
 
-from app.desk.sheet import Sheet
+from app.desk.pages.sheet import Sheet
 from app.extras.quality.gauge_line import NoGauge, Reading
 from app.extras.quality.quality_functions import QualityFunctions
 from app.extras.quality.quality_view import MeasuredPartsPage

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from app.compose.journal import Journal
+from app.compose.runs.journal import Journal
 from app.desk.data_folder import data_folder
 from app.desk.desk import Desk
 from app.special.special_view import SpecialPage

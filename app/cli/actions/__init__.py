@@ -1,0 +1,1 @@
+"""What commands do, imported only when they do it."""

@@ -1,0 +1,1 @@
+"""Figures as the commands show them, for a person and as JSON."""

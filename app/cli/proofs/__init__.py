@@ -1,0 +1,1 @@
+"""Proving of many programs, on all cores and once only."""

@@ -1,0 +1,373 @@
+"""``turndesk prove DIR``: programs of folders, proved on all cores, told in the order of names."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import sys
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+from concurrent.futures import CancelledError, Executor, Future
+from dataclasses import dataclass, replace
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app.cli.part_options import with_kept
+from app.cli.program_options import read_source
+from app.cli.progress_bar import Progress
+from app.cli.proofs.proof_cache import ProofCache
+from app.cli.proofs.proof_job import FittingJobs, ProofJob, on_machine
+from app.cli.proofs.proof_pool import KILLED, Proving, Workers, WorkerSource, cores
+from app.cli.proofs.proof_work import (
+    OtherVersionError,
+    Proof,
+    code_version,
+    proof_of,
+)
+from app.cli.proofs.report_file import ReportFile, report_file
+from app.compose.extra import proof_workers
+from app.compose.known_part import kept_with_all
+from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, EXIT_USAGE, CommandError
+from core.language.source import Source
+from core.message import Message
+
+if TYPE_CHECKING:
+    from core.proving.program_tools import PartSetting
+
+
+@dataclass(frozen=True, slots=True)
+class ProgramFiles:
+    """The programs in the order of their names, and how many files of the folders are none."""
+
+    paths: tuple[Path, ...]
+    others: int
+
+
+def program_files(names: Iterable[str]) -> ProgramFiles:
+    """The programs that files and folders name; a file that is named counts whatever its ending is.
+
+    Raises CommandError for a folder that cannot be read or holds no program.
+    """
+    found: set[Path] = set()
+    others = 0
+    for path in map(Path, _named(names)):
+        if not path.is_dir():
+            found.add(path)
+            continue
+        there = list(_files(path))
+        programs = {each for each in there if _is_program(each)}
+        if not programs:
+            raise CommandError(
+                Message(
+                    "{path} does not contain any programs{there_count}; use a different folder",
+                    path=path,
+                    there_count=_among(len(there)),
+                ),
+                "no-programs",
+            )
+        found |= programs
+        others += len(there) - len(programs)
+    return ProgramFiles(tuple(sorted(found, key=_by_name)), others)
+
+
+def _named(names: Iterable[str]) -> Iterator[str]:
+    """They, unless one is empty, as a script's variable may be: that would be the folder one stands in."""
+    for name in names:
+        if not name:
+            raise CommandError("the file name is empty; use . for the programs in this folder", "empty-name")
+        yield name
+
+
+def _among(count: int) -> str:
+    return Message(", only {count} other file{value}", count=count, value="s" * (count > 1)) if count else ""
+
+
+def _by_name(path: Path) -> tuple[list[str], str]:
+    return [part.lower() for part in path.parts], str(path)
+
+
+def _files(folder: Path) -> Iterator[Path]:
+    """All files in and below a folder but those of hidden folders; links to folders lead nowhere."""
+    for where, folders, names in os.walk(folder, onerror=_unreadable):
+        folders[:] = [name for name in folders if not name.startswith(".")]
+        yield from (Path(where) / name for name in names)
+
+
+def _unreadable(error: OSError) -> None:
+    raise CommandError(
+        Message(
+            "{file} cannot be read ({cause}); check its permissions",
+            file=error.filename,
+            cause=error.strerror,
+        ),
+        "unreadable",
+    ) from error
+
+
+def _is_program(path: Path) -> bool:
+    from app.desk.programs.program_folder import ENDINGS
+
+    return path.suffix.lower() in ENDINGS and not path.name.startswith(".") and path.is_file()
+
+
+def prove_many(args: argparse.Namespace, jobs: FittingJobs) -> int:
+    """Prove all programs; 1 when any has errors, 2 when one cannot be read."""
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    files = program_files(args.files)
+    with report_file(args) as report:
+        run = _Run(args, jobs, files, _workers(args), report)
+        run.prove()
+    return run.outcome()
+
+
+def _workers(args: argparse.Namespace) -> WorkerSource:
+    if args.scheduler is None:
+        return Workers(args.jobs if args.jobs is not None else cores())
+    module, _, name = proof_workers().rpartition(".")
+    source: WorkerSource = getattr(import_module(module), name)(args.scheduler)
+    return source
+
+
+@dataclass(frozen=True, slots=True)
+class _Unit:
+    """One program to prove: which it is in the order of names, and where its proof will be kept."""
+
+    index: int
+    source: Source
+    job: ProofJob
+    key: str
+    cache: ProofCache | None
+
+
+class _Run:
+    """One call: what is proved, and what has been told of it."""
+
+    def __init__(
+        self, args: argparse.Namespace, jobs: FittingJobs, files: ProgramFiles, workers: WorkerSource,
+        report: ReportFile | None,
+    ) -> None:  # fmt: skip
+        from app.desk.data_folder import data_folder
+
+        self._args, self._jobs, self._files, self._workers = args, jobs, files, workers
+        self._report = report
+        names = (path.name for path in files.paths)
+        self._kept_parts = kept_with_all(names)
+        self._version = code_version() if args.scheduler is not None else ""  # our own workers have ours
+        self._folder = data_folder() / "proofs"
+        self._caches: dict[str, ProofCache] = {}  # by machine
+        self._proofs: dict[int, Proof] = {}
+        self._told = 0
+        self._progress = Progress("proving", len(files.paths))
+
+    def prove(self) -> None:
+        """Go through all programs; what has been proved is kept even when it ends in the middle."""
+        proving: Proving[_Unit, Proof] = Proving(self._workers, self._submit)
+        results = proving.results(self._units())
+        try:
+            with self._progress:
+                for unit, made in results:
+                    self._add(unit.index, self._kept(unit, made))
+        except CancelledError as error:
+            raise CommandError(
+                Message(
+                    "the connection to --scheduler {scheduler} was lost; completed proofs are saved; run "
+                    "the command again",
+                    scheduler=self._args.scheduler,
+                ),
+                "scheduler-gone",
+            ) from error
+        finally:
+            results.close()
+            for cache in self._caches.values():
+                cache.trim()
+
+    def outcome(self) -> int:
+        """The table or what is left to say, and the exit status."""
+        rows = [(path, self._proofs[k]) for k, path in enumerate(self._files.paths)]
+        others = self._files.others
+        if not self._args.json:
+            sys.stdout.write(table(rows, others))
+        elif others:
+            sys.stderr.write(f"turndesk: {others} other file{'s' * (others > 1)} skipped\n")
+        return max(_status(proof) for _, proof in rows)
+
+    def _submit(self, executor: Executor, unit: _Unit) -> Future[Proof]:
+        return executor.submit(proof_of, unit.job.packed, self._version, unit.source)
+
+    def _units(self) -> Iterator[_Unit]:
+        """The programs that no proof is kept of, one after the other as workers are ready for them."""
+        for index, path in enumerate(self._files.paths):
+            try:
+                source = read_source(path, self._args)
+                machine = self._jobs.machine_of(source)
+                common = self._jobs.of(machine)
+                job = self._job_of(source, common)
+            except CommandError as error:
+                self._add(index, Proof({}, fault=str(error)))
+                continue
+            cache, own = self._cache_of(machine, common), _own(job.setting) if job is not common else None
+            key = cache.key(source, own) if cache is not None else ""
+            found = cache.find(key) if cache is not None else None
+            if found is not None:
+                self._add(index, found)
+            else:
+                yield _Unit(index, source, job, key, cache)
+
+    def _cache_of(self, machine: str, job: ProofJob) -> ProofCache | None:
+        """What is kept of proofs on this machine; a machine that was not named is told once."""
+        if machine not in self._caches:
+            if machine:
+                sys.stderr.write(on_machine("each Klartext program", machine))
+            self._caches[machine] = ProofCache(self._folder, job)
+        return None if self._args.no_cache else self._caches[machine]
+
+    def _job_of(self, source: Source, common: ProofJob) -> ProofJob:
+        """The job of all, or with what the store keeps of the part of this program."""
+        kept = self._kept_parts.get(source.name)
+        if kept is None:
+            return common
+        return replace(common, setting=with_kept(common.setting, source.name, kept, self._args))
+
+    def _kept(self, unit: _Unit, made: Proof | BaseException) -> Proof:
+        if isinstance(made, BaseException):
+            return Proof({}, fault=f"{self._files.paths[unit.index]}: {self._why(made)}")
+        if unit.cache is not None:
+            unit.cache.keep(unit.key, made)
+        return made
+
+    def _why(self, error: BaseException) -> str:
+        """What has kept a program from its proof."""
+        if isinstance(error, self._workers.killed):
+            return KILLED
+        if isinstance(error, OtherVersionError):
+            return (
+                "the dask worker process runs a different version of TurnDesk than this "
+                "computer; install this computer's version on the worker"
+            )
+        if isinstance(error, ModuleNotFoundError) and self._version:
+            return Message(
+                "TurnDesk is not installed on the dask worker ({error}); install TurnDesk there",
+                error=error,
+            )
+        from app.cli.crash_report import keep_crash
+
+        where = keep_crash(type(error), error, error.__traceback__)
+        what = str(error).splitlines()[0] if str(error) else type(error).__name__
+        return Message(
+            "internal error in TurnDesk ({what}); please report it and include {place}",
+            what=what,
+            place=where,
+        )
+
+    def _add(self, index: int, proof: Proof) -> None:
+        if proof.report:
+            proof.report["file"] = str(self._files.paths[index])
+        self._proofs[index] = proof
+        while self._told in self._proofs:
+            self._tell(self._files.paths[self._told], self._proofs[self._told])
+            # What is in the report already is not kept twice: thousands of them are large.
+            self._proofs[self._told] = replace(self._proofs[self._told], section="")
+            self._told += 1
+        self._progress.reach(len(self._proofs))
+
+    def _tell(self, path: Path, proof: Proof) -> None:
+        """In the order of names, as soon as all before it are there."""
+        if proof.fault:
+            sys.stderr.write(f"turndesk: {proof.fault}\n")
+        elif self._args.json:
+            sys.stdout.write(json.dumps(proof.report) + "\n")
+            sys.stdout.flush()
+        if self._report is not None:
+            self._report.add(path, proof)
+
+
+def _status(proof: Proof) -> int:
+    if proof.fault:
+        return EXIT_USAGE
+    return EXIT_ERRORS if proof.count("error") else EXIT_OK
+
+
+def _own(setting: PartSetting) -> object:
+    """What counts for one program alone: what the store keeps of its part."""
+    return setting.stock, setting.clamping, setting.silenced
+
+
+_SLOWEST = 3
+_HEAD = "verdict     errors  warnings      cycle s       removed  program\n"
+
+Row = tuple[Path, Proof]
+
+
+def table(rows: Sequence[Row], others: int) -> str:
+    """All of it; ``others`` files in the folders are no programs."""
+    return _HEAD + "".join(_line(path, proof) for path, proof in rows) + _sum(rows, others) + _slowest(rows)
+
+
+def verdict(proof: Proof) -> str:
+    """One word for what proving has come to."""
+    if proof.fault:
+        return "not proved"
+    return "errors" if proof.count("error") else "proved"
+
+
+def _line(path: Path, proof: Proof) -> str:
+    word = verdict(proof)
+    if proof.fault:
+        return f"{word:10s}{'':38s}  {path}\n            {proof.fault}\n"
+    first = next(proof.findings("error"), None)
+    return (
+        f"{word:10s}{proof.count('error'):8d}{proof.count('warning'):10d}"
+        f"{_number(proof.report['cycle_time_s']):13.2f}{_removed(proof):>14s}  {path}\n"
+        + _compared(proof)
+        + (f"            line {first['line']}: {first['message']}\n" if first else "")
+    )
+
+
+def _compared(proof: Proof) -> str:
+    """What other offsets change, in one line."""
+    found = proof.report.get("compare")
+    if not isinstance(found, dict):
+        return ""
+    unit = "in" if proof.report["dialect"] == "omniturn" else "mm"
+    here, there = found["cycle_time_s"]
+    return (
+        f"            with {found['offsets']}: {found['differing']} of {len(found['features'])} diameters and"
+        f" shoulders differ, by {found['largest']:.4f} {unit} at most; cycle {there - here:+.2f} s;"
+        f" {len(found['added'])} findings new, {len(found['gone'])} gone\n"
+    )
+
+
+def _removed(proof: Proof) -> str:
+    stock = proof.report.get("stock")
+    if not isinstance(stock, dict):
+        return "–"
+    unit = "in³" if proof.report["dialect"] == "omniturn" else "mm³"
+    return f"{stock['removed_volume']:.4g} {unit}"
+
+
+def _number(value: object) -> float:
+    assert isinstance(value, int | float)
+    return float(value)
+
+
+def _sum(rows: Sequence[Row], others: int) -> str:
+    words = Counter(verdict(proof) for _, proof in rows)
+    parts = [f"{words['proved']} proved"]
+    parts += [Message("{words} with errors", words=words["errors"])] if words["errors"] else []
+    parts += [Message("{words} not proved", words=words["not proved"])] if words["not proved"] else []
+    parts += (
+        [Message("{others} other file{value} skipped", others=others, value="s" * (others > 1))]
+        if others
+        else []
+    )
+    return f"{len(rows)} program{'s' * (len(rows) != 1)}: {', '.join(parts)}\n"
+
+
+def _slowest(rows: Iterable[Row]) -> str:
+    proved = sorted((row for row in rows if row[1].seconds), key=lambda row: -row[1].seconds)
+    if not proved:
+        return ""
+    named = ", ".join(f"{path} {proof.seconds:.2f} s" for path, proof in proved[:_SLOWEST])
+    return f"slowest to prove: {named}\n"

@@ -1,0 +1,174 @@
+"""The file of ``--report``, HTML or PDF: written aside while programs are proved, in place when all are."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Protocol
+
+from app.desk.command_errors import CommandError
+from core.file_placing import put_in_place
+from core.message import Message
+
+if TYPE_CHECKING:
+    from app.cli.proofs.proof_work import Proof
+
+_TITLE = "Proof"
+_HTML, _PDF = {".html", ".htm"}, {".pdf"}
+
+
+class _Pages(Protocol):
+    """Where a report goes, a program after the other. Everything may raise OSError."""
+
+    def add(self, name: str, part: str, /) -> None:
+        """The HTML of the next program, under its name."""
+
+    def end(self) -> None:
+        """All of it is on the disk: a full one is told here, before the old report goes."""
+
+    def close(self) -> None:
+        """Let go of the file, whatever has become of it."""
+
+
+class _HtmlPages:
+    """One page for a browser."""
+
+    def __init__(self, path: Path) -> None:
+        from app.desk.translation import ENGLISH
+        from app.report.html_tables import page_head
+
+        self._file = path.open("w", encoding="utf-8", errors="backslashreplace")
+        self._file.write(page_head(_TITLE, _now(), ENGLISH))
+
+    def add(self, _name: str, part: str) -> None:
+        self._file.write(part)
+
+    def end(self) -> None:
+        from app.report.html_tables import PAGE_END
+
+        self._file.write(PAGE_END)
+        self._file.flush()
+
+    def close(self) -> None:
+        self._file.close()
+
+
+class _PdfPages:
+    """Numbered pages for a printer; each program begins a new one."""
+
+    def __init__(self, path: Path, paper: str | None) -> None:
+        from app.report.html_tables import headline
+        from app.report.pdf_file import Paper
+        from app.screen.pdf_pages import PdfPages, usual_paper
+
+        self._head = headline(_TITLE, _now())
+        self._pages = PdfPages(path, _TITLE, Paper(paper) if paper is not None else usual_paper())
+
+    def add(self, name: str, part: str) -> None:
+        self._pages.add(self._head + part, name)
+        self._head = ""
+
+    def end(self) -> None:
+        self._pages.close()
+
+    def close(self) -> None:
+        self._pages.give_up()
+
+
+class ReportFile:
+    """A report as it is written, a program after the other. Raises CommandError when the disk refuses."""
+
+    def __init__(self, path: Path, pages: _Pages) -> None:
+        self._path, self._pages = path, pages
+
+    def add(self, path: Path, proof: Proof) -> None:
+        """The section of the next program."""
+        from app.report.report_page import not_proved, program_part
+
+        part = program_part(str(path), proof.section or not_proved(proof.fault))
+        try:
+            self._pages.add(path.name, part)
+        except OSError as error:
+            raise _unwritable(self._path, error) from error
+
+    def end(self, aside: Path) -> None:
+        """The report is whole, and takes its place."""
+        try:
+            self._pages.end()
+            self._pages.close()
+            put_in_place(aside, self._path)
+        except OSError as error:
+            raise _unwritable(self._path, error) from error
+
+
+@contextlib.contextmanager
+def report_file(args: argparse.Namespace) -> Iterator[ReportFile | None]:
+    """The report of --report, None without one. What is refused is refused before anything is proved."""
+    if args.report is None:
+        if args.paper is not None:
+            raise CommandError("--paper is only for --report FILE.pdf", "paper-is-for-pdf")
+        yield None
+        return
+    path = _named(args)
+    aside = path.with_name(f".{path.name}.part")
+    try:
+        pages = _pages(aside, path.suffix.lower(), args.paper)
+    except OSError as error:
+        raise _unwritable(path, error) from error
+    try:
+        report = ReportFile(path, pages)
+        yield report
+        report.end(aside)
+    finally:
+        with contextlib.suppress(OSError):  # what could not be written before cannot be flushed now either
+            pages.close()
+        aside.unlink(missing_ok=True)
+
+
+def _named(args: argparse.Namespace) -> Path:
+    """Where it goes. Raises CommandError for what is no report."""
+    path = Path(args.report)
+    ending = path.suffix.lower()
+    if ending not in _HTML | _PDF:
+        way = Message("name the report {stem}.html or {stem2}.pdf", stem=path.stem, stem2=path.stem)
+        raise CommandError(
+            Message(
+                "--report {path}: a report must be an HTML or PDF file; {details}", path=path, details=way
+            ),
+            "report-ending",
+        )
+    if args.paper is not None and ending not in _PDF:
+        raise CommandError(
+            Message(
+                "--paper is only for PDF; for {path}, select the paper size when you print from the browser",
+                path=path.name,
+            ),
+            "paper-is-for-pdf",
+        )
+    if path.is_dir():
+        raise CommandError(
+            Message("--report {path} is a folder; specify a file name", path=path), "report-is-folder"
+        )
+    return path
+
+
+def _pages(path: Path, ending: str, paper: str | None) -> _Pages:
+    return _PdfPages(path, paper) if ending in _PDF else _HtmlPages(path)
+
+
+def _now() -> str:
+    return time.strftime("%Y-%m-%d %H:%M %z")
+
+
+def _unwritable(path: Path, error: OSError) -> CommandError:
+    return CommandError(
+        Message(
+            "--report {path} cannot be written ({cause}); check the folder, its permissions and the disk",
+            path=path,
+            cause=error.strerror,
+        ),
+        "cannot-write",
+    )

@@ -1,0 +1,1 @@
+"""Machines as their files describe them: how each backend is connected, checked and played."""

@@ -1,0 +1,192 @@
+"""Starts the feeder, and is it.
+
+``python -m app.compose.backends.feeder_process FD ZERO BELL``, with the machine on stdin.
+"""
+
+from __future__ import annotations
+
+import gc
+import pickle
+import socket
+import subprocess
+import sys
+from dataclasses import replace
+
+from app.compose.backends.backend_entry import NO_PRIORITY, backend_of, has_inverter
+from app.compose.backends.inverter_backend import with_inverter
+from core.machine.machine_model import Machine
+from core.message import Message as Text
+from core.ports import Clock, DriverError
+from drivers.canopen.canopen_nodes import CYCLIC, EVENED_OUT
+from drivers.canopen.canopen_table import CanopenTable
+from drivers.feeder.feeder_line import Line, Link, SocketLink, cleared
+from drivers.feeder.feeder_loop import TRIAL, keep_memory, late_at_trial, real_time, serve
+from drivers.feeder.feeder_messages import NOTHING, Inbox, Message, fault_of, packed, with_code
+from drivers.feeder.feeder_server import Driven
+from drivers.waiting import Bell, Opening, RealClock
+
+
+def driven(machine: Machine, clock: Clock) -> Driven:
+    """What the machine file's backend and its spindle are driven by. Raises DriverError."""
+    make = backend_of(machine).driven
+    if make is None:
+        raise DriverError(f"{machine.source}: the driver host does not support backend {machine.backend}")
+    inner = make(machine, clock)
+    if not has_inverter(machine):
+        return inner
+    ports, close = with_inverter(machine, inner.ports, clock, inner.close)
+    # The inverter's thread wakes nobody: what it has heard is looked at as often as before.
+    return replace(inner, ports=ports, close=close, idle=lambda asleep: min(inner.idle(asleep), _INVERTER))
+
+
+_INVERTER = 0.05  # s between two looks at what an inverter has told, while the control sleeps
+_START = 20.0  # s for the first answer: the process has to start and to configure every drive
+_END = 10.0
+
+
+class FeederProcess:
+    """A feeder in its own process, and the line to it."""
+
+    def __init__(self, machine: Machine, clock: RealClock) -> None:
+        self._machine, self._clock = machine, clock
+        self._closed = False
+        self._bell = Bell()  # the same for whichever feeder there is
+        try:
+            link = self._begin()
+        except DriverError:
+            self._bell.close()
+            raise
+        self.line = Line(link, clock, self._again, self._bell)
+
+    def _again(self) -> Opening[Link]:
+        """Another process, once the one before has ended: two would be two masters on one bus."""
+
+        def begun() -> Link:
+            self._end()
+            if self._closed:
+                raise DriverError("the control is shutting down", "feeder-gone")
+            return cleared(self._begin())
+
+        return Opening(begun)
+
+    def _begin(self) -> Link:
+        """Raises DriverError with what it says of its drivers."""
+        machine, clock = self._machine, self._clock
+        ours, theirs = socket.socketpair()
+        with theirs:
+            command = [
+                sys.executable,
+                "-m",
+                "app.compose.backends.feeder_process",
+                str(theirs.fileno()),
+                repr(clock.zero),
+                str(self._bell.far.fileno()),
+            ]
+            # A session of its own: Ctrl-C is for the control, which then ends the feeder in good order.
+            self.process = subprocess.Popen(
+                command,
+                stdin=subprocess.PIPE,
+                pass_fds=(theirs.fileno(), self._bell.far.fileno()),
+                start_new_session=True,
+            )
+        assert self.process.stdin is not None
+        with self.process.stdin as pipe:
+            pipe.write(pickle.dumps(machine))
+        self._link = SocketLink(ours)
+        ready = self._first(ours)
+        if self._closed:  # while it started again
+            self._end()
+            raise DriverError("the control is shutting down", "feeder-gone")
+        if why := fault_of(ready.head, "error", "feeder-gone"):
+            self._end()
+            raise DriverError(why)
+        return self._link
+
+    def close(self) -> None:
+        """The feeder stops what is left and ends; one that is being started again, too."""
+        self._closed = True
+        self._end()
+        self._bell.close()
+
+    def _end(self) -> None:
+        self._link.close()
+        try:
+            self.process.wait(_END)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            self.process.wait()
+
+    def _first(self, sock: socket.socket) -> Message:
+        """The feeder's own first word: it is ready, or why not."""
+        inbox = Inbox()
+        sock.settimeout(_START)
+        try:
+            while data := sock.recv(1 << 16):
+                for message in inbox.feed(data):
+                    return message
+        except TimeoutError:
+            return Message({"error": "the driver host does not start"}, NOTHING)
+        except OSError as error:  # closed while it starts
+            return Message({"error": f"no response from the driver host ({error.strerror})"}, NOTHING)
+        return Message({"error": "the driver host ended during start-up; see its message above"}, NOTHING)
+
+
+def beat(machine: Machine) -> float:
+    """Seconds from setpoint to setpoint where the drives want each at its time; else 0."""
+    can = machine.hardware.table(CanopenTable)
+    return can.sync if can is not None and can.mode in CYCLIC else 0.0
+
+
+def without_priority(period: float, late: float) -> str:
+    """What a feeder cannot promise whose trial has come so late, in words for the operator."""
+    template = (
+        (
+            "{cause}, a SYNC every {period} ms is not reliable, even though the SYNC arrived in "
+            "time in a {seconds} s test (at most {late} ms late). If setpoints are late, the "
+            "path waits, and a delay of 10 ms causes an alarm. Give the driver host real-time "
+            'priority (docs/integrator/computer.md), or use mode = "pvt"'
+        )
+        if late <= EVENED_OUT * period
+        else (
+            "{cause}, a SYNC every {period} ms is not reliable: in a {seconds} s test, the SYNC "
+            "did not arrive in time (up to {late} ms late). If setpoints are late, the path "
+            "waits, and a delay of 10 ms causes an alarm. Give the driver host real-time "
+            'priority (docs/integrator/computer.md), or use mode = "pvt"'
+        )
+    )
+    return Text(
+        template,
+        cause=NO_PRIORITY,
+        period=f"{1000 * period:g}",
+        seconds=f"{TRIAL:g}",
+        late=f"{1000 * late:.1f}",
+    )
+
+
+def main(arguments: list[str]) -> int:
+    """The process: connect, say so, serve until the control has gone."""
+    sock = socket.socket(fileno=int(arguments[0]))
+    clock: Clock = RealClock(float(arguments[1]))
+    machine = pickle.load(sys.stdin.buffer)  # of our own parent, over a pipe that nobody else has
+    warnings = real_time()
+    locked = keep_memory()
+    if warnings and (period := beat(machine)):
+        warnings.append(without_priority(period, late_at_trial(period)))
+    try:
+        machine_driven = driven(machine, clock)
+    except DriverError as error:
+        sock.sendall(packed(Message(with_code("error", error.fault, "feeder-gone"), NOTHING)))
+        return 1
+    if machine_driven.wake() is None:
+        locked = keep_memory()
+    else:  # a tenth of a second without a setpoint is more than drives wait for one
+        gc.freeze()
+    warnings += locked
+    sock.sendall(packed(Message({"ready": True}, NOTHING)))
+    bell = socket.socket(fileno=int(arguments[2]))
+    serve(sock, machine_driven, warnings, machine.hardware.refresh, bell)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

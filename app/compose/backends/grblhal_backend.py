@@ -1,0 +1,102 @@
+"""The grblHAL controller as the machine file describes it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+
+from app.compose.backends.backend_entry import Backend, Connected, has_inverter
+from app.compose.backends.inverter_backend import with_inverter
+from core.machine.machine_model import Axis, Machine
+from core.message import Message
+from core.ports import Clock, DriverError
+from drivers.grblhal.grblhal_config import GrblAxis, GrblConfig, GrblInput, GrblOutput
+from drivers.grblhal.grblhal_machine import GrblMachine
+from drivers.grblhal.grblhal_table import GrblhalTable
+from drivers.grblhal.grblhal_wire import tcp_address
+from drivers.inverter.inverter_spindle import InverterSpindle
+from drivers.simulators.grblhal_far_end import PtyEnd, TcpEnd, serve
+from drivers.simulators.grblhal_firmware import Firmware
+from drivers.waiting import RealClock
+
+_WIRED = frozenset(("X", "Z"))
+_HERE = frozenset((35, 37))  # homing methods of CiA 402 that take the present place
+
+
+def grblhal_config(machine: Machine) -> GrblConfig:
+    """The controller's figures from the machine file's. Raises DriverError for what it cannot be."""
+    model = machine.hardware.table(GrblhalTable)
+    if model is None:
+        raise DriverError("{source}: the [grblhal] table is missing", source=machine.source)
+    if model.x_mode != "G8":
+        raise DriverError(
+            "{source}: grblhal.x_mode must be G8, because otherwise a reset would change the meaning of X",
+            source=machine.source,
+        )
+    if machine.hardware.spindle_driver not in {"grblhal", "vfd"}:
+        raise DriverError(
+            "{source}: with backend grblhal, set spindle.driver to grblhal (the controller "
+            "drives the spindle) or vfd (an inverter drives the spindle)",
+            source=machine.source,
+        )
+    return GrblConfig(
+        table=model,
+        axes=tuple(_axis(axis, machine) for axis in machine.axes),
+        rpm_max=machine.spindle.rpm_max,
+        outputs={name: GrblOutput(out.terminal, out.safe) for name, out in machine.outputs.items()},
+        inputs={name: GrblInput(wired.terminal, wired.active_low) for name, wired in machine.inputs.items()},
+        own_spindle=not has_inverter(machine),
+    )
+
+
+def _play(
+    machine: Machine,
+    going: Callable[[], bool],
+    say: Callable[[str], None],
+    _typed: Callable[[], Iterable[str]],
+) -> None:
+    """A simulator of the controller, on the TCP port of the machine file or on a new pseudo terminal."""
+    address = tcp_address(grblhal_config(machine).table.port)
+    end: TcpEnd | PtyEnd = PtyEnd() if address is None else TcpEnd(*address)
+    say(
+        Message(
+            "simulated grblHAL for {machine} on {end}; press Ctrl-C to stop",
+            machine=machine.name,
+            end=end.name,
+        )
+    )
+    serve(end, Firmware(RealClock()), going)
+
+
+def _axis(axis: Axis, machine: Machine) -> GrblAxis:
+    home = machine.hardware.homes.get(axis.name)
+    here = home.offset if home is not None and home.method in _HERE else None
+    return GrblAxis(axis.name, axis.vmax, axis.amax, axis.absolute, axis.name in _WIRED, here)
+
+
+def _connect(machine: Machine, clock: Clock) -> Connected:
+    """A controller that plans by itself; it knows no buttons, so the station is the screen's.
+
+    Where an inverter turns the spindle, the controller's encoder, if any, measures it.
+    """
+    controller = GrblMachine(grblhal_config(machine), clock)
+    ports, close, encoder = controller.ports, controller.close, controller.encoder
+    if has_inverter(machine):
+        ports, close = with_inverter(machine, ports, clock, close, encoder if encoder.measures else None)
+        spindle = ports.spindle
+        assert isinstance(spindle, InverterSpindle)
+        encoder.way = lambda: spindle.reported_rpm
+    return Connected(ports, controller.panel, None, close)
+
+
+def _measured(machine: Machine) -> Iterator[str]:
+    """The controller, a spindle with an encoder, and the inputs.
+
+    The controller counts the steps that it sends, and the overrides are those of the screen.
+    """
+    yield "controller"
+    if machine.spindle.encoder_ppr:
+        yield "spindle"
+    yield from (f"input {name}" for name in machine.inputs)
+
+
+BACKEND = Backend("controller", connect=_connect, play=_play, measured=_measured)

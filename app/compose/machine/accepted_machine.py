@@ -1,0 +1,101 @@
+"""The machine file that was accepted last, kept in the store, against the one that is in force now."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable
+from pathlib import Path
+from typing import Protocol
+
+from app.desk.persistence import Persistence
+from app.desk.status.machine_file_changes import FileChanges
+from core.executor.commands import Command, EnableDrives
+from core.machine.machine_file import ABSENT, Change, changes
+from core.machine.machine_model import Machine
+from core.message import Message
+from core.ports import DriverError
+
+_TEXT, _DRIVES = "text", "drives"
+
+
+class Settings(Protocol):
+    """Settings of the store."""
+
+    def setting(self, key: str) -> object: ...
+
+
+def key_of(machine: Machine) -> str:
+    """Under which its file is kept: by its place, whatever way it was named."""
+    path = Path(machine.source)
+    place = path.resolve() if path.exists() else machine.source
+    return " ".join(("machine file", str(place)))
+
+
+def record_of(machine: Machine) -> dict[str, object]:
+    """What is kept: the text, and for each node a hash of all that is written to it at a start."""
+    return {_TEXT: machine.text, _DRIVES: _hashes(machine)}
+
+
+def differences(machine: Machine, kept: Settings) -> tuple[Change, ...] | None:
+    """What differs from what was accepted; None: this file was never accepted."""
+    record = kept.setting(key_of(machine))
+    if not isinstance(record, dict) or not isinstance(record.get(_TEXT), str):
+        return None
+    told = changes(record[_TEXT], machine.text)
+    if told or not isinstance(old := record.get(_DRIVES), dict):
+        return told
+    new = _hashes(machine)  # the file is the same: what the control makes of it need not be
+    return tuple(
+        Change(
+            Message("canopen.nodes.{name}, all values written to the node", name=name),
+            str(old.get(name, ABSENT)),
+            now,
+        )
+        for name, now in new.items()
+        if old.get(name) != now
+    )
+
+
+def file_changes(machine: Machine, kept: Persistence, tell: Callable[[str], None]) -> FileChanges:
+    """For the screen. A file that is new here is accepted by being chosen; ``tell`` is for the log."""
+    told = differences(machine, kept)
+
+    def keep() -> None:
+        kept.save_setting(key_of(machine), record_of(machine))
+        what, name = "; ".join(str(change) for change in told or ()), kept.who()
+        done = Message(
+            "machine file {path} accepted by {name}" if name else "machine file {path} accepted",
+            path=machine.source,
+            name=name,
+        )
+        tell(Message("{done}: {changes}", done=done, changes=what) if what else done)
+
+    if told is None:
+        keep()
+    return FileChanges(machine.source, told or (), keep)
+
+
+def guarded(
+    post: Callable[[Command], None], changed: FileChanges, refuse: Callable[[str], None]
+) -> Callable[[Command], None]:
+    """``post``, but no drive is switched on while changes of the machine file wait to be accepted."""
+
+    def give(command: Command) -> None:
+        if changed.barred and isinstance(command, EnableDrives):
+            refuse(changed.barred)
+        else:
+            post(command)
+
+    return give
+
+
+def _hashes(machine: Machine) -> dict[str, str]:
+    if machine.backend != "canopen":
+        return {}
+    from app.compose.backends.canopen_backend import written_at_start
+
+    try:
+        objects = written_at_start(machine)
+    except DriverError:
+        return {}
+    return {name: hashlib.sha256(repr(each).encode()).hexdigest()[:12] for name, each in objects.items()}

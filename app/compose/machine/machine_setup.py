@@ -1,0 +1,136 @@
+"""The machine file and the circumstances of one pass through a program.
+
+The machine in use is the one that the operator screen was opened for last: commands about offsets take its
+travel.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app.desk.command_errors import CommandError, as_command_error
+from core.interpreter.job_setup import ControlLimits, SecondaryOffset, Setup, ToolOffset, ZeroOffset
+from core.message import Message
+
+if TYPE_CHECKING:
+    from app.compose.machine.accepted_machine import Settings
+    from app.desk.persistence import Persistence
+    from core.geometry.rotary_axes import Kinematics
+    from core.machine.machine_model import Machine
+
+_KEY = "machine in use"  # the setting: the path of its file, or the name of a shipped machine
+
+
+def read_machine(path: str | None) -> Machine:
+    """The machine that a file describes, one that is shipped by its name, or the shipped lathe.
+
+    Raises CommandError naming every mistake.
+    """
+    from app.compose.machine.machine_files import named_machine
+    from core.table_schema import MachineFileError
+
+    with as_command_error(MachineFileError):
+        return named_machine(path)
+
+
+def control_limits(machine: Machine) -> ControlLimits:
+    """What the interpreter must know of a machine."""
+    c_axis = machine.axes[2]
+    return ControlLimits(
+        max_feed=machine.limits.max_feed,
+        max_rpm=machine.spindle.rpm_max,
+        resolution=machine.limits.resolution,
+        slide_accel=machine.axes[1].amax,
+        unclamp_while_turning=machine.interlocks.unclamp_while_turning,
+        start_with_collet_open=machine.interlocks.spindle_with_collet_open,
+        m_outputs=machine.m_codes,
+        m_disabled=machine.m_disabled,
+        m_ignored=machine.m_ignored,
+        c_enabled=machine.c_enabled,
+        c_feedback=machine.c_feedback,
+        c_max_rpm=c_axis.vmax / 6.0,  # 1 rpm is 6 degrees a second
+        c_accel=c_axis.amax,
+        c_step=c_axis.count,
+        c_modulo=machine.c_modulo,
+        c_linear=machine.c_linear,
+        c_travel=c_axis.travel if machine.c_linear else None,
+        spindle_is_c=machine.spindle_is_c,
+        live_output=machine.live_output,
+        control=machine.control,
+        third_axis=machine.third_axis,
+        spindle_controlled=machine.spindle.controlled,
+        spindle_oriented=machine.spindle.oriented,
+        fixed_points={axis.name: axis.fixed_points for axis in machine.axes if axis.fixed_points},
+        speeds=(machine.axes[0].vmax, machine.axes[1].vmax, c_axis.vmax),
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class InputStates:
+    """Answers for inputs as they are named; one that nobody names is open. Can be sent to another process."""
+
+    states: Mapping[str, bool]
+
+    def __call__(self, terminal: str) -> bool:
+        """Whether the input is closed."""
+        return self.states.get(terminal, False)
+
+
+def setup_for(
+    machine: Machine,
+    *,
+    tools: Mapping[int, ToolOffset],
+    secondary: Mapping[int, SecondaryOffset],
+    zero: Mapping[int, ZeroOffset] | None = None,
+    r: Mapping[int, float] | None = None,
+    inputs: Mapping[str, bool] | None = None,
+    block_delete: bool = False,
+    strict: bool = False,
+) -> Setup:
+    """Circumstances of a pass after power-up, from the machine's home; inputs that nobody names are open."""
+    return Setup(
+        start=(0.0,) * len(machine.axes),
+        kinematics=_kinematics(machine),
+        tools=tools,
+        secondary=secondary,
+        zero=zero or {},
+        r=r or {},
+        limits=control_limits(machine),
+        block_delete=block_delete,
+        strict=strict,
+        metric=not machine.inch,
+        last_rapid=machine.limits.manual_rapid,
+        inputs=InputStates(dict(inputs or {})),
+    )
+
+
+def _kinematics(machine: Machine) -> Kinematics | None:
+    """The chain of axes of a mill."""
+    if machine.kinematics is None:
+        return None
+    from app.compose.machine.kinematics_chain import kinematics_of
+
+    return kinematics_of(machine)
+
+
+def remember_machine(machine_file: str | None, persistence: Persistence) -> None:
+    """Store which machine is in use; None: the shipped lathe."""
+    path = Path(machine_file) if machine_file else None
+    place = str(path.resolve()) if path is not None and path.exists() else machine_file
+    if persistence.setting(_KEY) != place:
+        persistence.save_setting(_KEY, place)
+
+
+def machine_in_use(settings: Settings) -> Machine:
+    """Return the machine in use. Raises CommandError if its file cannot be read."""
+    place = settings.setting(_KEY)
+    try:
+        return read_machine(place if isinstance(place, str) else None)
+    except CommandError as error:
+        raise CommandError(
+            Message("the travel of the current machine is unknown: {error}. Use --machine FILE", error=error),
+            error.code,
+        ) from error

@@ -1,0 +1,284 @@
+"""Unpack a setup archive within limits, and check every file in it by its kind.
+
+Nothing that the archive says about itself is trusted: bytes are counted while they are unpacked.
+"""
+
+from __future__ import annotations
+
+import errno
+import hashlib
+import json
+import struct
+import zipfile
+from pathlib import Path, PurePosixPath
+from typing import BinaryIO
+from xml.parsers import expat
+
+from app.compose.extra import drawing_endings
+from app.compose.machine.machine_setup import read_machine
+from app.desk.command_errors import CommandError
+from core.input_file import TooLargeError, failures_as, input_bytes, open_input
+from core.language.source import SourceError, source_of
+from core.message import CodedError, Message, error_code
+from core.store import backup
+from core.store.program_records import check_name
+from core.store.store_errors import StoreError
+
+_KIND = "turndesk setup "
+FORMAT = f"{_KIND}1"
+MANIFEST, STORE, PROGRAMS, MACHINE = "manifest.json", "store.db", "programs", "machine"
+BESIDE = (".hal", ".xml")  # files that belong to a machine file and have its name
+MOST_MEMBERS = 10_000
+MOST_DEPTH = 8  # parts of a name: folders in each other, and the file
+_MIB = 1024 * 1024
+MOST_BYTES = {MANIFEST: 4 * _MIB, STORE: 512 * _MIB, PROGRAMS: 64 * _MIB, MACHINE: 16 * _MIB}
+MOST_BYTES_OF_ALL = 1024 * _MIB
+_MOST_BYTES_PACKED = 1024 * _MIB
+_MOST_BYTES_OF_DIRECTORY = 4 * _MIB  # of ZIP's own list of members
+_CHUNK = _MIB
+_END, _END_64 = 22, 20  # bytes: ZIP's last record without a comment, and the one of ZIP64 in front of it
+NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+
+
+def unpack(source: Path, folder: Path) -> list[str]:
+    """Write the checked members of the archive below ``folder``; return their names. Raises CommandError."""
+    with (
+        failures_as(lambda error: _not_unpacked(source, folder, error)),
+        open_input(source, _MOST_BYTES_PACKED) as raw,
+    ):
+        _check_directory(source, raw)
+        with zipfile.ZipFile(raw) as file:
+            names = _Unpacking(source, file, folder).all()
+    _check_store(source, folder / STORE)
+    for name in names:
+        if (why := problem(name, folder / name)) is not None:
+            raise CommandError(
+                Message("{source} contains {name}: {error}", source=source, name=name, error=why),
+                error_code(why),
+            )
+    return names
+
+
+def _not_unpacked(source: Path, folder: Path, error: Exception) -> CommandError:
+    if isinstance(error, TooLargeError):
+        return CommandError(
+            Message(
+                "{source} is not a setup file: {cause}; check the name",
+                source=source,
+                cause=error.strerror,
+            ),
+            "too-large",
+        )
+    if isinstance(error, OSError) and error.errno in NO_ROOM:
+        return CommandError(
+            Message(
+                "not enough disk space in {parent} to unpack {source}; free some space",
+                parent=folder.parent,
+                source=source,
+            ),
+            "disk-full",
+        )
+    if isinstance(error, OSError):
+        return CommandError(
+            Message("{path} cannot be read: {cause}", path=source, cause=error.strerror or error),
+            "unreadable",
+        )
+    return CommandError(
+        Message("{source} is not a readable setup file: {error}", source=source, error=error),
+        "damaged-setup",
+    )
+
+
+def problem(name: str, path: Path) -> CodedError | None:
+    """Return why the file cannot be a member called ``name``, or None where it can. Raises OSError."""
+    top = name.partition("/")[0]
+    try:
+        _check_place(name)
+        if top == PROGRAMS:
+            _check_program(path)
+        elif top == MACHINE:
+            _check_machine(path)
+    except (CommandError, SourceError, StoreError) as error:
+        return error
+    except TooLargeError as error:
+        return CommandError(str(error.strerror), "member-too-large")
+    return None
+
+
+def is_machine_file(path: Path) -> bool:
+    """Return whether a file of a machine's folder is the machine file itself."""
+    return path.suffix not in BESIDE
+
+
+class _Unpacking:
+    """One archive on its way below ``folder``, with the bytes that were unpacked so far."""
+
+    def __init__(self, source: Path, file: zipfile.ZipFile, folder: Path) -> None:
+        self._source, self._file, self._folder = source, file, folder
+        self._bytes = 0
+
+    def all(self) -> list[str]:
+        """Every member that the manifest lists, and no other."""
+        self._take(MANIFEST)
+        hashes = _hashes(self._source, json.loads((self._folder / MANIFEST).read_bytes()))
+        self._check_names(list(hashes))
+        for name, expected in hashes.items():
+            if self._take(name) != expected:
+                raise CommandError(
+                    Message(
+                        "{source}: {name} differs from the file that was saved; copy the setup file again",
+                        source=self._source,
+                        name=name,
+                    ),
+                    "damaged-member",
+                )
+        return list(hashes)
+
+    def _check_names(self, names: list[str]) -> None:
+        strange = sorted({*self._file.namelist()} - {*names, MANIFEST})
+        for name in (*strange, *names):
+            try:
+                if name in strange:
+                    raise _no_place()
+                _check_place(name)
+            except CodedError as error:
+                raise CommandError(
+                    Message("{source} contains {name}: {error}", source=self._source, name=name, error=error),
+                    error_code(error),
+                ) from error
+        machines = [Path(name) for name in names if name.startswith(f"{MACHINE}/")]
+        if len({each.stem for each in machines}) > 1 or sum(map(is_machine_file, machines)) not in {0, 1}:
+            raise CommandError(
+                Message("{source} contains more than one machine", source=self._source), "foreign-member"
+            )
+
+    def _take(self, name: str) -> str:
+        """Unpack one member; return the SHA-256 of its bytes."""
+        info = self._file.getinfo(name)
+        if info.compress_type not in {zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED}:
+            raise NotImplementedError(Message("{name} is compressed with an unsupported method", name=name))
+        target, digest, size = self._folder / name, hashlib.sha256(), 0
+        target.parent.mkdir(parents=True, exist_ok=True)
+        with self._file.open(info) as packed, target.open("wb") as plain:
+            while data := packed.read(_CHUNK):
+                size += len(data)
+                self._bytes += len(data)
+                if size > MOST_BYTES[name.partition("/")[0]] or self._bytes > MOST_BYTES_OF_ALL:
+                    raise CommandError(
+                        Message(
+                            "{source} contains {name}, which is too large for a setup",
+                            source=self._source,
+                            name=name,
+                        ),
+                        "member-too-large",
+                    )
+                digest.update(data)
+                plain.write(data)
+        return digest.hexdigest()
+
+
+def _check_directory(source: Path, raw: BinaryIO) -> None:
+    """Refuse a list of members that is too long before zipfile reads it as a whole."""
+    size = raw.seek(0, 2)
+    raw.seek(max(0, size - _END - _END_64))
+    tail = raw.read()
+    end, end_64 = tail[-_END:], tail[:-_END]
+    if not end.startswith(b"PK\5\6"):
+        raise zipfile.BadZipFile("the end of the file is missing")
+    (members, directory) = struct.unpack("<10xHL6x", end)
+    if members > MOST_MEMBERS or directory > _MOST_BYTES_OF_DIRECTORY or end_64.startswith(b"PK\6\7"):
+        raise CommandError(
+            Message(
+                "{source} contains more than {most_members} files", source=source, most_members=MOST_MEMBERS
+            ),
+            "too-many-members",
+        )
+
+
+def _hashes(source: Path, told: object) -> dict[str, str]:
+    """The SHA-256 of every member as the manifest states it. Raises CommandError for another manifest."""
+    form = told.get("format") if isinstance(told, dict) else None
+    if isinstance(form, str) and form.startswith(_KIND) and form != FORMAT:
+        raise CommandError(
+            Message(
+                "{source} was saved by another version of TurnDesk (format {form}; this "
+                "version uses {format}); use that version",
+                source=source,
+                form=form,
+                format=FORMAT,
+            ),
+            "other-version",
+        )
+    hashes = told.get("sha256") if isinstance(told, dict) else None
+    if form != FORMAT or not isinstance(hashes, dict) or STORE not in hashes:
+        raise CommandError(
+            Message(
+                "{source} does not have the required setup format ({format}); save the setup again "
+                "with 'setup save'",
+                source=source,
+                format=FORMAT,
+            ),
+            "not-a-setup",
+        )
+    return {str(name): str(value) for name, value in hashes.items()}
+
+
+def _no_place() -> CommandError:
+    return CommandError("this file does not belong in a setup", "foreign-member")
+
+
+def _check_place(name: str) -> None:
+    """Raise CommandError or StoreError for a name that no file of a setup has."""
+    parts = PurePosixPath(name).parts
+    if name == STORE:
+        return
+    if "/".join(parts) != name or len(parts) < 2 or parts[0] not in {PROGRAMS, MACHINE} or ".." in parts:
+        raise _no_place()
+    if len(parts) > (MOST_DEPTH if parts[0] == PROGRAMS else 2):
+        raise CommandError("the file is nested in too many folders", "too-deep")
+    for part in parts[1:]:
+        check_name(part)
+
+
+def _check_store(source: Path, store: Path) -> None:
+    try:
+        found = backup.problems(store)
+    except StoreError as error:
+        raise CommandError(
+            Message("{source}: {error}", source=source, error=error), error_code(error)
+        ) from error
+    if found:
+        raise CommandError(
+            Message(
+                "{source}: {value}; save the setup again with 'turndesk setup save'",
+                source=source,
+                value=found[0],
+            ),
+            "damaged-store",
+        )
+
+
+def _check_program(path: Path) -> None:
+    """Raise SourceError for a file that is neither program text nor a drawing; an empty one is harmless."""
+    data = input_bytes(path, MOST_BYTES[PROGRAMS])
+    drawing = path.name.lower().endswith(drawing_endings())
+    if data and not (drawing and b"\0" not in data):
+        source_of(path.name, data)
+
+
+def _check_machine(path: Path) -> None:
+    """Raise CommandError for a machine file, a HAL file or an EtherCAT file that cannot be one."""
+    if is_machine_file(path):
+        read_machine(str(path))
+        return
+    data = input_bytes(path, MOST_BYTES[MACHINE])
+    try:
+        if path.suffix == ".xml":
+            expat.ParserCreate().Parse(data, True)
+        whole = "\0" not in data.decode("utf-8")
+    except (ValueError, expat.ExpatError):
+        whole = False
+    if not whole:
+        raise CommandError(
+            Message("this is not a valid {suffix} file", suffix=path.suffix[1:].upper()), "damaged-member"
+        )

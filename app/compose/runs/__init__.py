@@ -1,0 +1,1 @@
+"""What a run needs beside the machine, and what it leaves behind."""

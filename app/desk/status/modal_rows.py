@@ -1,0 +1,194 @@
+"""The modal state in words: what is in force, one row for each group of codes. MDI and SEARCHTO show it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from app.desk.status import formats
+from app.desk.translation import data, tr
+from core.interpreter.checkpoint import Checkpoint
+from core.interpreter.modal_state import Modal
+from core.message import Message
+from core.tool_edges import edge_name
+
+NONE = formats.NOTHING
+
+
+@dataclass(frozen=True, slots=True)
+class ModalRow:
+    """One row: what it is about, and what is in force. ``key`` is the same in every language."""
+
+    key: str
+    label: str
+    value: str
+
+
+def rows_of(point: Checkpoint, language: str = "omniturn") -> tuple[ModalRow, ...]:
+    """Every group of codes of the machine's language, always in the same order."""
+    modal = point.modal
+    if language != "omniturn":
+        return _rows_in(point, language)
+    return (
+        *_geometry(modal),
+        *_feeds(point),
+        *_spindle(modal),
+        ModalRow(
+            "c", tr("C AXIS"), f"{tr('LOCKED')} {formats.angle(point.c)}" if modal.c_locked else tr("FREE")
+        ),
+        *_frame(modal),
+        *_functions(modal),
+    )
+
+
+_GROUPS = {
+    "klartext": (
+        *("tool", "length", "speed", "spindle", "feed", "preset", "datum", "plane", "transform", "tcpm"),
+        *("coolant", "outputs"),
+    ),
+    "sinumerik": (
+        *("motion", "settable", "trans", "transformation", "units", "x words", "distance", "tool", "speed"),
+        *("spindle", "feed", "coolant", "outputs"),
+    ),
+}
+
+
+def _rows_in(point: Checkpoint, language: str) -> tuple[ModalRow, ...]:
+    """The groups of Klartext or SINUMERIK, as the pass that was kept tells them; without one what a program
+    that has ended leaves."""
+    told = dict(point.kept.lines) if point.kept is not None else {}
+    begun = _AT_RESET | {"speed": f"G97 S{point.modal.rpm:g}"} if language == "sinumerik" else {}
+    values = _left_by_program(point.modal) | begun | told
+    labels = _labels()
+    return tuple(ModalRow(key, labels[key], values.get(key) or NONE) for key in _GROUPS[language])
+
+
+_AT_RESET = {
+    "motion": "G1",
+    "units": "G71 MM",
+    "x words": "DIAMON Ø",
+    "distance": "G90",
+    "feed": "G94",
+}
+"""What SINUMERIK has in force before the first block, and behind the end of a program."""
+
+
+def _left_by_program(modal: Modal) -> dict[str, str]:
+    return {
+        "tool": edge_name(modal.tool) if modal.tool else "",
+        "speed": f"S{modal.rpm:g}" if modal.rpm else "",
+        "spindle": {1: "M3", 0: "M5", -1: "M4"}[modal.spindle],
+        "coolant": "M8" if modal.coolant else "M9",
+        "settable": "G500",
+        "tcpm": "M129",
+        "outputs": data(" ".join(sorted(name.upper() for name in modal.outputs))),
+    }
+
+
+def _labels() -> dict[str, str]:
+    return {
+        "tool": tr("TOOL"),
+        "length": tr("LENGTH, RADIUS"),
+        "speed": tr("SPEED"),
+        "spindle": tr("SPINDLE"),
+        "feed": tr("FEED"),
+        "preset": tr("PRESET"),
+        "datum": tr("DATUM SHIFT"),
+        "plane": tr("TILTED PLANE"),
+        "transform": tr("MIRROR, ROT, SCALE"),
+        "tcpm": tr("TCPM"),
+        "motion": tr("MOTION"),
+        "settable": tr("ZERO OFFSET"),
+        "trans": tr("TRANS"),
+        "transformation": tr("TRANSFORMATION"),
+        "units": tr("UNITS"),
+        "x words": tr("X VALUES"),
+        "distance": tr("DISTANCE"),
+        "coolant": tr("COOLANT"),
+        "outputs": tr("M FUNCTIONS"),
+    }
+
+
+def _geometry(modal: Modal) -> tuple[ModalRow, ...]:
+    distance = NONE if modal.absolute is None else "G90" if modal.absolute else "G91"
+    coarse = {0: "G36", 1: "G35", 2: "G35F2"}[modal.coarse]
+    return (
+        ModalRow("units", tr("UNITS"), "G71 MM" if modal.metric else tr("G70 INCH")),
+        ModalRow("x words", tr("X VALUES"), "G72 Ø" if modal.diameter else "G73 R"),
+        ModalRow("distance", tr("DISTANCE"), distance),
+        ModalRow("nose", tr("NOSE COMP"), f"G{modal.nose_comp}"),
+        ModalRow("coarse", tr("COARSE FEED"), coarse),
+    )
+
+
+def _feeds(point: Checkpoint) -> tuple[ModalRow, ...]:
+    modal = point.modal
+    first = formats.feed(point.first_feed, modal.metric, False) if point.first_feed else NONE
+    return (
+        ModalRow("feed mode", tr("FEED MODE"), "G95" if modal.per_rev else "G94"),
+        ModalRow("feed", tr("FEED"), _feed(modal.feed, modal.metric, modal.per_rev)),
+        ModalRow("rapid", tr("RAPID"), "G00" if modal.rapid else tr("OFF")),
+        ModalRow("cut feed", tr("G01 FEED"), _feed(modal.cut_feed, modal.metric, modal.cut_per_rev)),
+        ModalRow("rapid rate", tr("RAPID RATE"), _feed(modal.rapid_rate, modal.metric, False)),
+        ModalRow("first feed", tr("RAPID (FIRST F)"), first),
+    )
+
+
+def _feed(value: float | None, metric: bool, per_rev: bool) -> str:
+    if value is None:
+        return NONE
+    return Message(
+        "{metric} {metric2}",
+        metric=formats.feed(value, metric, per_rev),
+        metric2=formats.feed_unit(metric, per_rev),
+    )
+
+
+def _spindle(modal: Modal) -> tuple[ModalRow, ...]:
+    run = {1: "M03", -1: "M04", 0: "M05"}[modal.spindle]
+    surface = formats.surface_speed(modal.surface_speed, modal.metric)
+    unit = "M/MIN" if modal.metric else "SFM"
+    speed = (
+        Message("G96 {surface} {unit}", surface=surface, unit=unit)
+        if modal.css
+        else Message("G97 {rpm} RPM", rpm=formats.rpm(modal.rpm))
+    )
+    least, most = modal.css_min, modal.css_max
+    limits = f"{formats.rpm(least)} … {formats.rpm(most) if most is not None else NONE}"
+    return (
+        ModalRow("spindle", tr("SPINDLE"), run),
+        ModalRow("speed", tr("SPEED"), speed),
+        ModalRow("clamps", tr("G76 … G77"), limits if least or most is not None else NONE),
+    )
+
+
+def _frame(modal: Modal) -> tuple[ModalRow, ...]:
+    pair = _pair
+    return (
+        ModalRow("tool", tr("TOOL"), edge_name(modal.tool)),
+        ModalRow("tool offset", tr("TOOL OFFSET"), pair(modal, modal.tool_x, modal.tool_z)),
+        ModalRow("secondary", tr("D OFFSET"), f"D{modal.secondary}  {_d(modal)}"),
+        ModalRow("shift", tr("G10 ACTIVE"), pair(modal, modal.shift_x, modal.shift_z)),
+        ModalRow("pending", tr("G10 FROM NEXT T"), pair(modal, modal.pending_shift_x, modal.pending_shift_z)),
+        ModalRow("preset", tr("G92 PRESET"), pair(modal, modal.preset_x, modal.preset_z)),
+    )
+
+
+def _d(modal: Modal) -> str:
+    return _pair(modal, modal.secondary_x, modal.secondary_z) if modal.secondary else ""
+
+
+def _pair(modal: Modal, x: float, z: float) -> str:
+    """X and Z; X as a radius and marked so, because offsets are kept so."""
+    if not x and not z:
+        return "0"
+    return f"R{formats.length(x, modal.metric)} Z{formats.length(z, modal.metric)}"
+
+
+def _functions(modal: Modal) -> tuple[ModalRow, ...]:
+    outputs = data(" ".join(sorted(name.upper() for name in modal.outputs))) or NONE
+    return (
+        ModalRow("coolant", tr("COOLANT"), "M08" if modal.coolant else "M09"),
+        ModalRow("collet", tr("COLLET"), "M12" if modal.collet_closed else "M13"),
+        ModalRow("outputs", tr("M FUNCTIONS"), outputs),
+        ModalRow("comment", tr("COMMENT"), data(modal.comment.strip()) or NONE),
+    )

@@ -1,0 +1,122 @@
+"""The sounds of the desk: tones for ends, stops and alarms, played by a program of this computer.
+
+Off until somebody gives them a volume. Nobody waits for a sound: a thread plays, the newest one alone.
+"""
+
+from __future__ import annotations
+
+import io
+import shutil
+import subprocess
+import sys
+import tempfile
+import threading
+import wave
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from app.desk.background_work import sentence
+from core.message import Message
+
+PLAYERS = (("pw-play",), ("paplay",), ("aplay", "-q"), ("afplay",))
+"""Programs that play a file: PipeWire's, PulseAudio's, ALSA's, that of macOS. The first that can does."""
+RATE = 22_050  # samples a second
+TONE, RAMP = 0.2, 0.01  # s: of one tone, and of its beginning and end
+_PATIENCE = 10.0  # s
+Play = Callable[[bytes], None]
+"""Plays a WAV file to its end. Raises OSError or ValueError with a sentence."""
+
+
+def tune(tones: Sequence[int], volume: int) -> bytes:
+    """Tones (Hz) one after the other as a WAV file; ``volume`` 0…100."""
+    t = np.arange(round(RATE * TONE)) / RATE
+    ramp = np.minimum(1.0, np.minimum(t, TONE - t) / RAMP).clip(0.0)
+    waves = [np.sin(2.0 * np.pi * tone * t) * ramp for tone in tones] or [np.zeros(0)]
+    loud = (min(100, max(0, volume)) / 100.0) ** 2  # an ear hears the square root
+    samples = (np.concatenate(waves) * loud * 32_000).astype("<i2")
+    made = io.BytesIO()
+    with wave.open(made, "wb") as file:
+        file.setnchannels(1)
+        file.setsampwidth(2)
+        file.setframerate(RATE)
+        file.writeframes(samples.tobytes())
+    return made.getvalue()
+
+
+def play_aloud(sound: bytes) -> None:
+    """On this computer's loudspeaker. Raises OSError with why there is none."""
+    if sys.platform == "win32":
+        import winsound  # noqa: PLC0415 - other systems have none
+
+        winsound.PlaySound(sound, winsound.SND_MEMORY)
+        return
+    players = [each for each in PLAYERS if shutil.which(each[0])]
+    if not players:
+        raise ValueError("this computer has none of pw-play, paplay and aplay (Debian: alsa-utils)")
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "sound.wav"
+        path.write_bytes(sound)
+        told = [_played([*player, str(path)]) for player in players[:1]]
+        for player in players[1:]:
+            if told[-1]:
+                told.append(_played([*player, str(path)]))
+    if all(told):
+        raise ValueError(told[0])
+
+
+def _played(command: list[str]) -> str:
+    """Why it was not; empty when it was."""
+    try:
+        done = subprocess.run(command, capture_output=True, timeout=_PATIENCE, check=False)
+    except subprocess.TimeoutExpired:
+        return Message("{command} did not finish in time", command=command[0])
+    said = done.stderr.decode(errors="replace").strip().splitlines()
+    return (
+        ""
+        if done.returncode == 0
+        else (said[-1] if said else Message("{command} failed", command=command[0]))
+    )
+
+
+class Sounds:
+    """``play`` never waits. ``trouble`` is why the last one was not heard; empty while all is well."""
+
+    def __init__(self, play: Play = play_aloud) -> None:
+        self._play = play
+        self._next: bytes | None = None
+        self._there = threading.Condition()
+        self._closing = False
+        self._thread: threading.Thread | None = None
+        self.trouble = ""
+
+    def play(self, tones: Sequence[int], volume: int) -> None:
+        """One of them now; what waits is not played any more."""
+        if volume <= 0 or not tones:
+            return
+        with self._there:
+            self._next = tune(tones, volume)
+            if self._thread is None:
+                self._thread = threading.Thread(target=self._work, name="sounds", daemon=True)
+                self._thread.start()
+            self._there.notify()
+
+    def close(self) -> None:
+        """No sound begins any more; nobody waits for the last."""
+        with self._there:
+            self._closing = True
+            self._there.notify()
+
+    def _work(self) -> None:
+        while True:
+            with self._there:
+                self._there.wait_for(lambda: self._next is not None or self._closing)
+                sound, self._next = self._next, None
+            if self._closing or sound is None:
+                return
+            try:
+                self._play(sound)
+                self.trouble = ""
+            except (OSError, ValueError, RuntimeError) as error:
+                self.trouble = sentence(error)
