@@ -33,9 +33,8 @@ from app.editor.versions_view import VersionList
 from app.path.measuring import measuring_words
 from app.path.part_player import player_of
 from app.screen import page_table
-from app.screen.editor_panel import EditorPanel
-from app.screen.letter_keys import PROGRAMS, LetterPad, strike
-from app.screen.page_base import Host, KeyActions, Page
+from app.screen.entry_panel import PROGRAMS, LetterPad, strike
+from app.screen.page_base import EditorPanel, Host, KeyActions, Page
 from app.working_plane.plane_instant import at_line, plane_words
 from app.working_plane.working_plane_view import WorkingPlaneView
 from core.executor.snapshot import Snapshot

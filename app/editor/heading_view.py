@@ -12,8 +12,8 @@ from PySide6.QtWidgets import QWidget
 
 from app.desk.translation import tr
 from app.screen.code_choices_view import CODE_LINE
-from app.screen.editor_panel import HeadKey
 from app.screen.look import CENTRE, RIGHT, Look, Painter
+from app.screen.page_base import HeadKey
 from app.screen.panel import Panel, Shown
 from app.screen.window_layout import FINGER, Rect
 

@@ -10,10 +10,8 @@ from app.desk.sheet import edited, refused
 from app.desk.translation import tr
 from app.jog import jog_touch_off
 from app.jog.jog_touch_off import TOUCH_X, TOUCH_Z, TOUCHES, TouchOff
-from app.offsets.offset_acts import CORRECTIONS
 from app.offsets.offset_book import OffsetBook
-from app.offsets.offset_history import OffsetHistory, refusal
-from app.offsets.offset_questions import OffsetQuestions, follower_names
+from app.offsets.offset_questions import OffsetHistory, OffsetQuestions, follower_names, refusal
 from app.offsets.offset_values import (
     TOOL_FIELDS,
     Mode,
@@ -24,6 +22,7 @@ from app.offsets.offset_values import (
     value_typed,
     word,
 )
+from app.offsets.suspicious_changes import CORRECTIONS
 from app.offsets.tool_fields import ToolFields
 from core.executor.snapshot import Snapshot
 from core.message import Message

@@ -16,7 +16,7 @@ from app.jog.tool_setting import TOOL
 from app.offsets.offset_values import Mode, marked, not_set, shown_value, signed, word
 from app.screen.look import CENTRE, LEFT, RIGHT, Look, Painter
 from app.screen.panel import Panel, Shown
-from app.screen.tool_tip_drawing import draw_tip
+from app.screen.sketch_view import draw_tip
 from core.executor.snapshot import Snapshot
 from core.message import join_messages
 from core.tool_edges import edge_name

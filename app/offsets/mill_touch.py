@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from app.desk.desk import Desk
 from app.desk.translation import tr
-from app.offsets.mill_offsets import MillOffsets, with_mill
+from app.offsets.offsets_in_force import MillOffsets, with_mill
 from core.executor.snapshot import Snapshot, State
 from core.geometry.rotary_axes import DatumPreset, Kinematics
 from core.geometry.rotation_frames import Vector

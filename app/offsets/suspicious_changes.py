@@ -8,10 +8,11 @@ the proof checks the resulting path against the travel.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from enum import StrEnum
 from typing import NamedTuple
 
+from core.access.access_table import Act
 from core.machine.machine_model import Machine
 from core.store.offsets.touch_off import Touch
 from core.store.store_rows import FIELDS, Kind, MillRow, Row, SecondaryRow, ToolRow, Value, with_fields
@@ -187,3 +188,25 @@ def described(
     for each in found:
         fields.setdefault((each.number, each.name), each)
     return ", ".join(f"{name(each)} ({reason(each)})" for each in fields.values())
+
+
+CORRECTIONS = {
+    Kind.TOOL: frozenset({"wear_x", "wear_z", "remark"}),
+    Kind.MILL_TOOL: frozenset({"dl", "dr", "dr2"}),
+}
+"""Fields of a tool that are corrections; of a secondary offset all are."""
+
+_ACTS = {
+    Kind.TOOL: Act.TOOLS,
+    Kind.SECONDARY: Act.WEAR,
+    Kind.ZERO: Act.ZEROS,
+    Kind.SHAPE: Act.SHAPES,
+    Kind.MILL_TOOL: Act.TOOLS,
+    Kind.PRESET: Act.PRESETS,
+}
+
+
+def act_of(kind: Kind, fields: Collection[str] = ()) -> Act:
+    """What it is to change these fields; without fields: to clear, or to take a change back."""
+    only = CORRECTIONS.get(kind, frozenset())
+    return Act.WEAR if fields and only.issuperset(fields) else _ACTS[kind]

@@ -23,8 +23,7 @@ from PySide6.QtWidgets import QApplication, QWidget
 from app.desk.desk import BY_SCREEN, Desk
 from app.desk.prompt_line import MOVING, UNDER_WAY
 from app.desk.translation import spoken, tr
-from app.screen.event_times import EventTimes
-from app.screen.keyboard import Keyboard, key_of, letter_of
+from app.screen.keyboard import EventTimes, Keyboard, key_of, letter_of
 from app.screen.keys import (
     ANSWER,
     NO,
@@ -36,12 +35,9 @@ from app.screen.keys import (
     name_of,
     typed_of,
 )
-from app.screen.language import speak_in
-from app.screen.look import Look, dress
-from app.screen.page_table import AUTOMATIC
-from app.screen.pages_ahead import PagesAhead
+from app.screen.look import PALETTES, Look, dress, speak_in
+from app.screen.page_table import AUTOMATIC, PagesAhead
 from app.screen.panel import FingerPanel
-from app.screen.theme import PALETTES
 from app.screen.window_frame import Frame
 from app.screen.window_layout import LEAST
 from core.message import Message

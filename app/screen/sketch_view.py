@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from functools import partial
 
 from PySide6.QtCore import QLineF, QPointF, QRectF, Qt
-from PySide6.QtGui import QFontMetricsF, QPen, QPolygonF
+from PySide6.QtGui import QFontMetricsF, QPainterPath, QPen, QPolygonF, QTransform
 from PySide6.QtWidgets import QWidget
 
 from app.screen.look import CENTRE, Look, Painter
 from app.screen.panel import Panel, Shown
 from app.screen.window_layout import FINGER
+from core.part.tool_outline import ToolOutline
+from core.part.tool_polygons import FloatArray
 from core.sketch import Dim, Outline, Sketch
+from core.tool_edges import TIP_DIRECTIONS
 
 _INKS = {
     "part": ("frame", 0.16),
@@ -154,3 +158,105 @@ class SketchPanel(Panel):
 def _is_diameter(dim: Dim) -> bool:
     """Whether it goes across the axis."""
     return dim.b is not None and dim.a[1] < 0.0 < dim.b[1] and dim.a[0] == dim.b[0]
+
+
+_AROUND = 1.9  # how much more than the cutting edges the picture shows of a tool with an insert
+
+
+def draw_outline(painter: Painter, box: QRectF, outline: ToolOutline, *, small: bool = False) -> None:
+    """Body and cutting edges of a tool, and the control point; Z to the right, X downwards.
+
+    ``small``: without the arrows of the axes, and a smaller cross.
+    """
+    look, u = painter.look, painter.look.u
+    place = _placing(box, outline)
+    painter.save()
+    painter.setClipRect(box)
+    for polygons, ink, ground in ((outline.body, "frame", "ghost"), (outline.cutting, "accent", "key")):
+        for points in polygons:
+            painter.setPen(look.pen(ink, 0.16))
+            painter.setBrush(look.colour(ground))
+            painter.drawPolygon(place.map(_polygon(points)))
+    at = place.map(QPointF(0.0, 0.0))
+    painter.setPen(look.pen("tip", 0.2))
+    arm, circle = (0.7 * u, 0.3 * u) if small else (1.6 * u, 0.6 * u)
+    painter.drawLine(at - QPointF(arm, 0), at + QPointF(arm, 0))
+    painter.drawLine(at - QPointF(0, arm), at + QPointF(0, arm))
+    painter.setBrush(Qt.BrushStyle.NoBrush)
+    painter.drawEllipse(at, circle, circle)
+    painter.restore()
+    if not small:
+        _axes(painter, box)
+
+
+def _placing(box: QRectF, outline: ToolOutline) -> QTransform:
+    """From (z, x) in mm to the box: round tools whole, of others the edges and what lies around them."""
+    cutting = _polygon(outline.cutting[0]).boundingRect()
+    for points in outline.cutting[1:]:
+        cutting = cutting.united(_polygon(points).boundingRect())
+    share = 1.15 if outline.axial else _AROUND
+    if outline.axial and outline.body:
+        cutting = cutting.united(_polygon(outline.body[0]).boundingRect())
+    scale = min(box.width() / cutting.width(), box.height() / cutting.height()) / share
+    # Where the body lies beside the edges, the picture looks that way.
+    middle = cutting.center()
+    if outline.body and not outline.axial:
+        whole = _polygon(outline.body[0]).boundingRect().center() - middle
+        reach = max(abs(whole.x()), abs(whole.y()), 1e-9)
+        middle += whole * (0.3 * min(cutting.width(), cutting.height()) / reach)
+    return QTransform(
+        scale, 0, 0, scale, box.center().x() - scale * middle.x(), box.center().y() - scale * middle.y()
+    )
+
+
+def _polygon(points: FloatArray) -> QPolygonF:
+    return QPolygonF([QPointF(z, x) for z, x in points.tolist()])
+
+
+def _axes(painter: Painter, box: QRectF) -> None:
+    """Z+ to the right and X+ downwards, in the corner that is the chuck's."""
+    u = painter.look.u
+    at, long = QPointF(box.x() + 1.2 * u, box.y() + 1.2 * u), 3.0 * u
+    painter.setPen(painter.look.pen("soft", 0.14))
+    painter.drawLine(at, at + QPointF(long, 0))
+    painter.drawLine(at, at + QPointF(0, long))
+    painter.write(QRectF(at.x() + long + 0.3 * u, at.y() - u, 3 * u, 2 * u), "Z+", 1.4, "soft", raw=True)
+    painter.write(QRectF(at.x() - 0.6 * u, at.y() + long, 3 * u, 2 * u), "X+", 1.4, "soft", raw=True)
+
+
+_SPREAD = 0.7  # radians from the tool's axis to its flanks
+
+
+def draw_tip(painter: Painter, box: QRectF, quadrant: int, colour: str = "text") -> None:
+    """The tip in a square: body away from the tip, nose circle, and a dot where X and Z are set."""
+    side = min(box.width(), box.height())
+    centre, radius = box.center(), 0.16 * side
+    z, x = TIP_DIRECTIONS[quadrant]  # X+ is down on the screen
+    middle = centre + QPointF(0.22 * side * z, 0.22 * side * x)
+    painter.save()
+    painter.setClipRect(box)
+    painter.setPen(Qt.PenStyle.NoPen)
+    painter.setBrush(painter.look.colour("ghost"))
+    if (z, x) != (0, 0):
+        painter.drawPath(_body(middle, math.atan2(-x, -z), radius, side))
+    painter.setPen(painter.look.pen(colour, 0.16))
+    painter.drawEllipse(middle, radius, radius)
+    painter.setPen(Qt.PenStyle.NoPen)
+    painter.setBrush(painter.look.colour("tip"))
+    dot = max(1.5, 0.06 * side)
+    painter.drawEllipse(middle + QPointF(radius * z, radius * x), dot, dot)
+    painter.restore()
+
+
+def _body(nose: QPointF, away: float, radius: float, side: float) -> QPainterPath:
+    """Two flanks that touch the nose circle and run out of the picture."""
+    path = QPainterPath(_on(nose, away + math.pi / 2 + _SPREAD, radius))
+    path.lineTo(_on(_on(nose, away + math.pi / 2 + _SPREAD, radius), away + _SPREAD, 2 * side))
+    path.lineTo(_on(_on(nose, away - math.pi / 2 - _SPREAD, radius), away - _SPREAD, 2 * side))
+    path.lineTo(_on(nose, away - math.pi / 2 - _SPREAD, radius))
+    path.closeSubpath()
+    return path
+
+
+def _on(at: QPointF, angle: float, far: float) -> QPointF:
+    return at + QPointF(far * math.cos(angle), far * math.sin(angle))

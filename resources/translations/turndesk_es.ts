@@ -8859,77 +8859,77 @@
       <translation>CONEXIÓN CON EL MANDO COLGANTE</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/charts_section.py" />
+      <location filename="app/extras/quality/trends_section.py" />
       <source>ARROWS: SELECT FEATURE. DASHED: CONTROL LIMITS, DOTTED: TOLERANCE, CIRCLED: RULE VIOLATIONS</source>
       <translation>FLECHAS: ELEGIR CARACTERÍSTICA. A TRAZOS: LÍMITES DE CONTROL, PUNTOS: TOLERANCIA, CÍRCULOS: REGLAS INCUMPLIDAS</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/charts_section.py" />
+      <location filename="app/extras/quality/trends_section.py" />
       <source>AVERAGE</source>
       <translation>PROMEDIO</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/charts_section.py" />
+      <location filename="app/extras/quality/trends_section.py" />
       <source>CONTROL CHARTS</source>
       <translation>GRÁFICAS DE CONTROL</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/charts_section.py" />
+      <location filename="app/extras/quality/trends_section.py" />
       <source>CONTROL CHARTS  ·  {program}</source>
       <translation>GRÁFICAS DE CONTROL  ·  {program}</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/charts_section.py" />
+      <location filename="app/extras/quality/trends_section.py" />
       <source>DRIFT</source>
       <translation>DERIVA</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/charts_section.py" />
+      <location filename="app/extras/quality/trends_section.py" />
       <source>FEATURE NOT MEASURED YET</source>
       <translation>CARACTERÍSTICA AÚN SIN MEDIR</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/charts_section.py" />
+      <location filename="app/extras/quality/trends_section.py" />
       <source>INDIVIDUALS</source>
       <translation>VALORES INDIVIDUALES</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/charts_section.py" />
+      <location filename="app/extras/quality/trends_section.py" />
       <source>MEAN {mode}</source>
       <translation>MEDIA {mode}</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/charts_section.py" />
+      <location filename="app/extras/quality/trends_section.py" />
       <source>MOVING RANGE</source>
       <translation>RANGO MÓVIL</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/charts_section.py" />
+      <location filename="app/extras/quality/trends_section.py" />
       <source>RANGE</source>
       <translation>RANGO</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/charts_section.py" />
+      <location filename="app/extras/quality/trends_section.py" />
       <source>READINGS</source>
       <translation>LECTURAS</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/charts_section.py" />
+      <location filename="app/extras/quality/trends_section.py" />
       <source>limits, Cpk, drift</source>
       <translation>límites, Cpk, deriva</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/charts_section.py" />
+      <location filename="app/extras/quality/trends_section.py" />
       <source>no drift; Cpk is at least {minimum} (95 % confidence)</source>
       <translation>sin deriva; Cpk es al menos {minimum} (confianza del 95 %)</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/correction_effect.py" />
+      <location filename="app/extras/quality/wear_correction.py" />
       <source>PARTS WITH OLD AND NEW OFFSETS CANNOT BE COMPARED: {why}</source>
       <translation>NO SE PUEDEN COMPARAR LAS PIEZAS CON CORRECTORES VIEJOS Y NUEVOS: {why}</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/correction_effect.py" />
+      <location filename="app/extras/quality/wear_correction.py" />
       <source>{name}: {change} FROM NEXT PART</source>
       <translation>{name}: {change} DESDE LA PRÓXIMA PIEZA</translation>
     </message>
@@ -9124,22 +9124,22 @@
       <translation>{value} no es un número entero</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/gauge_line.py" />
+      <location filename="app/extras/quality/gauge_wire.py" />
       <source>NO GAUGE IN THE MACHINE FILE. ADD [gauge] port = …</source>
       <translation>NO HAY CALIBRADOR EN EL ARCHIVO DE MÁQUINA. AÑADA [gauge] port = …</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/gauge_line.py" />
+      <location filename="app/extras/quality/gauge_wire.py" />
       <source>No gauge is configured: enter its serial port under [gauge] in the machine file.</source>
       <translation>Ningún calibrador configurado: indique su puerto serie en [gauge] del archivo de máquina.</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/gauge_line.py" />
+      <location filename="app/extras/quality/gauge_wire.py" />
       <source>the gauge is not connected or is switched off</source>
       <translation>el calibrador no está conectado o está apagado</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/gauge_line.py" />
+      <location filename="app/extras/quality/gauge_wire.py" />
       <source>the gauge sent unreadable data</source>
       <translation>el calibrador envió datos ilegibles</translation>
     </message>
@@ -9169,17 +9169,17 @@
       <translation>Calibrador sin escuchar. Pulse F5 para empezar.</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/parts_function.py" />
+      <location filename="app/extras/quality/quality_desk.py" />
       <source>ENTER: OPEN MEASURED PARTS   ESC: BACK TO LIST</source>
       <translation>ENTER: ABRIR PIEZAS MEDIDAS   ESC: VOLVER A LA LISTA</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/parts_function.py" />
+      <location filename="app/extras/quality/quality_desk.py" />
       <source>MEASUREMENT DUE</source>
       <translation>MEDICIÓN PENDIENTE</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/parts_function.py" />
+      <location filename="app/extras/quality/quality_desk.py" />
       <source>Press Enter to open the page, or press W in the main menu.</source>
       <translation>Pulse Enter para abrir la página, o W en el menú principal.</translation>
     </message>
@@ -9359,12 +9359,12 @@
       <translation>programa {program}: la pieza siguiente no puede empezar antes de medir las piezas requeridas</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/section.py" />
+      <location filename="app/extras/quality/plots.py" />
       <source>NO FEATURES YET. ADD A FEATURE IN SECTION 1 WITH F2</source>
       <translation>AÚN NO HAY CARACTERÍSTICAS. AÑADA UNA CARACTERÍSTICA EN LA SECCIÓN 1 CON F2</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/section.py" />
+      <location filename="app/extras/quality/plots.py" />
       <source>SELECT A PROGRAM FIRST. EACH PROGRAM HAS ITS OWN FEATURES</source>
       <translation>SELECCIONE ANTES UN PROGRAMA. CADA PROGRAMA TIENE SUS PROPIAS CARACTERÍSTICAS</translation>
     </message>
@@ -11269,52 +11269,52 @@
       <translation>CAMBIARÁN {count} MEDIDAS DE LA PIEZA. F6: VER TABLA</translation>
     </message>
     <message>
-      <location filename="app/offsets/offset_history.py" />
+      <location filename="app/offsets/offset_questions.py" />
       <source>; APPLIES FROM NEXT CYCLE START</source>
       <translation>; VALE DESDE EL PRÓXIMO ARRANQUE DE CICLO</translation>
     </message>
     <message>
-      <location filename="app/offsets/offset_history.py" />
+      <location filename="app/offsets/offset_questions.py" />
       <source>; APPLIES FROM NEXT PART</source>
       <translation>; VALE DESDE LA PRÓXIMA PIEZA</translation>
     </message>
     <message>
-      <location filename="app/offsets/offset_history.py" />
+      <location filename="app/offsets/offset_questions.py" />
       <source>OFFSET CHANGES APPLY FROM NEXT PART, AFTER THEY ARE PROVED</source>
       <translation>LOS CAMBIOS DE CORRECTOR VALEN DESDE LA PRÓXIMA PIEZA, UNA VEZ COMPROBADOS</translation>
     </message>
     <message>
-      <location filename="app/offsets/offset_history.py" />
+      <location filename="app/offsets/offset_questions.py" />
       <source>PROGRAM RUNNING. CHANGE ONLY WEAR OR SECONDARY OFFSETS (F9)</source>
       <translation>PROGRAMA EN MARCHA. CAMBIE SOLO DESGASTE O CORRECTORES SECUNDARIOS (F9)</translation>
     </message>
     <message>
-      <location filename="app/offsets/offset_history.py" />
+      <location filename="app/offsets/offset_questions.py" />
       <source>SAVED</source>
       <translation>GUARDADO</translation>
     </message>
     <message>
-      <location filename="app/offsets/offset_history.py" />
+      <location filename="app/offsets/offset_questions.py" />
       <source>WEAR APPLIES FROM NEXT CYCLE START</source>
       <translation>EL DESGASTE VALE DESDE EL PRÓXIMO ARRANQUE DE CICLO</translation>
     </message>
     <message>
-      <location filename="app/offsets/offset_history.py" />
+      <location filename="app/offsets/offset_questions.py" />
       <source>{count} OFFSETS</source>
       <translation>{count} CORRECTORES</translation>
     </message>
     <message>
-      <location filename="app/offsets/offset_history.py" />
+      <location filename="app/offsets/offset_questions.py" />
       <source>{count} offsets changed. {keys}: show the changes</source>
       <translation>cambiaron {count} correctores. {keys}: ver los cambios</translation>
     </message>
     <message>
-      <location filename="app/offsets/offset_history.py" />
+      <location filename="app/offsets/offset_questions.py" />
       <source>{names} SAVED</source>
       <translation>{names}: GUARDADO</translation>
     </message>
     <message>
-      <location filename="app/offsets/offset_history.py" />
+      <location filename="app/offsets/offset_questions.py" />
       <source>{names} UNDONE</source>
       <translation>{names} DESHECHO</translation>
     </message>
@@ -11634,52 +11634,52 @@
       <translation>ESCRIBA LOS VALORES EN LA TABLA. ESC: VER TABLA</translation>
     </message>
     <message>
-      <location filename="app/offsets/part_effect.py" />
+      <location filename="app/offsets/offset_effect.py" />
       <source>AFTER</source>
       <translation>DESPUÉS</translation>
     </message>
     <message>
-      <location filename="app/offsets/part_effect.py" />
+      <location filename="app/offsets/offset_effect.py" />
       <source>BEFORE</source>
       <translation>ANTERIOR</translation>
     </message>
     <message>
-      <location filename="app/offsets/part_effect.py" />
+      <location filename="app/offsets/offset_effect.py" />
       <source>BORE</source>
       <translation>MANDRINADO</translation>
     </message>
     <message>
-      <location filename="app/offsets/part_effect.py" />
+      <location filename="app/offsets/offset_effect.py" />
       <source>BORE SHOULDER</source>
       <translation>HOMBRO DEL AGUJERO</translation>
     </message>
     <message>
-      <location filename="app/offsets/part_effect.py" />
+      <location filename="app/offsets/offset_effect.py" />
       <source>EFFECT ON THE PART</source>
       <translation>EFECTO EN LA PIEZA</translation>
     </message>
     <message>
-      <location filename="app/offsets/part_effect.py" />
+      <location filename="app/offsets/offset_effect.py" />
       <source>FEATURE</source>
       <translation>MEDIDA</translation>
     </message>
     <message>
-      <location filename="app/offsets/part_effect.py" />
+      <location filename="app/offsets/offset_effect.py" />
       <source>LINE {line}: FINDING {check} NO LONGER REPORTED</source>
       <translation>LÍNEA {line}: YA NO SE INFORMA EL HALLAZGO {check}</translation>
     </message>
     <message>
-      <location filename="app/offsets/part_effect.py" />
+      <location filename="app/offsets/offset_effect.py" />
       <source>LINE {line}: {what}</source>
       <translation>LÍNEA {line}: {what}</translation>
     </message>
     <message>
-      <location filename="app/offsets/part_effect.py" />
+      <location filename="app/offsets/offset_effect.py" />
       <source>ONLY IN THE OLD OR THE NEW PART</source>
       <translation>SOLO EN LA PIEZA ANTERIOR O LA NUEVA</translation>
     </message>
     <message>
-      <location filename="app/offsets/part_effect.py" />
+      <location filename="app/offsets/offset_effect.py" />
       <source>SHOULDER</source>
       <translation>HOMBRO</translation>
     </message>
@@ -11984,72 +11984,72 @@
       <translation>sin forma</translation>
     </message>
     <message>
-      <location filename="app/offsets/tool_shapes_view.py" />
+      <location filename="app/offsets/tool_offsets_view.py" />
       <source>ASSUMED: {names}</source>
       <translation>SUPUESTO: {names}</translation>
     </message>
     <message>
-      <location filename="app/offsets/tool_shapes_view.py" />
+      <location filename="app/offsets/tool_offsets_view.py" />
       <source>IMPOSSIBLE TOOL SHAPE</source>
       <translation>FORMA DE HERRAMIENTA IMPOSIBLE</translation>
     </message>
     <message>
-      <location filename="app/offsets/tool_shapes_view.py" />
+      <location filename="app/offsets/tool_offsets_view.py" />
       <source>NONE</source>
       <translation>NINGUNO</translation>
     </message>
     <message>
-      <location filename="app/offsets/tool_shapes_view.py" />
+      <location filename="app/offsets/tool_offsets_view.py" />
       <source>SHAPE OF T{number}</source>
       <translation>FORMA DE T{number}</translation>
     </message>
     <message>
-      <location filename="app/offsets/tool_shapes_view.py" />
+      <location filename="app/offsets/tool_offsets_view.py" />
       <source>TOOL SHAPE NOT DEFINED: ONLY THE TOOL NOSE IS CHECKED</source>
       <translation>FORMA DE LA HERRAMIENTA SIN DEFINIR: SOLO SE COMPRUEBA LA PUNTA</translation>
     </message>
     <message>
-      <location filename="app/offsets/zero_offsets.py" />
+      <location filename="app/offsets/presets.py" />
       <source>C, DEGREES?</source>
       <translation>¿C, GRADOS?</translation>
     </message>
     <message>
-      <location filename="app/offsets/zero_offsets.py" />
+      <location filename="app/offsets/presets.py" />
       <source>F2: set the current position to the typed value        C: clear G54 to G59        Esc: exit</source>
       <translation>F2: fijar la posición actual al valor escrito        C: borrar G54 a G59        Esc: salir</translation>
     </message>
     <message>
-      <location filename="app/offsets/zero_offsets.py" />
+      <location filename="app/offsets/presets.py" />
       <source>PRESS Y TO CLEAR G54 TO G59, N TO KEEP THEM</source>
       <translation>PULSE Y PARA BORRAR G54 A G59, N PARA CONSERVARLOS</translation>
     </message>
     <message>
-      <location filename="app/offsets/zero_offsets.py" />
+      <location filename="app/offsets/presets.py" />
       <source>PROGRAM RUNNING. CHANGE G54 TO G59 ONLY BETWEEN CYCLES</source>
       <translation>PROGRAMA EN MARCHA. CAMBIE G54 A G59 SOLO ENTRE CICLOS</translation>
     </message>
     <message>
-      <location filename="app/offsets/zero_offsets.py" />
+      <location filename="app/offsets/presets.py" />
       <source>SETTABLE OFFSETS  ·  X IS A RADIUS  ·  MM AND DEGREES</source>
       <translation>CEROS AJUSTABLES  ·  X ES RADIO  ·  MM Y GRADOS</translation>
     </message>
     <message>
-      <location filename="app/offsets/zero_offsets.py" />
+      <location filename="app/offsets/presets.py" />
       <source>THIS MACHINE HAS NO {axis} AXIS</source>
       <translation>ESTA MÁQUINA NO TIENE EJE {axis}</translation>
     </message>
     <message>
-      <location filename="app/offsets/zero_offsets.py" />
+      <location filename="app/offsets/presets.py" />
       <source>X RADIUS, MM?</source>
       <translation>¿RADIO X, MM?</translation>
     </message>
     <message>
-      <location filename="app/offsets/zero_offsets.py" />
+      <location filename="app/offsets/presets.py" />
       <source>Z, MM?</source>
       <translation>¿Z, MM?</translation>
     </message>
     <message>
-      <location filename="app/offsets/zero_offsets.py" />
+      <location filename="app/offsets/presets.py" />
       <source>all zero offsets cleared with the C key</source>
       <translation>todos los decalajes de origen borrados con la tecla C</translation>
     </message>
@@ -13624,12 +13624,12 @@
       <translation>TECLADO NUMÉRICO</translation>
     </message>
     <message>
-      <location filename="app/screen/language.py" />
+      <location filename="app/screen/look.py" />
       <source>catalog turndesk_{language}.qm not found in {folder}</source>
       <translation>no se encontró el catálogo turndesk_{language}.qm en {folder}</translation>
     </message>
     <message>
-      <location filename="app/screen/letter_keys.py" />
+      <location filename="app/screen/entry_panel.py" />
       <source>SPACE</source>
       <translation>ESPACIO</translation>
     </message>
@@ -13864,12 +13864,12 @@
       <translation>INTERR. OFF</translation>
     </message>
     <message>
-      <location filename="app/screen/row_panel.py" />
+      <location filename="app/screen/sheet_panel.py" />
       <source>NEXT ROWS</source>
       <translation>FILAS SIGUIENTES</translation>
     </message>
     <message>
-      <location filename="app/screen/row_panel.py" />
+      <location filename="app/screen/sheet_panel.py" />
       <source>PREVIOUS ROWS</source>
       <translation>FILAS ANTERIORES</translation>
     </message>

@@ -14,8 +14,7 @@ from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
 from app.screen.chart import Chart, curve_colour, line_pen, set_curve
-from app.screen.look import Look
-from app.screen.theme import CURVES, DARK, LIGHT
+from app.screen.look import CURVES, DARK, LIGHT, Look
 
 
 @pytest.fixture

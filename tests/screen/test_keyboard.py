@@ -10,7 +10,7 @@ from PySide6.QtGui import QKeyEvent, QWindow
 from PySide6.QtWidgets import QApplication
 
 from app.screen import page_table
-from app.screen.event_times import FRAMES, STALL, EventTimes
+from app.screen.keyboard import FRAMES, STALL, EventTimes
 from app.screen.main_window import MainWindow
 from core.executor.commands import CycleStart, FeedHold
 from core.executor.snapshot import State

@@ -130,7 +130,7 @@ def _capability(data: PartsData, number: int) -> dict[str, object] | None:
 
 
 def _write_csv(store: Store, names: Sequence[str]) -> None:
-    from app.extras.quality.readings_file import HEAD, reading_lines
+    from app.extras.quality.parts_data import HEAD, reading_lines
 
     table = csv.writer(sys.stdout, lineterminator="\n")
     table.writerow(("program", *HEAD))

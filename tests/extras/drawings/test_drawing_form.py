@@ -15,7 +15,7 @@ from app.extras.drawings.drawing_form import DrawingForm
 from app.extras.drawings.drawing_plan import Planner
 from app.extras.drawings.drawings_desk import attempt
 from app.extras.shapes.shapes_model import Shapes
-from app.screen.language import speak_in
+from app.screen.look import speak_in
 from core.extras.drawings.drawing import Drawing
 from core.extras.drawings.drawing_file import read_drawing
 from core.extras.shapes.shape_setting import Setting, Shop

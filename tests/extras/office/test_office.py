@@ -32,7 +32,7 @@ from app.extras.office.page_server import PageServer, listening_at
 from app.extras.office.png_file import png_of
 from app.extras.office.status_page import OtherDesk, StatusPage
 from app.programs.preview import Thumbnail
-from app.screen.language import speak_in
+from app.screen.look import speak_in
 from app.shopfloor.floor_reading import FloorReader
 from app.shopfloor.status_file import Status
 from core.executor.snapshot import Snapshot, State

@@ -20,8 +20,7 @@ from app.editor.findings_view import FindingList
 from app.editor.heading_view import editor_places
 from app.editor.live_proof import Findings
 from app.editor.text_view import TextField
-from app.screen.look import Look
-from app.screen.theme import DARK, LIGHT
+from app.screen.look import DARK, LIGHT, Look
 from app.screen.window_layout import FINGER
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Dialect
