@@ -68,7 +68,7 @@ SENTENCES = (
     ("The table of secondary offsets", "secondary offsets", "app/offsets/secondary_offsets.py"),
     ("Tools are touched off", "touch off", "app/jog/jog_touch_off.py"),
     ("Back into the part after a stop", "restart", "core/interpreter/restart/restart_approach.py"),
-    ("What a G54 is set to", "zero offsets", "app/offsets/presets.py"),
+    ("What a G54 is set to", "zero offsets", "app/offsets/zero_offsets.py"),
     ("No move beyond the travel is proved", "soft limits", "core/proving/checks/machine_checks.py"),
     ("How long a part takes", "cycle time", "core/proving/program_timeline.py"),
     ("PLANE POINTS on a table", "plane", "core/interpreter/klartext/plane_functions.py"),

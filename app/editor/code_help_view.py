@@ -14,9 +14,9 @@ from app.editor.code_pictures import picture_of
 from app.editor.live_proof import LiveProof
 from app.editor.text_view import TextField
 from app.screen.code_choices_view import CodeChoices, write_entry
+from app.screen.drawings import SketchPanel
 from app.screen.look import Look, Painter
 from app.screen.panel import Panel, Shown
-from app.screen.sketch_view import SketchPanel
 from core.language.code_book import Entry
 from core.language.source import Dialect
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 from app.desk.arithmetic import EntryError, value_of
 from app.desk.translation import tr
-from app.offsets.offset_questions import OffsetHistory, OffsetQuestions
+from app.offsets.offset_changes import OffsetHistory, OffsetQuestions
 from app.offsets.offset_values import TOOL_FIELDS, Mode, to_mm, word
 from app.offsets.tool_fields import NewTool
 from core.executor.snapshot import Snapshot, State

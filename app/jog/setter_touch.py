@@ -14,7 +14,7 @@ from app.jog.held_jog import Held, HeldJog
 from app.jog.jog_speeds import JogDirection
 from app.jog.jog_touch_off import TOUCH_X, TOUCH_Z
 from app.jog.tool_setting import ToolSetting
-from app.offsets.offset_questions import refusal
+from app.offsets.offset_changes import refusal
 from app.offsets.offset_values import signed
 from core.executor.commands import Command, Touch
 from core.executor.snapshot import Snapshot, State, Touched, TouchPhase

@@ -10,8 +10,9 @@ from app.desk.sheet import edited, refused
 from app.desk.translation import tr
 from app.jog import jog_touch_off
 from app.jog.jog_touch_off import TOUCH_X, TOUCH_Z, TOUCHES, TouchOff
+from app.offsets.change_rules import CORRECTIONS
 from app.offsets.offset_book import OffsetBook
-from app.offsets.offset_questions import OffsetHistory, OffsetQuestions, follower_names, refusal
+from app.offsets.offset_changes import OffsetHistory, OffsetQuestions, follower_names, refusal
 from app.offsets.offset_values import (
     TOOL_FIELDS,
     Mode,
@@ -22,7 +23,6 @@ from app.offsets.offset_values import (
     value_typed,
     word,
 )
-from app.offsets.suspicious_changes import CORRECTIONS
 from app.offsets.tool_fields import ToolFields
 from core.executor.snapshot import Snapshot
 from core.message import Message

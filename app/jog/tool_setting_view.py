@@ -14,9 +14,9 @@ from app.jog.jog_model import JogModel
 from app.jog.jog_touch_off import TOUCH_X, TOUCH_Z
 from app.jog.tool_setting import TOOL
 from app.offsets.offset_values import Mode, marked, not_set, shown_value, signed, word
+from app.screen.drawings import draw_tip
 from app.screen.look import CENTRE, LEFT, RIGHT, Look, Painter
 from app.screen.panel import Panel, Shown
-from app.screen.sketch_view import draw_tip
 from core.executor.snapshot import Snapshot
 from core.message import join_messages
 from core.tool_edges import edge_name

@@ -14,7 +14,7 @@ from app.offsets.cell_table import CellTable
 from app.offsets.mill_tools import MillTools
 from app.offsets.offset_values import cell_text
 from app.offsets.offsets_view import OffsetPage
-from app.offsets.presets import Presets, ZeroOffsets
+from app.offsets.zero_offsets import Presets, ZeroOffsets
 from app.screen import page_table
 from app.screen.look import CENTRE, RIGHT, Look, Painter
 from app.screen.page_base import Host, KeyActions

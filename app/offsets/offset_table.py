@@ -14,7 +14,7 @@ from app.desk.desk import Desk
 from app.desk.sheet import edited
 from app.desk.translation import tr
 from app.offsets.offset_book import OffsetBook
-from app.offsets.offset_questions import OffsetHistory, OffsetQuestions, refusal
+from app.offsets.offset_changes import OffsetHistory, OffsetQuestions, refusal
 from app.offsets.offset_values import Mode
 from core.executor.snapshot import Snapshot
 from core.store.store_rows import Kind, SecondaryRow, ToolRow

@@ -10,7 +10,7 @@ from typing import ClassVar
 from app.desk.arithmetic import CHARACTERS, LONGEST, EntryError
 from app.desk.sheet import refused
 from app.desk.translation import tr
-from app.offsets.offset_questions import OffsetHistory, OffsetQuestions
+from app.offsets.offset_changes import OffsetHistory, OffsetQuestions
 from app.offsets.offset_table import OffsetTable
 from app.offsets.offset_values import TOOL_FIELDS, heading, shown_value, value_added, value_typed, word
 from core.message import Message

@@ -5,14 +5,14 @@ from __future__ import annotations
 from app.desk.arithmetic import EntryError
 from app.desk.desk import Desk
 from app.desk.translation import tr
-from app.offsets.offset_questions import counts_from
+from app.offsets.change_rules import CORRECTIONS
+from app.offsets.offset_changes import counts_from
 from app.offsets.offset_table import Proposed
 from app.offsets.offset_values import (
     not_set,
     shown_value,
     value_typed,
 )
-from app.offsets.suspicious_changes import CORRECTIONS
 from app.offsets.tool_fields import ToolEntry, ToolFields
 from core.executor.snapshot import Snapshot
 from core.message import Message

@@ -16,11 +16,11 @@ from app.offsets.offsets_view import OffsetPage
 from app.offsets.tool_offsets import COLUMNS, ToolOffsets
 from app.offsets.tool_shapes import ToolShapes
 from app.screen import page_table
+from app.screen.drawings import draw_outline, draw_tip
 from app.screen.look import CENTRE, LEFT, RIGHT, Look, Painter
 from app.screen.page_base import Host, KeyActions
 from app.screen.panel import Panel, Shown
 from app.screen.sheet_panel import RowPanel
-from app.screen.sketch_view import draw_outline, draw_tip
 from core.executor.snapshot import Snapshot
 from core.message import Message, join_messages
 from core.tool_edges import edge_number, edge_of, tool_of

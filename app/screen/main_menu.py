@@ -14,11 +14,11 @@ from app.desk.page_description import PageEntry
 from app.desk.page_entry import editor_barred, mdi_barred
 from app.desk.program_loading import Loaded
 from app.screen import page_table
-from app.screen.keys import OF_MENU
 from app.screen.look import CENTRE, Look, Painter
 from app.screen.page_base import Host, KeyActions, Page
 from app.screen.page_table import menu_keys, menu_of
 from app.screen.panel import Panel, Shown
+from app.screen.window.keys import OF_MENU
 from app.screen.window_layout import FINGER
 from core.executor.snapshot import Snapshot
 

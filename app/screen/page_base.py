@@ -9,7 +9,7 @@ spindle, lamps, dock, prompt and function keys belong to the ``Frame``. To plug 
 ``labels()``  the same, where they change with what the page is doing.
 ``barred()``  the function keys that would be refused now: they are drawn dim, and say why when pressed.
 ``STARTS``    whether cycles are started while it is shown; only the Automatic page's palms start anything.
-``key_actions()``  what its keys do, by the names of ``app.screen.keys``. They go before the frame's own
+``key_actions()``  what its keys do, by the names of ``app.screen.window.keys``. They go before the frame's own
               keys; H, E, D, R and the pots work on every page without a caret, F1 on all pages.
 ``key_down``  sees every key that goes down (also a repeating one) before all else; True takes it.
 ``pressed()`` is told before any other key or finger acts: what is held on the page ends then.
@@ -226,7 +226,7 @@ class HeadKey(NamedTuple):
 class EditorPanel(QWidget):
     """Nothing; a feature registers its subclass as ``Extra.editor_panel``.
 
-    ``KEYS`` are the names of the keys that open it, from ``app.screen.keys``.
+    ``KEYS`` are the names of the keys that open it, from ``app.screen.window.keys``.
     """
 
     KEYS: Sequence[str] = ()

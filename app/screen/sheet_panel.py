@@ -12,11 +12,11 @@ from PySide6.QtWidgets import QWidget
 
 from app.desk.sheet import Key, Row, Sheet
 from app.screen import page_table
+from app.screen.drawings import draw_outline
 from app.screen.entry_panel import draw_entry_box
 from app.screen.look import LEFT, RIGHT, Look, Painter
 from app.screen.page_base import Host, ModelPage, PageModel
 from app.screen.panel import Panel, Shown
-from app.screen.sketch_view import draw_outline
 from app.screen.window_layout import FINGER
 
 KEY = 5.0  # units: size of the two keys that scroll; at least a fingertip

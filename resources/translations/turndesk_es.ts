@@ -8859,67 +8859,67 @@
       <translation>CONEXIÓN CON EL MANDO COLGANTE</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/trends_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>ARROWS: SELECT FEATURE. DASHED: CONTROL LIMITS, DOTTED: TOLERANCE, CIRCLED: RULE VIOLATIONS</source>
       <translation>FLECHAS: ELEGIR CARACTERÍSTICA. A TRAZOS: LÍMITES DE CONTROL, PUNTOS: TOLERANCIA, CÍRCULOS: REGLAS INCUMPLIDAS</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/trends_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>AVERAGE</source>
       <translation>PROMEDIO</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/trends_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>CONTROL CHARTS</source>
       <translation>GRÁFICAS DE CONTROL</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/trends_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>CONTROL CHARTS  ·  {program}</source>
       <translation>GRÁFICAS DE CONTROL  ·  {program}</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/trends_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>DRIFT</source>
       <translation>DERIVA</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/trends_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>FEATURE NOT MEASURED YET</source>
       <translation>CARACTERÍSTICA AÚN SIN MEDIR</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/trends_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>INDIVIDUALS</source>
       <translation>VALORES INDIVIDUALES</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/trends_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>MEAN {mode}</source>
       <translation>MEDIA {mode}</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/trends_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>MOVING RANGE</source>
       <translation>RANGO MÓVIL</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/trends_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>RANGE</source>
       <translation>RANGO</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/trends_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>READINGS</source>
       <translation>LECTURAS</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/trends_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>limits, Cpk, drift</source>
       <translation>límites, Cpk, deriva</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/trends_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>no drift; Cpk is at least {minimum} (95 % confidence)</source>
       <translation>sin deriva; Cpk es al menos {minimum} (confianza del 95 %)</translation>
     </message>
@@ -9359,12 +9359,12 @@
       <translation>programa {program}: la pieza siguiente no puede empezar antes de medir las piezas requeridas</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/plots.py" />
+      <location filename="app/extras/quality/section.py" />
       <source>NO FEATURES YET. ADD A FEATURE IN SECTION 1 WITH F2</source>
       <translation>AÚN NO HAY CARACTERÍSTICAS. AÑADA UNA CARACTERÍSTICA EN LA SECCIÓN 1 CON F2</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/plots.py" />
+      <location filename="app/extras/quality/section.py" />
       <source>SELECT A PROGRAM FIRST. EACH PROGRAM HAS ITS OWN FEATURES</source>
       <translation>SELECCIONE ANTES UN PROGRAMA. CADA PROGRAMA TIENE SUS PROPIAS CARACTERÍSTICAS</translation>
     </message>
@@ -9629,142 +9629,142 @@
       <translation>{unit} mm</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/trends_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>ARROWS: SELECT TREND   ESC: BACK TO LIST</source>
       <translation>FLECHAS: ELEGIR TENDENCIA   ESC: VOLVER A LA LISTA</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/trends_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>AVAILABILITY</source>
       <translation>DISPONIBILIDAD</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/trends_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>CYCLE TIME</source>
       <translation>TIEMPO DE CICLO</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/trends_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>CYCLE TIME, s</source>
       <translation>TIEMPO DE CICLO, s</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/trends_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>IN CYCLE</source>
       <translation>EN CICLO</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/trends_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>MINUTES BY REASON, WITH CUMULATIVE PERCENTAGE</source>
       <translation>MINUTOS POR MOTIVO, CON PORCENTAJE ACUMULADO</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/trends_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>MINUTES OF THE SHIFT</source>
       <translation>MINUTOS DEL TURNO</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/trends_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>NOT IN CYCLE</source>
       <translation>FUERA DE CICLO</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/trends_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>SHIFT HOURS, FOR EXAMPLE 6-14?</source>
       <translation>¿HORAS DEL TURNO, POR EJEMPLO 6-14?</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/trends_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>SPINDLE LOAD</source>
       <translation>CARGA DEL HUSILLO</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/trends_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>SPINDLE LOAD, %</source>
       <translation>CARGA DEL HUSILLO, %</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/trends_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>STOPS</source>
       <translation>PAROS</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/trends_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>TRENDS</source>
       <translation>TENDENCIAS</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/trends_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>TRENDS  ·  {program}</source>
       <translation>TENDENCIAS  ·  {program}</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/trends_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>cycle times, stops, availability</source>
       <translation>tiempos de ciclo, paros, disponibilidad</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/trends_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>enter the start and end hour of the shift, such as 6-14</source>
       <translation>escriba la hora de inicio y la de fin del turno, como 6-14</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/trends_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>last cycle {last}, shortest {best}, mean {mean} of {count} parts</source>
       <translation>último ciclo {last}, menor {best}, media {mean} de {count} piezas</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/trends_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>last load {last} %, highest load {maximum} %</source>
       <translation>última carga {last} %, carga mayor {maximum} %</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/trends_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>no drive on this machine reports its load</source>
       <translation>ningún accionamiento de esta máquina informa su carga</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/trends_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>no part made yet</source>
       <translation>aún no se ha hecho ninguna pieza</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/trends_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>no stops yet</source>
       <translation>aún sin paros</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/trends_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>no wear correction yet</source>
       <translation>aún sin correcciones de desgaste</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/trends_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>parts</source>
       <translation>piezas</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/trends_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>shift hours: {first} to {last}</source>
       <translation>horas del turno: {first} a {last}</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/trends_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>{count} corrections; last correction: {offset} by X {x} Z {z} after part {part}</source>
       <translation>{count} correcciones; última corrección: {offset} en X {x} Z {z} tras la pieza {part}</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/trends_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>{count} stops, on average {mean} apart; longest total: {reason}, {time}</source>
       <translation>{count} paros, {mean} entre ellos de media; mayor total: {reason}, {time}</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/trends_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>{first}–{last}: the shift has not started</source>
       <translation>{first}–{last}: el turno no ha empezado</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/trends_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>{first}–{last}: {share} %, in cycle for {run} of {planned}</source>
       <translation>{first}–{last}: {share} %, en ciclo {run} de {planned}</translation>
     </message>
@@ -11269,132 +11269,132 @@
       <translation>CAMBIARÁN {count} MEDIDAS DE LA PIEZA. F6: VER TABLA</translation>
     </message>
     <message>
-      <location filename="app/offsets/offset_questions.py" />
+      <location filename="app/offsets/offset_changes.py" />
       <source>; APPLIES FROM NEXT CYCLE START</source>
       <translation>; VALE DESDE EL PRÓXIMO ARRANQUE DE CICLO</translation>
     </message>
     <message>
-      <location filename="app/offsets/offset_questions.py" />
+      <location filename="app/offsets/offset_changes.py" />
       <source>; APPLIES FROM NEXT PART</source>
       <translation>; VALE DESDE LA PRÓXIMA PIEZA</translation>
     </message>
     <message>
-      <location filename="app/offsets/offset_questions.py" />
+      <location filename="app/offsets/offset_changes.py" />
       <source>OFFSET CHANGES APPLY FROM NEXT PART, AFTER THEY ARE PROVED</source>
       <translation>LOS CAMBIOS DE CORRECTOR VALEN DESDE LA PRÓXIMA PIEZA, UNA VEZ COMPROBADOS</translation>
     </message>
     <message>
-      <location filename="app/offsets/offset_questions.py" />
+      <location filename="app/offsets/offset_changes.py" />
       <source>PROGRAM RUNNING. CHANGE ONLY WEAR OR SECONDARY OFFSETS (F9)</source>
       <translation>PROGRAMA EN MARCHA. CAMBIE SOLO DESGASTE O CORRECTORES SECUNDARIOS (F9)</translation>
     </message>
     <message>
-      <location filename="app/offsets/offset_questions.py" />
+      <location filename="app/offsets/offset_changes.py" />
       <source>SAVED</source>
       <translation>GUARDADO</translation>
     </message>
     <message>
-      <location filename="app/offsets/offset_questions.py" />
+      <location filename="app/offsets/offset_changes.py" />
       <source>WEAR APPLIES FROM NEXT CYCLE START</source>
       <translation>EL DESGASTE VALE DESDE EL PRÓXIMO ARRANQUE DE CICLO</translation>
     </message>
     <message>
-      <location filename="app/offsets/offset_questions.py" />
+      <location filename="app/offsets/offset_changes.py" />
       <source>{count} OFFSETS</source>
       <translation>{count} CORRECTORES</translation>
     </message>
     <message>
-      <location filename="app/offsets/offset_questions.py" />
+      <location filename="app/offsets/offset_changes.py" />
       <source>{count} offsets changed. {keys}: show the changes</source>
       <translation>cambiaron {count} correctores. {keys}: ver los cambios</translation>
     </message>
     <message>
-      <location filename="app/offsets/offset_questions.py" />
+      <location filename="app/offsets/offset_changes.py" />
       <source>{names} SAVED</source>
       <translation>{names}: GUARDADO</translation>
     </message>
     <message>
-      <location filename="app/offsets/offset_questions.py" />
+      <location filename="app/offsets/offset_changes.py" />
       <source>{names} UNDONE</source>
       <translation>{names} DESHECHO</translation>
     </message>
     <message>
-      <location filename="app/offsets/offset_questions.py" />
+      <location filename="app/offsets/offset_changes.py" />
       <source>CUTS ON THE OPPOSITE SIDE OF THE PART</source>
       <translation>CORTA EN EL LADO OPUESTO DE LA PIEZA</translation>
     </message>
     <message>
-      <location filename="app/offsets/offset_questions.py" />
+      <location filename="app/offsets/offset_changes.py" />
       <source>LARGE CHANGE</source>
       <translation>CAMBIO GRANDE</translation>
     </message>
     <message>
-      <location filename="app/offsets/offset_questions.py" />
+      <location filename="app/offsets/offset_changes.py" />
       <source>MASTER {before} → NONE: NO OTHER TOOLS WILL BE ADJUSTED. Y: CHANGE   N: KEEP</source>
       <translation>MAESTRA {before} → NINGUNA: NO SE AJUSTARÁ NINGUNA OTRA HERRAMIENTA. Y: CAMBIAR   N: CONSERVAR</translation>
     </message>
     <message>
-      <location filename="app/offsets/offset_questions.py" />
+      <location filename="app/offsets/offset_changes.py" />
       <source>MASTER {before} → {tool}. TOOLS ADJUSTED WITH THE MASTER: {others}. TOUCH-OFF CHANGES OVER {limit} {unit} MUST BE CONFIRMED. Y: CHANGE   N: KEEP</source>
       <translation>MAESTRA {before} → {tool}. HERRAMIENTAS QUE SE AJUSTAN CON LA MAESTRA: {others}. LOS CAMBIOS POR TOQUE DE MÁS DE {limit} {unit} SE DEBEN CONFIRMAR. Y: CAMBIAR   N: CONSERVAR</translation>
     </message>
     <message>
-      <location filename="app/offsets/offset_questions.py" />
+      <location filename="app/offsets/offset_changes.py" />
       <source>NO CHANGE TO UNDO IN {row}</source>
       <translation>NO HAY CAMBIOS QUE DESHACER EN {row}</translation>
     </message>
     <message>
-      <location filename="app/offsets/offset_questions.py" />
+      <location filename="app/offsets/offset_changes.py" />
       <source>OFFSETS CHANGED BEFORE YOU ANSWERED. ENTER THE VALUE AGAIN</source>
       <translation>LOS CORRECTORES CAMBIARON ANTES DE SU RESPUESTA. INTRODUZCA EL VALOR OTRA VEZ</translation>
     </message>
     <message>
-      <location filename="app/offsets/offset_questions.py" />
+      <location filename="app/offsets/offset_changes.py" />
       <source>OTHER TOOLS ARE ADJUSTED WITH THIS TOOL</source>
       <translation>OTRAS HERRAMIENTAS SE AJUSTAN CON ESTA</translation>
     </message>
     <message>
-      <location filename="app/offsets/offset_questions.py" />
+      <location filename="app/offsets/offset_changes.py" />
       <source>OUTSIDE AXIS TRAVEL</source>
       <translation>FUERA DEL RECORRIDO DEL EJE</translation>
     </message>
     <message>
-      <location filename="app/offsets/offset_questions.py" />
+      <location filename="app/offsets/offset_changes.py" />
       <source>THIS TABLE</source>
       <translation>ESTA TABLA</translation>
     </message>
     <message>
-      <location filename="app/offsets/offset_questions.py" />
+      <location filename="app/offsets/offset_changes.py" />
       <source>UNDO {row}: {change}, AND ALSO {others}? Y: UNDO   N: KEEP</source>
       <translation>¿DESHACER {row}: {change}, Y TAMBIÉN {others}? Y: DESHACER   N: CONSERVAR</translation>
     </message>
     <message>
-      <location filename="app/offsets/offset_questions.py" />
+      <location filename="app/offsets/offset_changes.py" />
       <source>UNDO {row}: {change}? Y: UNDO   N: KEEP</source>
       <translation>¿DESHACER {row}: {change}? Y: DESHACER   N: CONSERVAR</translation>
     </message>
     <message>
-      <location filename="app/offsets/offset_questions.py" />
+      <location filename="app/offsets/offset_changes.py" />
       <source>no master</source>
       <translation>sin maestra</translation>
     </message>
     <message>
-      <location filename="app/offsets/offset_questions.py" />
+      <location filename="app/offsets/offset_changes.py" />
       <source>set as master</source>
       <translation>fijada como maestra</translation>
     </message>
     <message>
-      <location filename="app/offsets/offset_questions.py" />
+      <location filename="app/offsets/offset_changes.py" />
       <source>{changes}. ALSO ADJUSTED: {others}. Y: CHANGE   N: KEEP</source>
       <translation>{changes}. TAMBIÉN SE AJUSTAN: {others}. Y: CAMBIAR   N: CONSERVAR</translation>
     </message>
     <message>
-      <location filename="app/offsets/offset_questions.py" />
+      <location filename="app/offsets/offset_changes.py" />
       <source>{changes}. Y: CHANGE   N: KEEP OLD VALUE</source>
       <translation>{changes}. Y: CAMBIAR   N: CONSERVAR EL VALOR ANTERIOR</translation>
     </message>
     <message>
-      <location filename="app/offsets/offset_questions.py" />
+      <location filename="app/offsets/offset_changes.py" />
       <source>{count} MORE</source>
       <translation>{count} MÁS</translation>
     </message>
@@ -11684,67 +11684,67 @@
       <translation>HOMBRO</translation>
     </message>
     <message>
-      <location filename="app/offsets/presets.py" />
+      <location filename="app/offsets/zero_offsets.py" />
       <source>0 (from the machine file)</source>
       <translation>0 (del archivo de máquina)</translation>
     </message>
     <message>
-      <location filename="app/offsets/presets.py" />
+      <location filename="app/offsets/zero_offsets.py" />
       <source>F2: set the current axis position to the typed value</source>
       <translation>F2: fijar la posición actual del eje al valor escrito</translation>
     </message>
     <message>
-      <location filename="app/offsets/presets.py" />
+      <location filename="app/offsets/zero_offsets.py" />
       <source>F2: set the current tip position to the typed value</source>
       <translation>F2: fijar la posición actual de la punta al valor escrito</translation>
     </message>
     <message>
-      <location filename="app/offsets/presets.py" />
+      <location filename="app/offsets/zero_offsets.py" />
       <source>F3: activate preset</source>
       <translation>F3: activar preset</translation>
     </message>
     <message>
-      <location filename="app/offsets/presets.py" />
+      <location filename="app/offsets/zero_offsets.py" />
       <source>POINT 1 STORED. TOUCH SAME EDGE AT ANOTHER POINT, PRESS F2</source>
       <translation>PUNTO 1 GUARDADO. TOQUE LA MISMA ARISTA EN OTRO PUNTO Y PULSE F2</translation>
     </message>
     <message>
-      <location filename="app/offsets/presets.py" />
+      <location filename="app/offsets/zero_offsets.py" />
       <source>POINTS LESS THAN 1 MM APART. TOUCH FARTHER ALONG THE EDGE</source>
       <translation>PUNTOS A MENOS DE 1 MM. TOQUE MÁS LEJOS EN LA ARISTA</translation>
     </message>
     <message>
-      <location filename="app/offsets/presets.py" />
+      <location filename="app/offsets/zero_offsets.py" />
       <source>PRESET {number} IS NOT SET. TOUCH IT OFF OR TYPE ITS VALUES</source>
       <translation>EL PRESET {number} ESTÁ SIN DEFINIR. PÁLPELO O ESCRIBA SUS VALORES</translation>
     </message>
     <message>
-      <location filename="app/offsets/presets.py" />
+      <location filename="app/offsets/zero_offsets.py" />
       <source>PRESETS  ·  WORKPIECE ZERO IN MACHINE COORDINATES, MM AND DEGREES</source>
       <translation>PRESETS  ·  CERO DE LA PIEZA EN COORDENADAS DE MÁQUINA, MM Y GRADOS</translation>
     </message>
     <message>
-      <location filename="app/offsets/presets.py" />
+      <location filename="app/offsets/zero_offsets.py" />
       <source>Press F2 at two points on an edge to set ROT so that the edge has the typed angle</source>
       <translation>Pulse F2 en dos puntos de una arista para fijar ROT de modo que la arista tenga el ángulo escrito</translation>
     </message>
     <message>
-      <location filename="app/offsets/presets.py" />
+      <location filename="app/offsets/zero_offsets.py" />
       <source>SELECT X, Y, Z, A ROTARY AXIS OR ROT. F2: TOUCH OFF</source>
       <translation>ELIJA X, Y, Z, UN EJE ROTATIVO O ROT. F2: PALPAR</translation>
     </message>
     <message>
-      <location filename="app/offsets/presets.py" />
+      <location filename="app/offsets/zero_offsets.py" />
       <source>active preset: {preset}</source>
       <translation>preset activo: {preset}</translation>
     </message>
     <message>
-      <location filename="app/offsets/presets.py" />
+      <location filename="app/offsets/zero_offsets.py" />
       <source>edge angle set to {value}</source>
       <translation>ángulo de arista fijado a {value}</translation>
     </message>
     <message>
-      <location filename="app/offsets/presets.py" />
+      <location filename="app/offsets/zero_offsets.py" />
       <source>position set to {value}</source>
       <translation>posición fijada a {value}</translation>
     </message>
@@ -12009,47 +12009,47 @@
       <translation>FORMA DE LA HERRAMIENTA SIN DEFINIR: SOLO SE COMPRUEBA LA PUNTA</translation>
     </message>
     <message>
-      <location filename="app/offsets/presets.py" />
+      <location filename="app/offsets/zero_offsets.py" />
       <source>C, DEGREES?</source>
       <translation>¿C, GRADOS?</translation>
     </message>
     <message>
-      <location filename="app/offsets/presets.py" />
+      <location filename="app/offsets/zero_offsets.py" />
       <source>F2: set the current position to the typed value        C: clear G54 to G59        Esc: exit</source>
       <translation>F2: fijar la posición actual al valor escrito        C: borrar G54 a G59        Esc: salir</translation>
     </message>
     <message>
-      <location filename="app/offsets/presets.py" />
+      <location filename="app/offsets/zero_offsets.py" />
       <source>PRESS Y TO CLEAR G54 TO G59, N TO KEEP THEM</source>
       <translation>PULSE Y PARA BORRAR G54 A G59, N PARA CONSERVARLOS</translation>
     </message>
     <message>
-      <location filename="app/offsets/presets.py" />
+      <location filename="app/offsets/zero_offsets.py" />
       <source>PROGRAM RUNNING. CHANGE G54 TO G59 ONLY BETWEEN CYCLES</source>
       <translation>PROGRAMA EN MARCHA. CAMBIE G54 A G59 SOLO ENTRE CICLOS</translation>
     </message>
     <message>
-      <location filename="app/offsets/presets.py" />
+      <location filename="app/offsets/zero_offsets.py" />
       <source>SETTABLE OFFSETS  ·  X IS A RADIUS  ·  MM AND DEGREES</source>
       <translation>CEROS AJUSTABLES  ·  X ES RADIO  ·  MM Y GRADOS</translation>
     </message>
     <message>
-      <location filename="app/offsets/presets.py" />
+      <location filename="app/offsets/zero_offsets.py" />
       <source>THIS MACHINE HAS NO {axis} AXIS</source>
       <translation>ESTA MÁQUINA NO TIENE EJE {axis}</translation>
     </message>
     <message>
-      <location filename="app/offsets/presets.py" />
+      <location filename="app/offsets/zero_offsets.py" />
       <source>X RADIUS, MM?</source>
       <translation>¿RADIO X, MM?</translation>
     </message>
     <message>
-      <location filename="app/offsets/presets.py" />
+      <location filename="app/offsets/zero_offsets.py" />
       <source>Z, MM?</source>
       <translation>¿Z, MM?</translation>
     </message>
     <message>
-      <location filename="app/offsets/presets.py" />
+      <location filename="app/offsets/zero_offsets.py" />
       <source>all zero offsets cleared with the C key</source>
       <translation>todos los decalajes de origen borrados con la tecla C</translation>
     </message>
@@ -13579,32 +13579,32 @@
       <translation>ventana de {ms} ms</translation>
     </message>
     <message>
-      <location filename="app/screen/alarm_panels.py" />
+      <location filename="app/screen/window/alarm_panels.py" />
       <source>ALARMS AND STOPS  ·  ESC: CLOSE  ·  CTRL+ARROWS: SELECT  ·  SHIFT+F10: SHOW SCOPE RECORD</source>
       <translation>ALARMAS Y PAROS  ·  ESC: CERRAR  ·  CTRL+FLECHAS: SELECCIONAR  ·  MAYÚS+F10: REGISTRO DEL OSCILOSCOPIO</translation>
     </message>
     <message>
-      <location filename="app/screen/alarm_panels.py" />
+      <location filename="app/screen/window/alarm_panels.py" />
       <source>CAUSES, MOST LIKELY FIRST</source>
       <translation>CAUSAS, LA MÁS PROBABLE PRIMERO</translation>
     </message>
     <message>
-      <location filename="app/screen/alarm_panels.py" />
+      <location filename="app/screen/window/alarm_panels.py" />
       <source>No alarms or stops yet.</source>
       <translation>Todavía no hay alarmas ni paros.</translation>
     </message>
     <message>
-      <location filename="app/screen/alarm_panels.py" />
+      <location filename="app/screen/window/alarm_panels.py" />
       <source>OTHER ALARMS: {number}</source>
       <translation>OTRAS ALARMAS: {number}</translation>
     </message>
     <message>
-      <location filename="app/screen/alarm_panels.py" />
+      <location filename="app/screen/window/alarm_panels.py" />
       <source>WHAT TO DO</source>
       <translation>QUÉ HACER</translation>
     </message>
     <message>
-      <location filename="app/screen/alarm_panels.py" />
+      <location filename="app/screen/window/alarm_panels.py" />
       <source>line {line}</source>
       <translation>línea {line}</translation>
     </message>
@@ -13639,32 +13639,32 @@
       <translation>PULSE UNA TECLA DE FUNCIÓN O TOQUE UNA PÁGINA. ESC: AUTOMÁTICO</translation>
     </message>
     <message>
-      <location filename="app/screen/main_window.py" />
+      <location filename="app/screen/window/main_window.py" />
       <source>KIOSK MODE: SHUT DOWN THE COMPUTER TO CLOSE TURNDESK</source>
       <translation>MODO QUIOSCO: PARA CERRAR TURNDESK, APAGUE LA COMPUTADORA</translation>
     </message>
     <message>
-      <location filename="app/screen/main_window.py" />
+      <location filename="app/screen/window/main_window.py" />
       <source>PROGRAM RUNNING. STOP IT AND PRESS R FIRST</source>
       <translation>PROGRAMA EN MARCHA. PÁRELO Y PULSE R PRIMERO</translation>
     </message>
     <message>
-      <location filename="app/screen/main_window.py" />
+      <location filename="app/screen/window/main_window.py" />
       <source>SCREEN FROZE {seconds} S. KEYS IGNORED. WAIT 1 S, PRESS AGAIN</source>
       <translation>PANTALLA CONGELADA {seconds} S. TECLAS IGNORADAS. ESPERE 1 S Y PULSE DE NUEVO</translation>
     </message>
     <message>
-      <location filename="app/screen/main_window.py" />
+      <location filename="app/screen/window/main_window.py" />
       <source>{key} CANNOT BE ENTERED IN THIS FIELD</source>
       <translation>{key} NO SE PUEDE ESCRIBIR EN ESTE CAMPO</translation>
     </message>
     <message>
-      <location filename="app/screen/main_window.py" />
+      <location filename="app/screen/window/main_window.py" />
       <source>{key} HAS NO FUNCTION ON THIS PAGE</source>
       <translation>{key} NO TIENE FUNCIÓN EN ESTA PÁGINA</translation>
     </message>
     <message>
-      <location filename="app/screen/main_window.py" />
+      <location filename="app/screen/window/main_window.py" />
       <source>{key} WORKS ON THE AUTOMATIC PAGE: PRESS F1, THEN F2</source>
       <translation>{key} SIRVE EN LA PÁGINA AUTOMÁTICO: PULSE F1 Y LUEGO F2</translation>
     </message>
@@ -13819,47 +13819,47 @@
       <translation>{title}  ·  INICIO: LÍNEA ACTUAL</translation>
     </message>
     <message>
-      <location filename="app/screen/readout_panels.py" />
+      <location filename="app/screen/window/readout_panels.py" />
       <source>ACTUAL</source>
       <translation>REAL</translation>
     </message>
     <message>
-      <location filename="app/screen/readout_panels.py" />
+      <location filename="app/screen/window/readout_panels.py" />
       <source>AND {alarms_count} MORE</source>
       <translation>Y {alarms_count} MÁS</translation>
     </message>
     <message>
-      <location filename="app/screen/readout_panels.py" />
+      <location filename="app/screen/window/readout_panels.py" />
       <source>FEED {override}</source>
       <translation>AVANCE {override}</translation>
     </message>
     <message>
-      <location filename="app/screen/readout_panels.py" />
+      <location filename="app/screen/window/readout_panels.py" />
       <source>LAST KNOWN</source>
       <translation>ÚLTIMO CONOCIDO</translation>
     </message>
     <message>
-      <location filename="app/screen/readout_panels.py" />
+      <location filename="app/screen/window/readout_panels.py" />
       <source>PRESS E-STOP</source>
       <translation>PULSE PARO DE EMERGENCIA</translation>
     </message>
     <message>
-      <location filename="app/screen/readout_panels.py" />
+      <location filename="app/screen/window/readout_panels.py" />
       <source>SPINDLE MAY BE TURNING</source>
       <translation>PUEDE ESTAR GIRANDO</translation>
     </message>
     <message>
-      <location filename="app/screen/readout_panels.py" />
+      <location filename="app/screen/window/readout_panels.py" />
       <source>SPINDLE {override}</source>
       <translation>HUSILLO {override}</translation>
     </message>
     <message>
-      <location filename="app/screen/readout_panels.py" />
+      <location filename="app/screen/window/readout_panels.py" />
       <source>STOP {number}: {first}</source>
       <translation>PARO {number}: {first}</translation>
     </message>
     <message>
-      <location filename="app/screen/readout_panels.py" />
+      <location filename="app/screen/window/readout_panels.py" />
       <source>SWITCH: OFF</source>
       <translation>INTERR. OFF</translation>
     </message>
@@ -13879,132 +13879,132 @@
       <translation>FALLA DE LA PANTALLA (MÁQUINA OK): {name}: {error}</translation>
     </message>
     <message>
-      <location filename="app/screen/station_dock.py" />
+      <location filename="app/screen/window/station_dock.py" />
       <source>CYCLE START</source>
       <translation>ARRANQUE DE CICLO</translation>
     </message>
     <message>
-      <location filename="app/screen/station_dock.py" />
+      <location filename="app/screen/window/station_dock.py" />
       <source>CYCLE START: BOTH BUTTONS</source>
       <translation>ARRANQUE CICLO: AMBOS</translation>
     </message>
     <message>
-      <location filename="app/screen/station_dock.py" />
+      <location filename="app/screen/window/station_dock.py" />
       <source>CYCLE START: TAP F11, F12</source>
       <translation>ARRANQUE: UNO Y OTRO</translation>
     </message>
     <message>
-      <location filename="app/screen/station_dock.py" />
+      <location filename="app/screen/window/station_dock.py" />
       <source>FEED RATE</source>
       <translation>AVANCE</translation>
     </message>
     <message>
-      <location filename="app/screen/station_dock.py" />
+      <location filename="app/screen/window/station_dock.py" />
       <source>OPERATOR STATION</source>
       <translation>ESTACIÓN DEL OPERADOR</translation>
     </message>
     <message>
-      <location filename="app/screen/station_dock.py" />
+      <location filename="app/screen/window/station_dock.py" />
       <source>OUT</source>
       <translation>Y SUELTE</translation>
     </message>
     <message>
-      <location filename="app/screen/station_dock.py" />
+      <location filename="app/screen/window/station_dock.py" />
       <source>PAUSE</source>
       <translation>PAUSA</translation>
     </message>
     <message>
-      <location filename="app/screen/station_dock.py" />
+      <location filename="app/screen/window/station_dock.py" />
       <source>PRESSED</source>
       <translation>PULSADO</translation>
     </message>
     <message>
-      <location filename="app/screen/station_dock.py" />
+      <location filename="app/screen/window/station_dock.py" />
       <source>SCR LOCK</source>
       <translation>BLOQ DES</translation>
     </message>
     <message>
-      <location filename="app/screen/station_dock.py" />
+      <location filename="app/screen/window/station_dock.py" />
       <source>SPINDLE SPEED</source>
       <translation>VEL. HUSILLO</translation>
     </message>
     <message>
-      <location filename="app/screen/station_dock.py" />
+      <location filename="app/screen/window/station_dock.py" />
       <source>SPINDLE SWITCH</source>
       <translation>INTERRUPTOR HUSILLO</translation>
     </message>
     <message>
-      <location filename="app/screen/station_dock.py" />
+      <location filename="app/screen/window/station_dock.py" />
       <source>STOP</source>
       <translation>PARO</translation>
     </message>
     <message>
-      <location filename="app/screen/station_dock.py" />
+      <location filename="app/screen/window/station_dock.py" />
       <source>TWIST</source>
       <translation>GIRE</translation>
     </message>
     <message>
-      <location filename="app/screen/window_bars.py" />
+      <location filename="app/screen/window/window_bars.py" />
       <source>FUNCTION KEYS</source>
       <translation>TECLAS DE FUNCIÓN</translation>
     </message>
     <message>
-      <location filename="app/screen/window_bars.py" />
+      <location filename="app/screen/window/window_bars.py" />
       <source>LAMPS</source>
       <translation>LÁMPARAS</translation>
     </message>
     <message>
-      <location filename="app/screen/window_bars.py" />
+      <location filename="app/screen/window/window_bars.py" />
       <source>STARTING</source>
       <translation>ARRANCANDO</translation>
     </message>
     <message>
-      <location filename="app/screen/window_frame.py" />
+      <location filename="app/screen/window/window_frame.py" />
       <source>CYCLE</source>
       <translation>CICLO</translation>
     </message>
     <message>
-      <location filename="app/screen/window_frame.py" />
+      <location filename="app/screen/window/window_frame.py" />
       <source>FROM LINE 1</source>
       <translation>LÍNEA 1</translation>
     </message>
     <message>
-      <location filename="app/screen/window_frame.py" />
+      <location filename="app/screen/window/window_frame.py" />
       <source>LAST</source>
       <translation>ÚLTIMO</translation>
     </message>
     <message>
-      <location filename="app/screen/window_frame.py" />
+      <location filename="app/screen/window/window_frame.py" />
       <source>LEFT</source>
       <translation>FALTA</translation>
     </message>
     <message>
-      <location filename="app/screen/window_frame.py" />
+      <location filename="app/screen/window/window_frame.py" />
       <source>NO SCOPE RECORD: ONLY ALARMS AND E-STOPS ARE RECORDED</source>
       <translation>SIN REGISTRO: SÓLO SE REGISTRAN ALARMAS Y PAROS DE EMERGENCIA</translation>
     </message>
     <message>
-      <location filename="app/screen/window_frame.py" />
+      <location filename="app/screen/window/window_frame.py" />
       <source>NOT SAVED</source>
       <translation>SIN GUARDAR</translation>
     </message>
     <message>
-      <location filename="app/screen/window_frame.py" />
+      <location filename="app/screen/window/window_frame.py" />
       <source>NOT SAVED YET: {what}. DO NOT EXIT TURNDESK NOW</source>
       <translation>AÚN SIN GUARDAR: {what}. NO SALGA DE TURNDESK AHORA</translation>
     </message>
     <message>
-      <location filename="app/screen/window_frame.py" />
+      <location filename="app/screen/window/window_frame.py" />
       <source>PARTS  ·  TIME</source>
       <translation>PIEZAS  ·  TIEMPO</translation>
     </message>
     <message>
-      <location filename="app/screen/window_frame.py" />
+      <location filename="app/screen/window/window_frame.py" />
       <source>TOOL  ·  OFFSET</source>
       <translation>HERRAMIENTA  ·  CORRECTOR</translation>
     </message>
     <message>
-      <location filename="app/screen/window_frame.py" />
+      <location filename="app/screen/window/window_frame.py" />
       <source>{start} TO CONTINUE</source>
       <translation>{start} PARA CONTINUAR</translation>
     </message>

@@ -12,7 +12,7 @@ import pytest
 
 from app.compose.journal import Journal
 from app.editor.editor import Editor
-from app.offsets.offset_questions import OffsetHistory, OffsetQuestions
+from app.offsets.offset_changes import OffsetHistory, OffsetQuestions
 from app.production.parts_watch import PartsWatch
 from app.programs.program_list import ProgramList
 from app.special.inputs_outputs import InputsOutputs

@@ -17,7 +17,7 @@ from app.offsets.mill_lives import MillLives
 from app.offsets.mill_tools import MillTools
 from app.offsets.mill_touch import MillTouch
 from app.offsets.offsets_in_force import MillOffsets, with_mill
-from app.offsets.presets import Presets
+from app.offsets.zero_offsets import Presets
 from core.executor.snapshot import State
 from core.interpreter.job_setup import ToolOffset
 from core.production.tool_life import ToolLife

@@ -19,9 +19,9 @@ from pytestqt.qtbot import QtBot
 from app.compose.journal import Journal
 from app.desk.desk import Desk
 from app.desk.translation import ENGLISH
-from app.screen import keyboard
 from app.screen.look import DARK, Look, dress, load_fonts, speak_in
-from app.screen.main_window import MainWindow
+from app.screen.window import keyboard
+from app.screen.window.main_window import MainWindow
 from tests.screen.desks import desk_on
 from tests.screen.fake import FakeMachine
 from tests.screen.hands import Hands, window_on

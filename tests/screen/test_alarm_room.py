@@ -10,7 +10,7 @@ from app.desk.machine_status import status_of
 from app.desk.prompt_line import alarm_of, exactly, reason
 from app.desk.readouts import Readout
 from app.screen.look import DARK, Look, load_fonts
-from app.screen.readout_panels import stop_words
+from app.screen.window.readout_panels import stop_words
 from core.alarms import CATALOGUE, Code, Reaction
 from core.executor.raised_alarm import make_alarm
 from core.executor.snapshot import Snapshot, State

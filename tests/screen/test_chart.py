@@ -33,7 +33,7 @@ def chart_of(parent: QWidget, look: Look | None = None) -> Chart:
 
 def test_pyqtgraph_is_not_imported_at_the_start() -> None:
     code = (
-        "import sys; import app.screen.run_screen, app.compose.screen_desk, app.screen.main_window;"
+        "import sys; import app.screen.run_screen, app.compose.screen_desk, app.screen.window.main_window;"
         "from app.screen.page_table import PAGES; sys.exit('pyqtgraph' in sys.modules)"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

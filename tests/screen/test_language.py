@@ -21,8 +21,8 @@ from app.desk.prompt_line import exactly
 from app.desk.translation import tr
 from app.screen import look
 from app.screen.look import CONTEXT, DARK, Look, speak_in
-from app.screen.main_window import MainWindow
 from app.screen.page_base import Page
+from app.screen.window.main_window import MainWindow
 from app.special.logged_events import event_row
 from core.alarms import CATALOGUE, Code, Entry
 from core.executor.raised_alarm import log_line, make_alarm

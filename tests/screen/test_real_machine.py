@@ -9,7 +9,7 @@ from PySide6.QtTest import QTest
 
 from app.desk.desk import Desk
 from app.screen.look import DARK, Look
-from app.screen.main_window import MainWindow
+from app.screen.window.main_window import MainWindow
 from core.executor.snapshot import State
 from tests.screen.hands import Key
 from tests.screen.pictures import Stage

@@ -10,7 +10,7 @@ from __future__ import annotations
 import threading
 import time
 
-from app.screen import keyboard
+from app.screen.window import keyboard
 from drivers.waiting import RealClock
 
 GRACE = 0.12  # s; the control at rest ticks every 0.095 s

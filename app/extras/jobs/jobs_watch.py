@@ -73,7 +73,7 @@ class JobProofs:
 
 
 FEATURE = "jobs"  # name of the queue in the book
-KEY = "Shift+F6"  # its name in app.screen.keys
+KEY = "Shift+F6"  # its name in app.screen.window.keys
 
 
 @dataclass(slots=True)

@@ -11,8 +11,8 @@ from app.desk.desk import Desk
 from app.desk.sheet import Key, Row, Sheet, edited
 from app.desk.translation import tr
 from app.extras.quality.parts_data import feature_of, row_of
-from app.extras.quality.plots import NO_PROGRAM, QualitySection, mark_of, signed_size, size, typed_length
 from app.extras.quality.sample_plan import SamplePlan
+from app.extras.quality.section import NO_PROGRAM, QualitySection, mark_of, signed_size, size, typed_length
 from app.offsets.offset_values import Mode
 from app.production.parts_watch import PartsWatch
 from core.access.access_table import Act

@@ -8,8 +8,8 @@ from PySide6.QtWidgets import QWidget
 
 from app.desk.machine_status import MachineStatus
 from app.desk.program_loading import Loaded
-from app.extras.quality.plots import QualitySection
 from app.extras.quality.quality_desk import QualityFunctions
+from app.extras.quality.section import QualitySection
 from app.screen.page_base import Host
 from app.special.special_view import LETTERS, LIST, PAD, SpecialPage
 from core.executor.snapshot import Snapshot

@@ -14,9 +14,9 @@ from app.desk.sheet import Key, Row, Sheet
 from app.desk.translation import tr
 from app.extras.quality.gauge_wire import Gauge, NoGauge, Reading
 from app.extras.quality.parts_data import feature_of, write_readings
-from app.extras.quality.plots import ChartDrawing, QualitySection, mark_of, signed_size, size, typed_length
+from app.extras.quality.section import ChartDrawing, QualitySection, mark_of, signed_size, size, typed_length
 from app.extras.quality.wear_correction import CorrectionEffect, correction, proposal
-from app.offsets.offset_questions import OffsetHistory, OffsetQuestions, refusal
+from app.offsets.offset_changes import OffsetHistory, OffsetQuestions, refusal
 from app.production.parts_watch import PartsWatch
 from core.access.access_table import Act
 from core.executor.snapshot import Snapshot

@@ -12,9 +12,9 @@ from app.desk.formats import fixed
 from app.desk.sheet import Sheet
 from app.desk.translation import tr
 from app.extras.quality.parts_data import PartsData, feature_of
-from app.extras.quality.plots import ChartDrawing, correction_plot, signed_size, size
+from app.extras.quality.section import ChartDrawing, correction_plot, signed_size, size
+from app.offsets.offset_changes import refusal
 from app.offsets.offset_effect import Effect, Tables
-from app.offsets.offset_questions import refusal
 from app.offsets.offset_values import Mode, added, out_of_range, signed, value_added
 from app.offsets.offsets_in_force import secondary_offsets, tool_offsets
 from app.offsets.part_effect import part_table

@@ -15,9 +15,7 @@ from app.desk.desk import Desk
 from app.desk.formats import local_time
 from app.desk.prompt_line import UNDER_WAY
 from app.desk.translation import tr
-from app.offsets.offset_book import OffsetBook
-from app.offsets.offset_values import Mode, cell_text, from_to, heading, not_set, shown_value, signed
-from app.offsets.suspicious_changes import (
+from app.offsets.change_rules import (
     LARGE_MM,
     Doubt,
     Suspicion,
@@ -30,6 +28,8 @@ from app.offsets.suspicious_changes import (
     touched,
     travel_of,
 )
+from app.offsets.offset_book import OffsetBook
+from app.offsets.offset_values import Mode, cell_text, from_to, heading, not_set, shown_value, signed
 from core.access.access_table import Act
 from core.executor.snapshot import Snapshot, State
 from core.message import Message

@@ -15,7 +15,7 @@ from app.desk.machine_status import Tone
 from app.desk.sheet import Row, Sheet, edited
 from app.desk.translation import tr
 from app.extras.quality.parts_data import feature_of
-from app.extras.quality.plots import (
+from app.extras.quality.section import (
     ChartDrawing,
     Curve,
     Level,

@@ -23,8 +23,11 @@ from PySide6.QtWidgets import QApplication, QWidget
 from app.desk.desk import BY_SCREEN, Desk
 from app.desk.prompt_line import MOVING, UNDER_WAY
 from app.desk.translation import spoken, tr
-from app.screen.keyboard import EventTimes, Keyboard, key_of, letter_of
-from app.screen.keys import (
+from app.screen.look import PALETTES, Look, dress, speak_in
+from app.screen.page_table import AUTOMATIC, PagesAhead
+from app.screen.panel import FingerPanel
+from app.screen.window.keyboard import EventTimes, Keyboard, key_of, letter_of
+from app.screen.window.keys import (
     ANSWER,
     NO,
     OF_AUTOMATIC,
@@ -35,10 +38,7 @@ from app.screen.keys import (
     name_of,
     typed_of,
 )
-from app.screen.look import PALETTES, Look, dress, speak_in
-from app.screen.page_table import AUTOMATIC, PagesAhead
-from app.screen.panel import FingerPanel
-from app.screen.window_frame import Frame
+from app.screen.window.window_frame import Frame
 from app.screen.window_layout import LEAST
 from core.message import Message
 

@@ -20,13 +20,13 @@ from app.desk.readouts import Lamp, drives_lamp
 from app.desk.translation import tr
 from app.desk.unheard_notice import unheard_notice
 from app.screen import page_table
-from app.screen.alarm_panels import AlarmList, Notice
-from app.screen.keys import OF_AUTOMATIC
 from app.screen.look import Look
 from app.screen.page_base import Host, KeyActions, Page
 from app.screen.page_table import make_page, page_on
 from app.screen.panel import Panel
-from app.screen.readout_panels import (
+from app.screen.window.alarm_panels import AlarmList, Notice
+from app.screen.window.keys import OF_AUTOMATIC
+from app.screen.window.readout_panels import (
     FeedGauge,
     HeadLine,
     PositionPanel,
@@ -35,8 +35,8 @@ from app.screen.readout_panels import (
     TimesGauge,
     ToolGauge,
 )
-from app.screen.station_dock import StationDock
-from app.screen.window_bars import FunctionKeys, LampStrip, NoticeRows, PromptLine, TitleLine
+from app.screen.window.station_dock import StationDock
+from app.screen.window.window_bars import FunctionKeys, LampStrip, NoticeRows, PromptLine, TitleLine
 from app.screen.window_layout import Places, Rect, low_places, places, unit, work_of
 from core.executor.snapshot import Snapshot, State
 from core.message import Message

@@ -17,9 +17,9 @@ from app.desk.prompt_line import Sort
 from app.desk.readouts import Lamp
 from app.desk.translation import tr
 from app.screen.accessible import announce
-from app.screen.keys import ANSWER, NO
 from app.screen.look import CENTRE, LEAST, LEFT, RIGHT, Look, Painter, draw_sign, put, width_of
 from app.screen.panel import Panel, Shown
+from app.screen.window.keys import ANSWER, NO
 from app.screen.window_layout import FINGER
 
 TARGET = 13.0  # units: width of an answer to touch
