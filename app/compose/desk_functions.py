@@ -21,8 +21,8 @@ from core.machine.machine_model import Machine
 from core.store.store_errors import StoreError
 
 if TYPE_CHECKING:
-    from app.programs.preview import DrawThumbnail
     from app.programs.program_list import ProgramList
+    from app.programs.program_rows import DrawThumbnail
     from app.special.special_functions import SpecialFunctions
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from app.compose.journal import Journal
 from app.desk.desk import Desk
-from app.offsets.mill_lives import MillLives
+from app.offsets.mill_touch import MillLives
 from app.production.parts_book import PartsBook, tools_of
 from app.production.parts_watch import PartsWatch
 from app.production.tool_life_watch import ToolLifeWatch

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from app.desk.arithmetic import EntryError, value_of
 from app.desk.translation import tr
 from app.offsets.offset_changes import OffsetHistory, OffsetQuestions
+from app.offsets.offset_table import NewTool
 from app.offsets.offset_values import TOOL_FIELDS, Mode, to_mm, word
-from app.offsets.tool_fields import NewTool
 from core.executor.snapshot import Snapshot, State
 from core.message import Message
 from core.store.offsets.touch_off import Touch

@@ -13,6 +13,7 @@ from app.jog.jog_touch_off import TOUCH_X, TOUCH_Z, TOUCHES, TouchOff
 from app.offsets.change_rules import CORRECTIONS
 from app.offsets.offset_book import OffsetBook
 from app.offsets.offset_changes import OffsetHistory, OffsetQuestions, follower_names, refusal
+from app.offsets.offset_table import ToolFields
 from app.offsets.offset_values import (
     TOOL_FIELDS,
     Mode,
@@ -23,7 +24,6 @@ from app.offsets.offset_values import (
     value_typed,
     word,
 )
-from app.offsets.tool_fields import ToolFields
 from core.executor.snapshot import Snapshot
 from core.message import Message
 from core.store.store_rows import OFFSETS, REMARK_LONGEST, Kind, Sort, ToolRow

@@ -9,8 +9,8 @@ spindle, lamps, dock, prompt and function keys belong to the ``Frame``. To plug 
 ``labels()``  the same, where they change with what the page is doing.
 ``barred()``  the function keys that would be refused now: they are drawn dim, and say why when pressed.
 ``STARTS``    whether cycles are started while it is shown; only the Automatic page's palms start anything.
-``key_actions()``  what its keys do, by the names of ``app.screen.window.keys``. They go before the frame's own
-              keys; H, E, D, R and the pots work on every page without a caret, F1 on all pages.
+``key_actions()``  what its keys do, by the names of ``app.screen.window.keys``. They go before those of the
+              frame; H, E, D, R and the pots work on every page without a caret, F1 on all pages.
 ``key_down``  sees every key that goes down (also a repeating one) before all else; True takes it.
 ``pressed()`` is told before any other key or finger acts: what is held on the page ends then.
 ``key_up``    sees every key that comes up; ``let_go()``: no release will arrive any more, let go of all.

@@ -31,9 +31,9 @@ _PATH = (
     "app.path.path_marks_view.Button",
     "app.path.measuring_view.Measure",
     "app.path.part_pane_view.PartPane",
-    "app.path.solid_pane_view.SolidPane",
+    "app.path.part_pane_view.SolidPane",
     "app.path.part_bar_view.PartBar",
-    "app.path.part_section.metal_of",
+    "app.path.path_projection.metal_of",
 )
 _PANELS = tuple(extra.editor_panel for extra in extras().values() if extra.editor_panel)
 

@@ -8,13 +8,15 @@ from app.desk.alarm_log import read_back
 from app.desk.desk import Desk
 from app.desk.formats import local_time
 from app.desk.latest import Latest
+from app.desk.machine_file_changes import FileChanges
 from app.desk.machine_status import Tone
 from app.desk.persistence import Persistence
 from app.desk.prompt_line import cause_of
 from app.desk.sheet import Entry, Key, Row, Sheet, following
 from app.desk.translation import tr
 from app.special.special_functions import SpecialFunction
-from core.executor.snapshot import Snapshot
+from core.access.access_table import Act
+from core.executor.snapshot import Snapshot, State
 from core.message import Message
 from core.store.store_rows import EventRow
 
@@ -156,3 +158,64 @@ def event_row(event: EventRow) -> Row:
     said = tr(event.text) if stop is None else f"{stop.number} {tr(stop.text)}: {tr(cause_of(stop))}"
     text = Message("{text} ({who})", text=said, who=event.who) if event.who else said
     return Row((at, event.kind, text, line), True if alarm else None, Tone.ALARM)
+
+
+_OFF = frozenset({State.DISABLED, State.ESTOP, State.FAULT})
+
+
+class MachineFileAcceptance(SpecialFunction):
+    """F2 accepts, after asking once; until then the drives cannot be switched on."""
+
+    name = "MACHINE FILE"
+    use = "changes in the machine file since the file was last accepted"
+
+    def __init__(self, desk: Desk, changes: FileChanges) -> None:
+        super().__init__(desk)
+        self.changes = changes
+
+    @property
+    def count(self) -> int:
+        """How many keys of the file have changed."""
+        return len(self.changes.changes)
+
+    def sheet(self, _snapshot: Snapshot) -> Sheet:
+        """One row for each key that has changed: key, was, is."""
+        rows = tuple(Row(tuple(change), None, Tone.WAIT) for change in self.changes.changes)
+        note = (
+            tr("Press F2 to accept; the drives stay off until then.")
+            if rows
+            else tr("No changes since the machine file was accepted.")
+        )
+        return Sheet(
+            Message("MACHINE FILE  ·  {source}", source=self.changes.source),
+            ("KEY", "WAS", "IS"),
+            (0.44, 0.28, 0.28),
+            rows,
+            self.marked if rows else -1,
+            notes=(note,),
+            raw=frozenset({0, 1, 2}),
+        )
+
+    def keys(self) -> Mapping[str, Key]:
+        """F2, while there is something to accept."""
+        return {"F2": Key("ACCEPT", self._accept)} if self.changes.changes else {}
+
+    def _accept(self) -> None:
+        if self.desk.refused(Act.MACHINE_FILE):
+            return
+        if self.desk.snapshot().state not in _OFF:
+            self.desk.say(tr("TURN DRIVES OFF BEFORE ACCEPTING THE CHANGED MACHINE FILE"))
+        else:
+            question = tr("PRESS Y TO ACCEPT THE MACHINE FILE AS IT IS NOW, N TO CANCEL")
+            self.desk.ask(question, self._accepted)
+
+    def _accepted(self) -> None:
+        self.changes.accept()
+        self.marked = 0
+        self.desk.done(tr("ACCEPTED: THE DRIVES CAN BE SWITCHED ON"))
+
+    def prompt(self) -> str:
+        """What the keys do, for the prompt line."""
+        if self.changes.changes:
+            return tr("ARROWS: SCROLL THE CHANGES   F2: ACCEPT ALL   ESC: BACK")
+        return super().prompt()

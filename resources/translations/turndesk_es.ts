@@ -6994,7 +6994,7 @@
       <translation>{path} tiene más de {most_lines} líneas, demasiadas para este editor; divida el archivo en otro editor</translation>
     </message>
     <message>
-      <location filename="app/editor/drafts.py" />
+      <location filename="app/editor/document.py" />
       <source>unsaved draft</source>
       <translation>borrador sin guardar</translation>
     </message>
@@ -7284,22 +7284,22 @@
       <translation>ir a</translation>
     </message>
     <message>
-      <location filename="app/editor/find_replace.py" />
+      <location filename="app/editor/question_view.py" />
       <source>NOT FOUND</source>
       <translation>NO SE ENCONTRÓ</translation>
     </message>
     <message>
-      <location filename="app/editor/find_replace.py" />
+      <location filename="app/editor/question_view.py" />
       <source>{count} FOUND</source>
       <translation>{count} ENCONTRADOS</translation>
     </message>
     <message>
-      <location filename="app/editor/find_replace.py" />
+      <location filename="app/editor/question_view.py" />
       <source>{value}, INCLUDING PARTS OF WORDS</source>
       <translation>{value}, INCLUIDAS PARTES DE PALABRAS</translation>
     </message>
     <message>
-      <location filename="app/editor/find_replace.py" />
+      <location filename="app/editor/question_view.py" />
       <source>{value}; {more} MORE ARE PARTS OF LONGER WORDS</source>
       <translation>{value}; {more} MÁS SON PARTES DE PALABRAS MÁS LARGAS</translation>
     </message>
@@ -7599,37 +7599,37 @@
       <translation>{row} eliminado</translation>
     </message>
     <message>
-      <location filename="app/extras/access/access_reset.py" />
+      <location filename="app/extras/access/sign_in.py" />
       <source>NO ACCESS LEVELS TO RESET</source>
       <translation>NO HAY NIVELES DE ACCESO QUE BORRAR</translation>
     </message>
     <message>
-      <location filename="app/extras/access/access_reset.py" />
+      <location filename="app/extras/access/sign_in.py" />
       <source>PIN RESET IN {time}</source>
       <translation>BORRADO DE PIN EN {time}</translation>
     </message>
     <message>
-      <location filename="app/extras/access/access_reset.py" />
+      <location filename="app/extras/access/sign_in.py" />
       <source>PRESS E-STOP FIRST. LEAVE IT PRESSED 10 MIN TO RESET ACCESS LEVELS</source>
       <translation>PULSE ANTES EL PARO DE EMERGENCIA. DÉJELO PULSADO 10 MIN PARA BORRAR LOS NIVELES DE ACCESO</translation>
     </message>
     <message>
-      <location filename="app/extras/access/access_reset.py" />
+      <location filename="app/extras/access/sign_in.py" />
       <source>SERVICE RESET CANCELED: ACCESS LEVELS UNCHANGED</source>
       <translation>BORRADO DE SERVICIO CANCELADO: NIVELES DE ACCESO SIN CAMBIOS</translation>
     </message>
     <message>
-      <location filename="app/extras/access/access_reset.py" />
+      <location filename="app/extras/access/sign_in.py" />
       <source>service reset canceled</source>
       <translation>borrado de servicio cancelado</translation>
     </message>
     <message>
-      <location filename="app/extras/access/access_reset.py" />
+      <location filename="app/extras/access/sign_in.py" />
       <source>service reset done: all users and PINs removed, access levels off</source>
       <translation>borrado de servicio hecho: usuarios y PIN eliminados, niveles de acceso desactivados</translation>
     </message>
     <message>
-      <location filename="app/extras/access/access_reset.py" />
+      <location filename="app/extras/access/sign_in.py" />
       <source>service reset started: the E-stop must stay pressed for 10 min</source>
       <translation>borrado de servicio iniciado: el paro de emergencia debe seguir pulsado 10 min</translation>
     </message>
@@ -8279,27 +8279,27 @@
       <translation>{target} → {target2} rpm</translation>
     </message>
     <message>
-      <location filename="app/extras/drawings/added_drawing.py" />
+      <location filename="app/extras/drawings/drawing_form.py" />
       <source>CALCULATING THE CONTOUR. PRESS F6 TO CANCEL</source>
       <translation>CALCULANDO EL CONTORNO. PULSE F6 PARA CANCELAR</translation>
     </message>
     <message>
-      <location filename="app/extras/drawings/added_drawing.py" />
+      <location filename="app/extras/drawings/drawing_form.py" />
       <source>LEFT/RIGHT: CHANGE   TAP DRAWING: PICK CONTOUR OR AXIS</source>
       <translation>IZQUIERDA/DERECHA: CAMBIAR   TOCAR DIBUJO: CONTORNO O EJE</translation>
     </message>
     <message>
-      <location filename="app/extras/drawings/added_drawing.py" />
+      <location filename="app/extras/drawings/drawing_form.py" />
       <source>READ</source>
       <translation>LEÍDAS</translation>
     </message>
     <message>
-      <location filename="app/extras/drawings/added_drawing.py" />
+      <location filename="app/extras/drawings/drawing_form.py" />
       <source>READING THE DRAWING: {seconds} s. PRESS F6 TO CANCEL</source>
       <translation>LEYENDO EL DIBUJO: {seconds} s. PULSE F6 PARA CANCELAR</translation>
     </message>
     <message>
-      <location filename="app/extras/drawings/added_drawing.py" />
+      <location filename="app/extras/drawings/drawing_form.py" />
       <source>THE DRAWING CANNOT BE PROCESSED: {why}</source>
       <translation>NO SE PUEDE PROCESAR EL DIBUJO: {why}</translation>
     </message>
@@ -8514,27 +8514,27 @@
       <translation>trabajo siguiente, número de piezas, lo necesario para la preparación</translation>
     </message>
     <message>
-      <location filename="app/extras/jobs/job_setup.py" />
+      <location filename="app/extras/jobs/jobs_watch.py" />
       <source>no offset set: touch off the tool</source>
       <translation>sin corrector: tome referencia de la herramienta</translation>
     </message>
     <message>
-      <location filename="app/extras/jobs/job_setup.py" />
+      <location filename="app/extras/jobs/jobs_watch.py" />
       <source>remaining tool life covers {left} of {parts} parts</source>
       <translation>la vida restante de la herramienta alcanza para {left} de {parts} piezas</translation>
     </message>
     <message>
-      <location filename="app/extras/jobs/job_setup.py" />
+      <location filename="app/extras/jobs/jobs_watch.py" />
       <source>since the last run ({when}), the tool tip has changed from R {was}, {was_tip}, to R {radius}, {tip}</source>
       <translation>desde la última corrida ({when}), la punta cambió de R {was}, {was_tip}, a R {radius}, {tip}</translation>
     </message>
     <message>
-      <location filename="app/extras/jobs/job_setup.py" />
+      <location filename="app/extras/jobs/jobs_watch.py" />
       <source>tip quadrant {quadrant}</source>
       <translation>cuadrante de punta {quadrant}</translation>
     </message>
     <message>
-      <location filename="app/extras/jobs/job_setup.py" />
+      <location filename="app/extras/jobs/jobs_watch.py" />
       <source>tool life used up, {words}: change the insert</source>
       <translation>vida de la herramienta agotada, {words}: cambie la plaquita</translation>
     </message>
@@ -8544,22 +8544,22 @@
       <translation>{name} NO ESTÁ EN LA LISTA DE PROGRAMAS. F1, LUEGO F6: REVISE LA LISTA</translation>
     </message>
     <message>
-      <location filename="app/extras/jobs/jobs_function.py" />
+      <location filename="app/extras/jobs/jobs_watch.py" />
       <source>ENTER: OPEN JOBS   ESC: BACK TO THE LIST</source>
       <translation>ENTER: ABRIR TRABAJOS   ESC: VOLVER A LA LISTA</translation>
     </message>
     <message>
-      <location filename="app/extras/jobs/jobs_function.py" />
+      <location filename="app/extras/jobs/jobs_watch.py" />
       <source>IN PROGRESS</source>
       <translation>EN CURSO</translation>
     </message>
     <message>
-      <location filename="app/extras/jobs/jobs_function.py" />
+      <location filename="app/extras/jobs/jobs_watch.py" />
       <source>Press Enter to open the JOBS page. Shift+F6 opens it from any page, and J opens it from the main menu.</source>
       <translation>Pulse Enter para abrir la página TRABAJOS. Mayús+F6 la abre desde cualquier página, y J desde el menú principal.</translation>
     </message>
     <message>
-      <location filename="app/extras/jobs/jobs_function.py" />
+      <location filename="app/extras/jobs/jobs_watch.py" />
       <source>WAITING</source>
       <translation>ESPERANDO</translation>
     </message>
@@ -8779,7 +8779,7 @@
       <translation>el broker MQTT {host}:{port}</translation>
     </message>
     <message>
-      <location filename="app/extras/office/network_causes.py" />
+      <location filename="app/extras/office/timed_http.py" />
       <source>the server certificate cannot be verified: {verify_message}</source>
       <translation>el certificado del servidor no se puede verificar: {verify_message}</translation>
     </message>
@@ -9919,12 +9919,12 @@
       <translation>programas de otros controles TurnDesk; las versiones nuevas se copian si se pide</translation>
     </message>
     <message>
-      <location filename="app/extras/sharing/program_files.py" />
+      <location filename="app/extras/sharing/sharing.py" />
       <source>the file is larger than {most_bytes} MB</source>
       <translation>el archivo es mayor de {most_bytes} MB</translation>
     </message>
     <message>
-      <location filename="app/extras/sharing/program_files.py" />
+      <location filename="app/extras/sharing/sharing.py" />
       <source>the name of another program on this control differs from the name of this program only in upper and lower case: rename one of the programs</source>
       <translation>el nombre de otro programa de este control difiere del nombre de este programa solo en mayúsculas y minúsculas: cambie el nombre de uno de los programas</translation>
     </message>
@@ -10659,127 +10659,127 @@
       <translation>SOLO ESTA</translation>
     </message>
     <message>
-      <location filename="app/jog/mill_jog_view.py" />
+      <location filename="app/jog/tool_setting_view.py" />
       <source>3D-ROT {state}</source>
       <translation>3D-ROT {state}</translation>
     </message>
     <message>
-      <location filename="app/jog/mill_jog_view.py" />
+      <location filename="app/jog/tool_setting_view.py" />
       <source>JOG KEY DIRECTION IN MACHINE COORDINATES X Y Z</source>
       <translation>DIRECCIÓN DE LA TECLA DE JOG EN COORDENADAS DE MÁQUINA X Y Z</translation>
     </message>
     <message>
-      <location filename="app/jog/mill_jog_view.py" />
+      <location filename="app/jog/tool_setting_view.py" />
       <source>PRESET {number}</source>
       <translation>PRESET {number}</translation>
     </message>
     <message>
-      <location filename="app/jog/mill_jog_view.py" />
+      <location filename="app/jog/tool_setting_view.py" />
       <source>TIP POSITION</source>
       <translation>POSICIÓN DE LA PUNTA</translation>
     </message>
     <message>
-      <location filename="app/jog/mill_jog_view.py" />
+      <location filename="app/jog/tool_setting_view.py" />
       <source>TOOL, PRESET, TILTED PLANE  ·  MM</source>
       <translation>HERRAMIENTA, PRESET, PLANO INCLINADO  ·  MM</translation>
     </message>
     <message>
-      <location filename="app/jog/mill_jog_view.py" />
+      <location filename="app/jog/tool_setting_view.py" />
       <source>X {x}   Y {y}   Z {z}   ROT {rotation}</source>
       <translation>X {x}   Y {y}   Z {z}   ROT {rotation}</translation>
     </message>
     <message>
-      <location filename="app/jog/mill_jog_view.py" />
+      <location filename="app/jog/tool_setting_view.py" />
       <source>no tool active; run TOOL CALL in MDI</source>
       <translation>ninguna herramienta activa; ejecute TOOL CALL en MDI</translation>
     </message>
     <message>
-      <location filename="app/jog/mill_jog_view.py" />
+      <location filename="app/jog/tool_setting_view.py" />
       <source>not tilted</source>
       <translation>sin inclinar</translation>
     </message>
     <message>
-      <location filename="app/jog/mill_jog_view.py" />
+      <location filename="app/jog/tool_setting_view.py" />
       <source>position unknown until a program line has run</source>
       <translation>posición desconocida hasta ejecutar una línea de programa</translation>
     </message>
     <message>
-      <location filename="app/jog/mill_jog_view.py" />
+      <location filename="app/jog/tool_setting_view.py" />
       <source>rotary axes are not at the angles of the tilted plane</source>
       <translation>los ejes rotativos no están en los ángulos del plano inclinado</translation>
     </message>
     <message>
-      <location filename="app/jog/mill_jog_view.py" />
+      <location filename="app/jog/tool_setting_view.py" />
       <source>zero point from the machine file</source>
       <translation>punto cero del archivo de máquina</translation>
     </message>
     <message>
-      <location filename="app/jog/pendant_jog.py" />
+      <location filename="app/jog/jog_handwheel.py" />
       <source>ENABLING SWITCH NOT PRESSED. HOLD IT AND PRESS JOG BUTTON</source>
       <translation>INTERRUPTOR DE VALIDACIÓN SIN PULSAR. MANTÉNGALO Y PULSE EL BOTÓN</translation>
     </message>
     <message>
-      <location filename="app/jog/pendant_jog.py" />
+      <location filename="app/jog/jog_handwheel.py" />
       <source>SCREEN FROZE. RELEASE THE BUTTON, THEN PRESS AGAIN</source>
       <translation>LA PANTALLA SE CONGELÓ. SUELTE EL BOTÓN Y PÚLSELO OTRA VEZ</translation>
     </message>
     <message>
-      <location filename="app/jog/setter_touch.py" />
+      <location filename="app/jog/skim_cut.py" />
       <source>CONTACT MADE. BACKING OFF</source>
       <translation>HAY CONTACTO. RETROCEDIENDO</translation>
     </message>
     <message>
-      <location filename="app/jog/setter_touch.py" />
+      <location filename="app/jog/skim_cut.py" />
       <source>MEASURING WITH A SLOW TOUCH</source>
       <translation>MIDIENDO CON UN TOQUE LENTO</translation>
     </message>
     <message>
-      <location filename="app/jog/setter_touch.py" />
+      <location filename="app/jog/skim_cut.py" />
       <source>NO CONTACT. RETURNING</source>
       <translation>SIN CONTACTO. VOLVIENDO</translation>
     </message>
     <message>
-      <location filename="app/jog/setter_touch.py" />
+      <location filename="app/jog/skim_cut.py" />
       <source>NO RAPID DURING TOUCH-OFF. PRESS WITHOUT SHIFT</source>
       <translation>SIN RÁPIDO DURANTE EL TOQUE. PULSE SIN MAYÚS</translation>
     </message>
     <message>
-      <location filename="app/jog/setter_touch.py" />
+      <location filename="app/jog/skim_cut.py" />
       <source>NO TOOL SELECTED. PRESS T AND TYPE ITS NUMBER</source>
       <translation>NINGUNA HERRAMIENTA ELEGIDA. PULSE T Y ESCRIBA SU NÚMERO</translation>
     </message>
     <message>
-      <location filename="app/jog/setter_touch.py" />
+      <location filename="app/jog/skim_cut.py" />
       <source>SEARCHING FOR THE TOOL SETTER. RELEASE THE KEY TO STOP</source>
       <translation>BUSCANDO EL PALPADOR. SUELTE LA TECLA PARA DETENER</translation>
     </message>
     <message>
-      <location filename="app/jog/setter_touch.py" />
+      <location filename="app/jog/skim_cut.py" />
       <source>THIS MACHINE HAS NO TOOL SETTER</source>
       <translation>ESTA MÁQUINA NO TIENE PALPADOR DE HERRAMIENTAS</translation>
     </message>
     <message>
-      <location filename="app/jog/setter_touch.py" />
+      <location filename="app/jog/skim_cut.py" />
       <source>TOOL SETTER, T{number}: HOLD {keys} UNTIL THE AXIS RETRACTS. ESC: CANCEL</source>
       <translation>PALPADOR, T{number}: MANTENGA {keys} HASTA QUE EL EJE SE RETIRE. ESC: CANCELAR</translation>
     </message>
     <message>
-      <location filename="app/jog/setter_touch.py" />
+      <location filename="app/jog/skim_cut.py" />
       <source>TOUCH OFF T{number} ONLY IN DIRECTION {ways}</source>
       <translation>TOQUE T{number} SOLO EN LA DIRECCIÓN {ways}</translation>
     </message>
     <message>
-      <location filename="app/jog/setter_touch.py" />
+      <location filename="app/jog/skim_cut.py" />
       <source>TOUCH-OFF FAILED: {why}</source>
       <translation>EL TOQUE FALLÓ: {why}</translation>
     </message>
     <message>
-      <location filename="app/jog/setter_touch.py" />
+      <location filename="app/jog/skim_cut.py" />
       <source>T{number}: TIP DIRECTION NOT SET. PRESS Q AND TYPE 1…9</source>
       <translation>T{number}: DIRECCIÓN DE PUNTA SIN DEFINIR. PULSE Q Y ESCRIBA 1…9</translation>
     </message>
     <message>
-      <location filename="app/jog/setter_touch.py" />
+      <location filename="app/jog/skim_cut.py" />
       <source>measured at the tool setter, direction {direction}, ±{error}</source>
       <translation>medido en el palpador, dirección {direction}, ±{error}</translation>
     </message>
@@ -11844,22 +11844,22 @@
       <translation>CEROS</translation>
     </message>
     <message>
-      <location filename="app/offsets/tool_fields.py" />
+      <location filename="app/offsets/offset_table.py" />
       <source>ENTER: SET   ESC: CANCEL</source>
       <translation>ENTER: FIJAR   ESC: CANCELAR</translation>
     </message>
     <message>
-      <location filename="app/offsets/tool_fields.py" />
+      <location filename="app/offsets/offset_table.py" />
       <source>NOW ENTER {axis}. T{number} IS SET WHEN BOTH X AND Z ARE ENTERED</source>
       <translation>ESCRIBA AHORA {axis}. T{number} QUEDA DEFINIDA CON X Y Z INTRODUCIDAS</translation>
     </message>
     <message>
-      <location filename="app/offsets/tool_fields.py" />
+      <location filename="app/offsets/offset_table.py" />
       <source>T{number} IS NOT SET. TYPE X AND Z, OR TOUCH OFF ON THE JOG PAGE</source>
       <translation>T{number} ESTÁ SIN DEFINIR. ESCRIBA X Y Z, O TÓQUELA EN LA PÁGINA MANUAL</translation>
     </message>
     <message>
-      <location filename="app/offsets/tool_fields.py" />
+      <location filename="app/offsets/offset_table.py" />
       <source>manual entry</source>
       <translation>entrada manual</translation>
     </message>
@@ -12659,32 +12659,32 @@
       <translation>{count} programas</translation>
     </message>
     <message>
-      <location filename="app/programs/folder_chooser.py" />
+      <location filename="app/programs/removable_media.py" />
       <source>FOLDER</source>
       <translation>CARPETA</translation>
     </message>
     <message>
-      <location filename="app/programs/folder_chooser.py" />
+      <location filename="app/programs/removable_media.py" />
       <source>LOCATIONS</source>
       <translation>UBICACIONES</translation>
     </message>
     <message>
-      <location filename="app/programs/folder_chooser.py" />
+      <location filename="app/programs/removable_media.py" />
       <source>NAME</source>
       <translation>NOMBRE</translation>
     </message>
     <message>
-      <location filename="app/programs/folder_chooser.py" />
+      <location filename="app/programs/removable_media.py" />
       <source>READ-ONLY</source>
       <translation>SOLO LECTURA</translation>
     </message>
     <message>
-      <location filename="app/programs/folder_chooser.py" />
+      <location filename="app/programs/removable_media.py" />
       <source>SIZE</source>
       <translation>TAMAÑO</translation>
     </message>
     <message>
-      <location filename="app/programs/folder_chooser.py" />
+      <location filename="app/programs/removable_media.py" />
       <source>THIS CONTROL</source>
       <translation>ESTE CONTROL</translation>
     </message>
@@ -12799,7 +12799,7 @@
       <translation>{target} NO SE REEMPLAZÓ. NO SE PUEDE GUARDAR SU VERSIÓN ANTERIOR: {error}</translation>
     </message>
     <message>
-      <location filename="app/programs/preview.py" />
+      <location filename="app/programs/program_rows.py" />
       <source>TOO LARGE FOR A PREVIEW</source>
       <translation>DEMASIADO GRANDE PARA LA VISTA PREVIA</translation>
     </message>
@@ -13254,32 +13254,32 @@
       <translation>escriba el número de la línea del programa como número entero, 1 o más</translation>
     </message>
     <message>
-      <location filename="app/scope/scope_trigger.py" />
+      <location filename="app/scope/time_window.py" />
       <source>A PROGRAM LINE STARTS</source>
       <translation>EMPIEZA UNA LÍNEA DEL PROGRAMA</translation>
     </message>
     <message>
-      <location filename="app/scope/scope_trigger.py" />
+      <location filename="app/scope/time_window.py" />
       <source>ALARM OR E-STOP</source>
       <translation>ALARMA O PARO DE EMERGENCIA</translation>
     </message>
     <message>
-      <location filename="app/scope/scope_trigger.py" />
+      <location filename="app/scope/time_window.py" />
       <source>OFF: CURVES KEEP UPDATING</source>
       <translation>APAGADO: LAS CURVAS SE SIGUEN ACTUALIZANDO</translation>
     </message>
     <message>
-      <location filename="app/scope/scope_trigger.py" />
+      <location filename="app/scope/time_window.py" />
       <source>SIGNAL EXCEEDS ± LEVEL</source>
       <translation>LA SEÑAL SUPERA ± NIVEL</translation>
     </message>
     <message>
-      <location filename="app/scope/scope_trigger.py" />
+      <location filename="app/scope/time_window.py" />
       <source>SIGNAL FALLS BELOW LEVEL</source>
       <translation>LA SEÑAL BAJA DEL NIVEL</translation>
     </message>
     <message>
-      <location filename="app/scope/scope_trigger.py" />
+      <location filename="app/scope/time_window.py" />
       <source>SIGNAL RISES ABOVE LEVEL</source>
       <translation>LA SEÑAL SUPERA EL NIVEL</translation>
     </message>
@@ -14484,57 +14484,57 @@
       <translation>{size} KB</translation>
     </message>
     <message>
-      <location filename="app/special/drive_status.py" />
+      <location filename="app/special/inputs_outputs.py" />
       <source>ALLOWED</source>
       <translation>PERMITIDO</translation>
     </message>
     <message>
-      <location filename="app/special/drive_status.py" />
+      <location filename="app/special/inputs_outputs.py" />
       <source>DEMAND</source>
       <translation>CONSIGNA</translation>
     </message>
     <message>
-      <location filename="app/special/drive_status.py" />
+      <location filename="app/special/inputs_outputs.py" />
       <source>DRIVE STATUS</source>
       <translation>ESTADO DE SERVOS</translation>
     </message>
     <message>
-      <location filename="app/special/drive_status.py" />
+      <location filename="app/special/inputs_outputs.py" />
       <source>DRIVE STATUS  ·  {unit}  ·  {method}</source>
       <translation>ESTADO DE SERVOS  ·  {unit}  ·  {method}</translation>
     </message>
     <message>
-      <location filename="app/special/drive_status.py" />
+      <location filename="app/special/inputs_outputs.py" />
       <source>F7: ALARMS WITH CAUSE AND REMEDY   ESC: BACK TO THE LIST</source>
       <translation>F7: ALARMAS CON CAUSA Y REMEDIO   ESC: VOLVER A LA LISTA</translation>
     </message>
     <message>
-      <location filename="app/special/drive_status.py" />
+      <location filename="app/special/inputs_outputs.py" />
       <source>FAULT</source>
       <translation>FALLA</translation>
     </message>
     <message>
-      <location filename="app/special/drive_status.py" />
+      <location filename="app/special/inputs_outputs.py" />
       <source>Largest following error since startup: {largest}</source>
       <translation>Mayor error de seguimiento desde el arranque: {largest}</translation>
     </message>
     <message>
-      <location filename="app/special/drive_status.py" />
+      <location filename="app/special/inputs_outputs.py" />
       <source>POSITIONS FROM HOME, X AS A RADIUS</source>
       <translation>POSICIONES DESDE LA REFERENCIA, X EN RADIO</translation>
     </message>
     <message>
-      <location filename="app/special/drive_status.py" />
+      <location filename="app/special/inputs_outputs.py" />
       <source>POWER</source>
       <translation>POTENCIA</translation>
     </message>
     <message>
-      <location filename="app/special/drive_status.py" />
+      <location filename="app/special/inputs_outputs.py" />
       <source>The setpoint queue ran low {underruns} times</source>
       <translation>La cola de consignas quedó corta {underruns} veces</translation>
     </message>
     <message>
-      <location filename="app/special/drive_status.py" />
+      <location filename="app/special/inputs_outputs.py" />
       <source>power, home, following error, faults</source>
       <translation>potencia, referencia, error, fallas</translation>
     </message>
@@ -14804,77 +14804,77 @@
       <translation>{count} EVENTOS</translation>
     </message>
     <message>
-      <location filename="app/special/machine_file_acceptance.py" />
+      <location filename="app/special/logged_events.py" />
       <source>ACCEPT</source>
       <translation>ACEPTAR</translation>
     </message>
     <message>
-      <location filename="app/special/machine_file_acceptance.py" />
+      <location filename="app/special/logged_events.py" />
       <source>ACCEPTED: THE DRIVES CAN BE SWITCHED ON</source>
       <translation>ACEPTADO: SE PUEDEN ENCENDER LOS SERVOS</translation>
     </message>
     <message>
-      <location filename="app/special/machine_file_acceptance.py" />
+      <location filename="app/special/logged_events.py" />
       <source>ARROWS: SCROLL THE CHANGES   F2: ACCEPT ALL   ESC: BACK</source>
       <translation>FLECHAS: RECORRER LOS CAMBIOS   F2: ACEPTAR TODOS   ESC: VOLVER</translation>
     </message>
     <message>
-      <location filename="app/special/machine_file_acceptance.py" />
+      <location filename="app/special/logged_events.py" />
       <source>MACHINE FILE</source>
       <translation>ARCHIVO DE MÁQUINA</translation>
     </message>
     <message>
-      <location filename="app/special/machine_file_acceptance.py" />
+      <location filename="app/special/logged_events.py" />
       <source>MACHINE FILE  ·  {source}</source>
       <translation>ARCHIVO DE MÁQUINA  ·  {source}</translation>
     </message>
     <message>
-      <location filename="app/special/machine_file_acceptance.py" />
+      <location filename="app/special/logged_events.py" />
       <source>No changes since the machine file was accepted.</source>
       <translation>Sin cambios desde que se aceptó el archivo de máquina.</translation>
     </message>
     <message>
-      <location filename="app/special/machine_file_acceptance.py" />
+      <location filename="app/special/logged_events.py" />
       <source>PRESS Y TO ACCEPT THE MACHINE FILE AS IT IS NOW, N TO CANCEL</source>
       <translation>PULSE Y PARA ACEPTAR EL ARCHIVO DE MÁQUINA COMO ESTÁ, N PARA CANCELAR</translation>
     </message>
     <message>
-      <location filename="app/special/machine_file_acceptance.py" />
+      <location filename="app/special/logged_events.py" />
       <source>Press F2 to accept; the drives stay off until then.</source>
       <translation>Pulse F2 para aceptar; hasta entonces los servos siguen apagados.</translation>
     </message>
     <message>
-      <location filename="app/special/machine_file_acceptance.py" />
+      <location filename="app/special/logged_events.py" />
       <source>TURN DRIVES OFF BEFORE ACCEPTING THE CHANGED MACHINE FILE</source>
       <translation>APAGUE LOS SERVOS ANTES DE ACEPTAR EL ARCHIVO DE MÁQUINA</translation>
     </message>
     <message>
-      <location filename="app/special/machine_file_acceptance.py" />
+      <location filename="app/special/logged_events.py" />
       <source>changes in the machine file since the file was last accepted</source>
       <translation>cambios en el archivo de máquina desde su última aceptación</translation>
     </message>
     <message>
-      <location filename="app/special/mill_setup.py" />
+      <location filename="app/special/setup_sheet.py" />
       <source>BLK FORM  {b}</source>
       <translation>BLK FORM  {b}</translation>
     </message>
     <message>
-      <location filename="app/special/mill_setup.py" />
+      <location filename="app/special/setup_sheet.py" />
       <source>ROT {rotation}°</source>
       <translation>ROT {rotation}°</translation>
     </message>
     <message>
-      <location filename="app/special/mill_setup.py" />
+      <location filename="app/special/setup_sheet.py" />
       <source>no tool name in the tool table</source>
       <translation>sin nombre de herramienta en la tabla</translation>
     </message>
     <message>
-      <location filename="app/special/mill_setup.py" />
+      <location filename="app/special/setup_sheet.py" />
       <source>stock not specified because the program has no BLK FORM</source>
       <translation>material en bruto sin especificar porque el programa no tiene BLK FORM</translation>
     </message>
     <message>
-      <location filename="app/special/mill_setup.py" />
+      <location filename="app/special/setup_sheet.py" />
       <source>teeth</source>
       <translation>dientes</translation>
     </message>
@@ -14904,222 +14904,222 @@
       <translation>meta de piezas de {program}: {before} → {target}</translation>
     </message>
     <message>
-      <location filename="app/special/parts_counter.py" />
+      <location filename="app/special/tool_life_function.py" />
       <source>ACTIVE JOB HAS ITS OWN COUNT. CHANGE IT IN JOBS (SHIFT+F6)</source>
       <translation>EL TRABAJO ACTIVO TIENE SU CUENTA. CÁMBIELA EN TRABAJOS (MAYÚS+F6)</translation>
     </message>
     <message>
-      <location filename="app/special/parts_counter.py" />
+      <location filename="app/special/tool_life_function.py" />
       <source>CHOOSE A PROGRAM FIRST: EVERY PROGRAM HAS ITS OWN COUNT</source>
       <translation>ELIJA PRIMERO UN PROGRAMA: CADA PROGRAMA TIENE SU PROPIA CUENTA</translation>
     </message>
     <message>
-      <location filename="app/special/parts_counter.py" />
+      <location filename="app/special/tool_life_function.py" />
       <source>Cycle Repeat turns off during the cycle that reaches the part target. Enter 0 for no part target.</source>
       <translation>Repetir ciclo se apaga durante el ciclo que alcanza la meta de piezas. Escriba 0 para no tener meta de piezas.</translation>
     </message>
     <message>
-      <location filename="app/special/parts_counter.py" />
+      <location filename="app/special/tool_life_function.py" />
       <source>NO TARGET</source>
       <translation>SIN META</translation>
     </message>
     <message>
-      <location filename="app/special/parts_counter.py" />
+      <location filename="app/special/tool_life_function.py" />
       <source>PART TARGET</source>
       <translation>META DE PIEZAS</translation>
     </message>
     <message>
-      <location filename="app/special/parts_counter.py" />
+      <location filename="app/special/tool_life_function.py" />
       <source>PARTS COUNTER</source>
       <translation>CONTADOR DE PIEZAS</translation>
     </message>
     <message>
-      <location filename="app/special/parts_counter.py" />
+      <location filename="app/special/tool_life_function.py" />
       <source>PARTS MADE</source>
       <translation>PIEZAS HECHAS</translation>
     </message>
     <message>
-      <location filename="app/special/parts_counter.py" />
+      <location filename="app/special/tool_life_function.py" />
       <source>PARTS TO GO</source>
       <translation>PIEZAS POR HACER</translation>
     </message>
     <message>
-      <location filename="app/special/parts_counter.py" />
+      <location filename="app/special/tool_life_function.py" />
       <source>PRESS Y TO SET THE COUNT TO ZERO, N TO KEEP IT</source>
       <translation>PULSE Y PARA PONER LA CUENTA EN CERO, N PARA CONSERVARLA</translation>
     </message>
     <message>
-      <location filename="app/special/parts_counter.py" />
+      <location filename="app/special/tool_life_function.py" />
       <source>STOP AT HOW MANY PARTS?</source>
       <translation>¿PARAR EN CUÁNTAS PIEZAS?</translation>
     </message>
     <message>
-      <location filename="app/special/parts_counter.py" />
+      <location filename="app/special/tool_life_function.py" />
       <source>TARGET TOO LOW: {count} PARTS ALREADY MADE. F4: RESET COUNT</source>
       <translation>META DEMASIADO BAJA: YA SE HICIERON {count} PIEZAS. F4: PONER LA CUENTA EN CERO</translation>
     </message>
     <message>
-      <location filename="app/special/parts_counter.py" />
+      <location filename="app/special/tool_life_function.py" />
       <source>THE COUNT IS ALREADY ZERO</source>
       <translation>LA CUENTA YA ESTÁ EN CERO</translation>
     </message>
     <message>
-      <location filename="app/special/parts_counter.py" />
+      <location filename="app/special/tool_life_function.py" />
       <source>TIME FOR REMAINING PARTS</source>
       <translation>TIEMPO PARA LAS PIEZAS POR HACER</translation>
     </message>
     <message>
-      <location filename="app/special/parts_counter.py" />
+      <location filename="app/special/tool_life_function.py" />
       <source>TYPE THE NUMBER OF PARTS   ENTER: ACCEPT   ESC: BACK</source>
       <translation>ESCRIBA EL NÚMERO DE PIEZAS   ENTER: ACEPTAR   ESC: VOLVER</translation>
     </message>
     <message>
-      <location filename="app/special/parts_counter.py" />
+      <location filename="app/special/tool_life_function.py" />
       <source>Use NO COUNT for dry runs; the cycle is then not counted as a part. A restart that skips lines is not counted either.</source>
       <translation>Use SIN CONT en las marchas en vacío; el ciclo entonces no se cuenta como pieza. Tampoco se cuenta un rearranque que omite líneas.</translation>
     </message>
     <message>
-      <location filename="app/special/parts_counter.py" />
+      <location filename="app/special/tool_life_function.py" />
       <source>parts made, target, times</source>
       <translation>piezas hechas, meta, tiempos</translation>
     </message>
     <message>
-      <location filename="app/special/parts_counter.py" />
+      <location filename="app/special/tool_life_function.py" />
       <source>{count} (SET BY JOB)</source>
       <translation>{count} (SEGÚN EL TRABAJO)</translation>
     </message>
     <message>
-      <location filename="app/special/parts_counter.py" />
+      <location filename="app/special/tool_life_function.py" />
       <source>{value} is not a valid number of parts; enter a whole number from 0 to {maximum}</source>
       <translation>{value} no es un número de piezas válido; escriba un entero de 0 a {maximum}</translation>
     </message>
     <message>
-      <location filename="app/special/preferences.py" />
+      <location filename="app/special/r_parameters.py" />
       <source>COLORS</source>
       <translation>COLORES</translation>
     </message>
     <message>
-      <location filename="app/special/preferences.py" />
+      <location filename="app/special/r_parameters.py" />
       <source>DARK</source>
       <translation>OSCURO</translation>
     </message>
     <message>
-      <location filename="app/special/preferences.py" />
+      <location filename="app/special/r_parameters.py" />
       <source>DISPLAY UNITS</source>
       <translation>UNIDADES MOSTRADAS</translation>
     </message>
     <message>
-      <location filename="app/special/preferences.py" />
+      <location filename="app/special/r_parameters.py" />
       <source>Display units change only the values shown; entries are always in the control's unit.</source>
       <translation>Las unidades mostradas cambian sólo los valores que se ven; lo que se escribe va siempre en la unidad del control.</translation>
     </message>
     <message>
-      <location filename="app/special/preferences.py" />
+      <location filename="app/special/r_parameters.py" />
       <source>ENGLISH</source>
       <translation>ENGLISH</translation>
     </message>
     <message>
-      <location filename="app/special/preferences.py" />
+      <location filename="app/special/r_parameters.py" />
       <source>ENTER OR TAP: NEXT CHOICE   ESC: BACK TO THE LIST</source>
       <translation>ENTER O TOQUE: OPCIÓN SIGUIENTE   ESC: VOLVER A LA LISTA</translation>
     </message>
     <message>
-      <location filename="app/special/preferences.py" />
+      <location filename="app/special/r_parameters.py" />
       <source>ESPAÑOL</source>
       <translation>ESPAÑOL</translation>
     </message>
     <message>
-      <location filename="app/special/preferences.py" />
+      <location filename="app/special/r_parameters.py" />
       <source>FIRST JOB CARD</source>
       <translation>TARJETA DEL PRIMER TRABAJO</translation>
     </message>
     <message>
-      <location filename="app/special/preferences.py" />
+      <location filename="app/special/r_parameters.py" />
       <source>FULL SCREEN</source>
       <translation>PANTALLA COMPLETA</translation>
     </message>
     <message>
-      <location filename="app/special/preferences.py" />
+      <location filename="app/special/r_parameters.py" />
       <source>HIDDEN</source>
       <translation>OCULTA</translation>
     </message>
     <message>
-      <location filename="app/special/preferences.py" />
+      <location filename="app/special/r_parameters.py" />
       <source>LANGUAGE</source>
       <translation>IDIOMA</translation>
     </message>
     <message>
-      <location filename="app/special/preferences.py" />
+      <location filename="app/special/r_parameters.py" />
       <source>LIGHT</source>
       <translation>CLARO</translation>
     </message>
     <message>
-      <location filename="app/special/preferences.py" />
+      <location filename="app/special/r_parameters.py" />
       <source>NOT AVAILABLE: THIS MACHINE HAS A REAL OPERATOR STATION</source>
       <translation>NO DISPONIBLE: ESTA MÁQUINA TIENE ESTACIÓN DEL OPERADOR REAL</translation>
     </message>
     <message>
-      <location filename="app/special/preferences.py" />
+      <location filename="app/special/r_parameters.py" />
       <source>ON-SCREEN OPERATOR STATION</source>
       <translation>ESTACIÓN DEL OPERADOR EN PANTALLA</translation>
     </message>
     <message>
-      <location filename="app/special/preferences.py" />
+      <location filename="app/special/r_parameters.py" />
       <source>ON-SCREEN PALM BUTTONS</source>
       <translation>PULSADORES EN PANTALLA</translation>
     </message>
     <message>
-      <location filename="app/special/preferences.py" />
+      <location filename="app/special/r_parameters.py" />
       <source>PRESS BUTTONS IN SEQUENCE</source>
       <translation>PULSAR UNO TRAS OTRO</translation>
     </message>
     <message>
-      <location filename="app/special/preferences.py" />
+      <location filename="app/special/r_parameters.py" />
       <source>PRESS BUTTONS TOGETHER</source>
       <translation>PULSAR LOS DOS A LA VEZ</translation>
     </message>
     <message>
-      <location filename="app/special/preferences.py" />
+      <location filename="app/special/r_parameters.py" />
       <source>RELEASE THE E-STOP (U) BEFORE HIDING THE OPERATOR STATION</source>
       <translation>SUELTE EL PARO DE EMERGENCIA (U) ANTES DE OCULTAR LA ESTACIÓN DEL OPERADOR</translation>
     </message>
     <message>
-      <location filename="app/special/preferences.py" />
+      <location filename="app/special/r_parameters.py" />
       <source>SCREEN</source>
       <translation>PANTALLA</translation>
     </message>
     <message>
-      <location filename="app/special/preferences.py" />
+      <location filename="app/special/r_parameters.py" />
       <source>SHOWN</source>
       <translation>VISIBLE</translation>
     </message>
     <message>
-      <location filename="app/special/preferences.py" />
+      <location filename="app/special/r_parameters.py" />
       <source>SIMULATION ONLY: LATCHED PALM BUTTONS COULD START A REAL SPINDLE</source>
       <translation>SÓLO EN SIMULACIÓN: PULSADORES RETENIDOS PODRÍAN ARRANCAR UN HUSILLO REAL</translation>
     </message>
     <message>
-      <location filename="app/special/preferences.py" />
+      <location filename="app/special/r_parameters.py" />
       <source>The control is set to inches.</source>
       <translation>El control está en pulgadas.</translation>
     </message>
     <message>
-      <location filename="app/special/preferences.py" />
+      <location filename="app/special/r_parameters.py" />
       <source>The control is set to millimeters.</source>
       <translation>El control está en milímetros.</translation>
     </message>
     <message>
-      <location filename="app/special/preferences.py" />
+      <location filename="app/special/r_parameters.py" />
       <source>VALUE IN LARGE READOUT</source>
       <translation>VALOR EN LA LECTURA GRANDE</translation>
     </message>
     <message>
-      <location filename="app/special/preferences.py" />
+      <location filename="app/special/r_parameters.py" />
       <source>WINDOW</source>
       <translation>VENTANA</translation>
     </message>
     <message>
-      <location filename="app/special/preferences.py" />
+      <location filename="app/special/r_parameters.py" />
       <source>units, language, operator station, window</source>
       <translation>unidades, idioma, estación del operador, ventana</translation>
     </message>
@@ -15344,52 +15344,52 @@
       <translation>herramientas, material, paros, notas; imprimible</translation>
     </message>
     <message>
-      <location filename="app/special/setup_sheet_page.py" />
+      <location filename="app/special/setup_sheet_work.py" />
       <source>MESSAGE TO THE OPERATOR</source>
       <translation>MENSAJE AL OPERADOR</translation>
     </message>
     <message>
-      <location filename="app/special/setup_sheet_page.py" />
+      <location filename="app/special/setup_sheet_work.py" />
       <source>NOTES</source>
       <translation>NOTAS</translation>
     </message>
     <message>
-      <location filename="app/special/setup_sheet_page.py" />
+      <location filename="app/special/setup_sheet_work.py" />
       <source>None.</source>
       <translation>Ninguna.</translation>
     </message>
     <message>
-      <location filename="app/special/setup_sheet_page.py" />
+      <location filename="app/special/setup_sheet_work.py" />
       <source>SECONDARY AND ZERO OFFSETS</source>
       <translation>CORRECTORES SECUNDARIOS Y DE CERO</translation>
     </message>
     <message>
-      <location filename="app/special/setup_sheet_page.py" />
+      <location filename="app/special/setup_sheet_work.py" />
       <source>STATION</source>
       <translation>PUESTO</translation>
     </message>
     <message>
-      <location filename="app/special/setup_sheet_page.py" />
+      <location filename="app/special/setup_sheet_work.py" />
       <source>Section view: the stock is light, the finished part is dark</source>
       <translation>Sección: el material en bruto en claro, la pieza acabada en oscuro</translation>
     </message>
     <message>
-      <location filename="app/special/setup_sheet_page.py" />
+      <location filename="app/special/setup_sheet_work.py" />
       <source>TIME PER PART</source>
       <translation>TIEMPO POR PIEZA</translation>
     </message>
     <message>
-      <location filename="app/special/setup_sheet_page.py" />
+      <location filename="app/special/setup_sheet_work.py" />
       <source>X (radius)</source>
       <translation>X (radio)</translation>
     </message>
     <message>
-      <location filename="app/special/setup_sheet_page.py" />
+      <location filename="app/special/setup_sheet_work.py" />
       <source>features milled by live tools are not shown</source>
       <translation>lo que fresan las herramientas motorizadas no se muestra</translation>
     </message>
     <message>
-      <location filename="app/special/setup_sheet_page.py" />
+      <location filename="app/special/setup_sheet_work.py" />
       <source>no T word</source>
       <translation>sin palabra T</translation>
     </message>
@@ -15429,82 +15429,82 @@
       <translation>TOQUE UNA FUNCIÓN O ESCRIBA SU NÚMERO   ENTER: ABRIR   ESC: VOLVER</translation>
     </message>
     <message>
-      <location filename="app/special/spindle_limit.py" />
+      <location filename="app/special/r_parameters.py" />
       <source>ACTIVE LIMIT</source>
       <translation>TOPE ACTIVO</translation>
     </message>
     <message>
-      <location filename="app/special/spindle_limit.py" />
+      <location filename="app/special/r_parameters.py" />
       <source>COMMANDED SPEED</source>
       <translation>VELOCIDAD ORDENADA</translation>
     </message>
     <message>
-      <location filename="app/special/spindle_limit.py" />
+      <location filename="app/special/r_parameters.py" />
       <source>If a program commands a higher speed, the spindle runs at the limit.</source>
       <translation>Si un programa pide más velocidad, el husillo gira al tope.</translation>
     </message>
     <message>
-      <location filename="app/special/spindle_limit.py" />
+      <location filename="app/special/r_parameters.py" />
       <source>MACHINE MAXIMUM</source>
       <translation>MÁXIMO DE LA MÁQUINA</translation>
     </message>
     <message>
-      <location filename="app/special/spindle_limit.py" />
+      <location filename="app/special/r_parameters.py" />
       <source>MAXIMUM SPINDLE SPEED</source>
       <translation>VELOCIDAD MÁXIMA DEL HUSILLO</translation>
     </message>
     <message>
-      <location filename="app/special/spindle_limit.py" />
+      <location filename="app/special/r_parameters.py" />
       <source>MAXIMUM SPINDLE SPEED?</source>
       <translation>¿VELOCIDAD MÁXIMA DEL HUSILLO?</translation>
     </message>
     <message>
-      <location filename="app/special/spindle_limit.py" />
+      <location filename="app/special/r_parameters.py" />
       <source>MEASURED SPEED</source>
       <translation>VELOCIDAD MEDIDA</translation>
     </message>
     <message>
-      <location filename="app/special/spindle_limit.py" />
+      <location filename="app/special/r_parameters.py" />
       <source>NO LIMIT</source>
       <translation>SIN TOPE</translation>
     </message>
     <message>
-      <location filename="app/special/spindle_limit.py" />
+      <location filename="app/special/r_parameters.py" />
       <source>NO SPINDLE SPEED LIMIT IS ACTIVE</source>
       <translation>NO HAY TOPE DE VELOCIDAD DEL HUSILLO ACTIVO</translation>
     </message>
     <message>
-      <location filename="app/special/spindle_limit.py" />
+      <location filename="app/special/r_parameters.py" />
       <source>PRESS Y TO REMOVE THE LIMIT, N TO KEEP IT</source>
       <translation>PULSE Y PARA QUITAR EL TOPE, N PARA CONSERVARLO</translation>
     </message>
     <message>
-      <location filename="app/special/spindle_limit.py" />
+      <location filename="app/special/r_parameters.py" />
       <source>SPINDLE LIMITED TO {rpm} RPM UNTIL RESTART</source>
       <translation>HUSILLO LIMITADO A {rpm} RPM HASTA REINICIAR</translation>
     </message>
     <message>
-      <location filename="app/special/spindle_limit.py" />
+      <location filename="app/special/r_parameters.py" />
       <source>TYPE A SPEED OR EXPRESSION   ENTER: ACCEPT   ESC: BACK</source>
       <translation>ESCRIBA UNA VELOCIDAD O UNA OPERACIÓN   ENTER: ACEPTAR   ESC: VOLVER</translation>
     </message>
     <message>
-      <location filename="app/special/spindle_limit.py" />
+      <location filename="app/special/r_parameters.py" />
       <source>The limit takes effect at once, even while a program runs.</source>
       <translation>El tope actúa de inmediato, también con un programa en marcha.</translation>
     </message>
     <message>
-      <location filename="app/special/spindle_limit.py" />
+      <location filename="app/special/r_parameters.py" />
       <source>spindle speed limit until restart</source>
       <translation>tope de velocidad del husillo hasta reiniciar</translation>
     </message>
     <message>
-      <location filename="app/special/spindle_limit.py" />
+      <location filename="app/special/r_parameters.py" />
       <source>spindle speed limit: {details}</source>
       <translation>tope de velocidad del husillo: {details}</translation>
     </message>
     <message>
-      <location filename="app/special/spindle_limit.py" />
+      <location filename="app/special/r_parameters.py" />
       <source>{rpm} rpm is outside the range of this spindle, {low} to {high} rpm</source>
       <translation>{rpm} rpm está fuera del margen de este husillo, de {low} a {high} rpm</translation>
     </message>
@@ -15579,47 +15579,47 @@
       <translation>{value} no es un número de piezas válido; escriba un entero</translation>
     </message>
     <message>
-      <location filename="app/transfer/serial_settings.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>BITS, PARITY, STOP BITS</source>
       <translation>BITS, PARIDAD, BITS DE PARADA</translation>
     </message>
     <message>
-      <location filename="app/transfer/serial_settings.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>CR LF</source>
       <translation>CR LF</translation>
     </message>
     <message>
-      <location filename="app/transfer/serial_settings.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>DC CODES</source>
       <translation>CÓDIGOS DC</translation>
     </message>
     <message>
-      <location filename="app/transfer/serial_settings.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>FLOW CONTROL</source>
       <translation>CONTROL DE FLUJO</translation>
     </message>
     <message>
-      <location filename="app/transfer/serial_settings.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>LEADING NULS</source>
       <translation>NULOS INICIALES</translation>
     </message>
     <message>
-      <location filename="app/transfer/serial_settings.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>LINE ENDING</source>
       <translation>FIN DE LÍNEA</translation>
     </message>
     <message>
-      <location filename="app/transfer/serial_settings.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>PORT</source>
       <translation>PUERTO</translation>
     </message>
     <message>
-      <location filename="app/transfer/serial_settings.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>SEND ONLY AFTER DC1</source>
       <translation>ENVIAR SOLO TRAS DC1</translation>
     </message>
     <message>
-      <location filename="app/transfer/serial_settings.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>START/END CHARACTER</source>
       <translation>CARÁCTER DE INICIO Y FIN</translation>
     </message>
@@ -18944,12 +18944,12 @@
       <translation>{path} es un dibujo DWG: guárdelo como DXF.</translation>
     </message>
     <message>
-      <location filename="core/extras/drawings/expansion.py" />
+      <location filename="core/extras/drawings/arc_fitting.py" />
       <source>A repeated group in {name} contains itself: save only the contour of the part.</source>
       <translation>Un grupo repetido de {name} se contiene a sí mismo: guarde solo el contorno de la pieza.</translation>
     </message>
     <message>
-      <location filename="core/extras/drawings/expansion.py" />
+      <location filename="core/extras/drawings/arc_fitting.py" />
       <source>The repeated groups in {name} add up to more than {most_elements} entities: save only the contour of the part.</source>
       <translation>Los grupos repetidos de {name} suman más de {most_elements} entidades: guarde solo el contorno de la pieza.</translation>
     </message>
@@ -19074,32 +19074,32 @@
       <translation>el contorno tiene una pendiente demasiado fuerte para el útil</translation>
     </message>
     <message>
-      <location filename="core/extras/drawings/unit_check.py" />
+      <location filename="core/extras/drawings/contour_walk.py" />
       <source>{size} {unit} across</source>
       <translation>{size} {unit} de diámetro</translation>
     </message>
     <message>
-      <location filename="core/extras/drawings/unit_check.py" />
+      <location filename="core/extras/drawings/contour_walk.py" />
       <source>{size} {unit} long</source>
       <translation>{size} {unit} de largo</translation>
     </message>
     <message>
-      <location filename="core/extras/drawings/work_limit.py" />
+      <location filename="core/extras/drawings/drawing.py" />
       <source>the drawing has too many parallel lines. Save only the contour of the part.</source>
       <translation>el dibujo tiene demasiadas líneas paralelas. Guarde sólo el contorno de la pieza.</translation>
     </message>
     <message>
-      <location filename="core/extras/quality/capability.py" />
+      <location filename="core/extras/quality/control_charts.py" />
       <source>process capability needs a tolerance; enter a tolerance for this feature</source>
       <translation>la capacidad del proceso necesita una tolerancia; introduzca una tolerancia para esta característica</translation>
     </message>
     <message>
-      <location filename="core/extras/quality/capability.py" />
+      <location filename="core/extras/quality/control_charts.py" />
       <source>the lower limit must be below the upper limit; correct the tolerance</source>
       <translation>el límite inferior debe ser menor que el superior; corrija la tolerancia</translation>
     </message>
     <message>
-      <location filename="core/extras/quality/capability.py" />
+      <location filename="core/extras/quality/control_charts.py" />
       <source>{values_count} readings are not enough; a Cpk needs at least {minimum} readings</source>
       <translation>{values_count} lecturas no bastan; un Cpk necesita al menos {minimum} lecturas</translation>
     </message>
@@ -19229,52 +19229,52 @@
       <translation>{reason}: el final de un paro es anterior a su comienzo porque el reloj se atrasó</translation>
     </message>
     <message>
-      <location filename="core/extras/quality/wear_proposal.py" />
+      <location filename="core/extras/quality/measured_feature.py" />
       <source>the correction would be less than the smallest offset step, so no correction is needed</source>
       <translation>la corrección sería menor que el paso mínimo del corrector, así que no hace falta corregir</translation>
     </message>
     <message>
-      <location filename="core/extras/quality/wear_proposal.py" />
+      <location filename="core/extras/quality/measured_feature.py" />
       <source>the deviation is within the dead band, so no correction is needed</source>
       <translation>la desviación está dentro de la banda muerta, así que no hace falta corregir</translation>
     </message>
     <message>
-      <location filename="core/extras/quality/wear_proposal.py" />
+      <location filename="core/extras/quality/measured_feature.py" />
       <source>{feature}: a correction of {change} mm is too large to be tool wear; touch the tool off</source>
       <translation>{feature}: una corrección de {change} mm es demasiado grande para ser desgaste; tome referencia de la herramienta</translation>
     </message>
     <message>
-      <location filename="core/extras/quality/wear_proposal.py" />
+      <location filename="core/extras/quality/measured_feature.py" />
       <source>{feature}: a reading is not a number; delete that reading</source>
       <translation>{feature}: una lectura no es un número; borre esa lectura</translation>
     </message>
     <message>
-      <location filename="core/extras/quality/wear_proposal.py" />
+      <location filename="core/extras/quality/measured_feature.py" />
       <source>{feature}: a reading is off by more than {distance} times the tolerance, which is too large for tool wear; measure again</source>
       <translation>{feature}: una lectura se desvía más de {distance} veces la tolerancia, demasiado para ser desgaste; mida de nuevo</translation>
     </message>
     <message>
-      <location filename="core/extras/quality/wear_proposal.py" />
+      <location filename="core/extras/quality/measured_feature.py" />
       <source>{feature}: no part has been measured since the last correction</source>
       <translation>{feature}: no se ha medido ninguna pieza desde la última corrección</translation>
     </message>
     <message>
-      <location filename="core/extras/shapes/blade.py" />
+      <location filename="core/extras/shapes/forms/parting.py" />
       <source>BLADE WIDTH</source>
       <translation>ANCHO DE LA CUCHILLA</translation>
     </message>
     <message>
-      <location filename="core/extras/shapes/blade.py" />
+      <location filename="core/extras/shapes/forms/parting.py" />
       <source>CORNER USED FOR TOUCH-OFF</source>
       <translation>ESQUINA DE REFERENCIA</translation>
     </message>
     <message>
-      <location filename="core/extras/shapes/blade.py" />
+      <location filename="core/extras/shapes/forms/parting.py" />
       <source>Depth {depth} is more than the reach of {name}, which is {length}. Use a longer blade.</source>
       <translation>La profundidad {depth} es más que el alcance de {name}, que es {length}. Use una cuchilla más larga.</translation>
     </message>
     <message>
-      <location filename="core/extras/shapes/blade.py" />
+      <location filename="core/extras/shapes/forms/parting.py" />
       <source>The blade width in the tool data of {name} is {width}: enter that width.</source>
       <translation>El ancho de cuchilla en los datos de herramienta de {name} es {width}: introduzca ese ancho.</translation>
     </message>
@@ -20074,22 +20074,22 @@
       <translation>{label} {value} no es válido: elija uno de {choices}.</translation>
     </message>
     <message>
-      <location filename="core/extras/shapes/sinumerik_helpers.py" />
+      <location filename="core/extras/shapes/templates.py" />
       <source>CYCLE95 ROUGHING</source>
       <translation>DESBASTE CYCLE95</translation>
     </message>
     <message>
-      <location filename="core/extras/shapes/sinumerik_helpers.py" />
+      <location filename="core/extras/shapes/templates.py" />
       <source>THREAD CYCLE97</source>
       <translation>ROSCA CYCLE97</translation>
     </message>
     <message>
-      <location filename="core/extras/shapes/sinumerik_helpers.py" />
+      <location filename="core/extras/shapes/templates.py" />
       <source>calls the tool, leads in, and cuts passes with a constant chip cross-section</source>
       <translation>llama al útil, entra y corta pasadas con sección de viruta constante</translation>
     </message>
     <message>
-      <location filename="core/extras/shapes/sinumerik_helpers.py" />
+      <location filename="core/extras/shapes/templates.py" />
       <source>equivalent feed per minute: G94 F{number}</source>
       <translation>avance por minuto equivalente: G94 F{number}</translation>
     </message>
@@ -20344,12 +20344,12 @@
       <translation>{mark} está dañado</translation>
     </message>
     <message>
-      <location filename="core/extras/sharing/shared_place.py" />
+      <location filename="core/extras/sharing/version_record.py" />
       <source>the database {address}</source>
       <translation>la base de datos {address}</translation>
     </message>
     <message>
-      <location filename="core/extras/sharing/shared_place.py" />
+      <location filename="core/extras/sharing/version_record.py" />
       <source>the folder {folder}</source>
       <translation>la carpeta {folder}</translation>
     </message>

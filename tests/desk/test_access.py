@@ -18,11 +18,10 @@ from app.programs.program_list import ProgramList
 from app.special.inputs_outputs import InputsOutputs
 from app.special.inputs_outputs import Kind as Shown
 from app.special.lamps_and_sound import LampsAndSound
-from app.special.logged_events import FILTERS
-from app.special.machine_file_acceptance import MachineFileAcceptance
-from app.special.parts_counter import PartsCounterFunction
+from app.special.logged_events import FILTERS, MachineFileAcceptance
+from app.special.r_parameters import SpindleSpeedLimit
 from app.special.setup_sheet_function import SetupSheetFunction
-from app.special.spindle_limit import SpindleSpeedLimit
+from app.special.tool_life_function import PartsCounterFunction
 from app.transfer.line_transfer import Received
 from app.transfer.serial_transfer import SerialTransfer
 from core.access.access_page import page

@@ -28,7 +28,7 @@ class Drawings(Extra):
             add_drawing(part, desk, machine)
 
     def json_outputs(self) -> Mapping[str, Sequence[Output]]:
-        from app.extras.drawings.profile_json_keys import OUTPUTS
+        from app.extras.drawings.profile_command import OUTPUTS
 
         return {"access table --json": OUTPUTS}
 

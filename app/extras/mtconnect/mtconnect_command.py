@@ -7,7 +7,13 @@ import sys
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING
 
+from app.compose.check_rows import Answers, Row
 from app.desk.command_errors import EXIT_OK, as_command_error
+from app.extras.mtconnect.driver.mtconnect_table import MtconnectTable
+from app.extras.mtconnect.shop_floor import try_shop_floor
+from core.machine.machine_model import Machine
+from core.message import Message
+from core.ports import DriverError
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
@@ -34,3 +40,18 @@ def run(args: argparse.Namespace) -> int:
     if not told_to_agents(machine):
         sys.stderr.write(f"turndesk: {file}: [mtconnect] enabled = false, so no agent can find the adapter\n")
     return EXIT_OK
+
+
+def check_mtconnect(machine: Machine, answers: Answers) -> None:
+    """Add whether agents would find the adapter, and accept its device model."""
+    model = machine.hardware.table(MtconnectTable)
+    if model is None or not model.enabled:
+        return
+    at = f"{model.bind}:{model.port}"
+    try:
+        try_shop_floor(machine, model)
+    except DriverError as error:
+        answers.rows.append(Row("mtconnect", at, "fault", str(error)))
+        answers.trouble.append(str(error))
+    else:
+        answers.rows.append(Row("mtconnect", at, "ok", Message("device {device}", device=model.device)))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from app.shopfloor.json_keys import STATUS
-from core.json_key import keys
+from core.json_key import Output, keys
 
 OFFICE = (
     *keys("updated | string | UTC | Time of the status."),
@@ -36,4 +36,19 @@ text | string | | The event in one sentence.
 """
     ),
     *OFFICE,
+)
+
+
+_OFFICE = """
+The office page, which [status_page] configures, serves this object at `/status.json`. MQTT
+publishes it as a retained message at `TOPIC/state`. `TOPIC/available` is `online` or `offline`,
+without JSON.
+"""
+_EVENT = """
+MQTT publishes each event at `TOPIC/event` as a message that is not retained. The web hook receives
+the same object by POST, with `Content-Type: application/json`.
+"""
+OUTPUTS = (
+    Output("The office web page and the MQTT state message", _OFFICE, OFFICE),
+    Output("MQTT and webhook events", _EVENT, EVENT),
 )

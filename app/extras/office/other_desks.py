@@ -18,9 +18,8 @@ from urllib.parse import urlsplit, urlunsplit
 from urllib.request import ProxyHandler
 
 from app.desk.translation import tr
-from app.extras.office.network_causes import cause_of, one_line
 from app.extras.office.status_page import NOT_YET, OtherDesk
-from app.extras.office.timed_http import timed_opener
+from app.extras.office.timed_http import cause_of, one_line, timed_opener
 from core.message import Message
 
 EVERY = 3.0  # s

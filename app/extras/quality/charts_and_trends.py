@@ -30,9 +30,7 @@ from app.offsets.offset_values import signed
 from app.production.parts_watch import PartsWatch
 from core.access.access_table import Act
 from core.executor.snapshot import Snapshot
-from core.extras.quality.capability import capability
-from core.extras.quality.control_charts import charts_of, findings
-from core.extras.quality.quality_errors import QualityError
+from core.extras.quality.control_charts import QualityError, capability, charts_of, findings
 from core.extras.quality.stops import Availability, Span, availability, pareto, times_between
 from core.message import Message
 from core.store.production.measured_parts import FeatureRow, ReadingRow

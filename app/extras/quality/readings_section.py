@@ -20,7 +20,7 @@ from app.offsets.offset_changes import OffsetHistory, OffsetQuestions, refusal
 from app.production.parts_watch import PartsWatch
 from core.access.access_table import Act
 from core.executor.snapshot import Snapshot
-from core.extras.quality.quality_errors import QualityError
+from core.extras.quality.control_charts import QualityError
 from core.message import Message
 from core.store.production import measured_parts
 from core.store.production.measured_parts import FeatureRow, ReadingRow

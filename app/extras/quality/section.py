@@ -15,7 +15,7 @@ from app.offsets.offset_values import Mode, to_mm
 from app.production.parts_watch import PartsWatch
 from app.special.special_functions import FigureFunction
 from core.extras.quality.control_charts import Chart, ChartPair, findings
-from core.extras.quality.wear_proposal import Proposal
+from core.extras.quality.measured_feature import Proposal
 from core.store.production.measured_parts import FeatureRow
 
 AHEAD = 4.0  # parts behind the last one, for which a correction is drawn

@@ -18,9 +18,8 @@ from app.offsets.offset_effect import Effect, Tables
 from app.offsets.offset_values import Mode, added, out_of_range, signed, value_added
 from app.offsets.offsets_in_force import secondary_offsets, tool_offsets
 from app.offsets.part_effect import part_table
-from core.extras.quality.measured_feature import CorrectedBy
-from core.extras.quality.quality_errors import QualityError
-from core.extras.quality.wear_proposal import Proposal, propose
+from core.extras.quality.control_charts import QualityError
+from core.extras.quality.measured_feature import CorrectedBy, Proposal, propose
 from core.message import Message
 from core.store.production.measured_parts import FeatureRow
 from core.store.store_rows import FIELDS, Kind, SecondaryRow, ToolRow, Value

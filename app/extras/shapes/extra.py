@@ -27,7 +27,7 @@ class ShapesAndCalculators(Extra):
         desk.attach_later("app.extras.shapes.shapes_model.Shapes", partial(_shapes, desk, machine))
 
     def json_outputs(self) -> Mapping[str, Sequence[Output]]:
-        from app.extras.shapes.shapes_json_keys import OUTPUTS
+        from app.extras.shapes.shapes_command import OUTPUTS
 
         return {"store verify --json": OUTPUTS}
 

@@ -10,8 +10,7 @@ from app.desk.editor_panel import PanelModel
 from app.desk.latest import Latest
 from app.desk.sheet import STEPS, Key
 from app.desk.translation import tr
-from app.extras.shapes.added_form import AddedForm
-from app.extras.shapes.shape_form import ShapeForm
+from app.extras.shapes.shape_form import AddedForm, ShapeForm
 from core.extras.shapes.forms.program_head import HEAD
 from core.extras.shapes.pieces import (
     Piece,
@@ -25,7 +24,7 @@ from core.extras.shapes.pieces import (
     with_shape,
 )
 from core.extras.shapes.shape import Shape
-from core.extras.shapes.shape_setting import Setting, Shop
+from core.extras.shapes.shape_fields import Setting, Shop
 from core.extras.shapes.shape_table import HELPERS_OF, SHAPES, SHAPES_OF
 from core.language.source import dialect_of
 from core.message import Message

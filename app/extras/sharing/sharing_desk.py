@@ -24,7 +24,7 @@ from core.store.store import Store
 if TYPE_CHECKING:
     from app.extras.sharing.sharing import Shared, Sharing
     from app.extras.sharing.sharing_model import SharingModel
-    from core.extras.sharing.shared_place import SharedPlace
+    from core.extras.sharing.version_record import SharedPlace
 
 HOME_FILE = "sharing-id"  # beside the store and not in it: a setup or a backup of another desk has another
 
@@ -65,8 +65,8 @@ def start_sharing(desk: Desk, journal: Journal) -> Callable[[], None] | None:
     table = desk.lathe.hardware.table(SharingTable) if desk.lathe is not None else None
     if table is None:
         return None
+    from app.extras.sharing.sharing import SharingThread
     from app.extras.sharing.sharing_model import SharingModel
-    from app.extras.sharing.sharing_thread import SharingThread
 
     model = desk.attached(SharingModel)
     if model is None or model.sharing is None:

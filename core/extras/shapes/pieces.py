@@ -13,8 +13,7 @@ from dataclasses import dataclass, replace
 from core.extras.shapes.contour import Row, read_contour
 from core.extras.shapes.forms.program_head import MM, RADIUS
 from core.extras.shapes.shape import TOOL_WORD, Filled, Shape, filled, read_comment
-from core.extras.shapes.shape_fields import LENGTHS, Kind, Value, Values
-from core.extras.shapes.shape_setting import Setting, Shop
+from core.extras.shapes.shape_fields import LENGTHS, Kind, Setting, Shop, Value, Values
 from core.extras.shapes.shape_table import named
 from core.language.source import Dialect
 

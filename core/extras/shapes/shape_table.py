@@ -21,15 +21,19 @@ from core.extras.shapes.forms.program_head import HEAD, SINUMERIK_HEAD
 from core.extras.shapes.forms.tapers_and_bores import BORE, EDGE, TAPER
 from core.extras.shapes.forms.turning import FACE, LABEL, TURN
 from core.extras.shapes.shape import Shape
-from core.extras.shapes.sinumerik_helpers import (
+from core.extras.shapes.templates import (
+    BAR_FEED,
+    ROUGH,
     SINUMERIK_BAR_FEED,
     SINUMERIK_ROUGH,
     SINUMERIK_SPEED,
     SINUMERIK_START,
     SINUMERIK_THREADING,
     SINUMERIK_THREADS,
+    START,
+    THREADING,
+    TOOL_CHANGE,
 )
-from core.extras.shapes.templates import BAR_FEED, ROUGH, START, THREADING, TOOL_CHANGE
 from core.extras.shapes.threads.tapping import SINUMERIK_TAP, TAP
 from core.extras.shapes.threads.threading import SINUMERIK_THREAD, THREAD
 from core.language.source import Dialect

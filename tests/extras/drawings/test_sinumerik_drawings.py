@@ -14,7 +14,7 @@ from core.extras.drawings.drawing_view import Profile, Side
 from core.extras.drawings.profile_program import ProfileProgram
 from core.extras.drawings.profile_words import in_json, in_words
 from core.extras.shapes.pieces import pieces
-from core.extras.shapes.shape_setting import Setting, Shop
+from core.extras.shapes.shape_fields import Setting, Shop
 from core.language.source import Dialect
 from core.tool_edges import TIP_DIRECTIONS
 from tests.coded import recorded_refusals

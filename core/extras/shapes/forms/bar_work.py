@@ -5,11 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
-from core.extras.shapes.lines.bar_lines import Bars, write_bars
-from core.extras.shapes.lines.code_lines import Code
+from core.extras.shapes.lines.code_lines import Bars, Code, write_bars
 from core.extras.shapes.shape import Filled, Shape
-from core.extras.shapes.shape_fields import Field, Kind, Refusal, Value, Values, size
-from core.extras.shapes.shape_setting import Setting
+from core.extras.shapes.shape_fields import Field, Kind, Refusal, Setting, Value, Values, size
 from core.extras.shapes.usual_fields import next_tool
 from core.sketch import Dim, Outline, Sketch, part, sketch, tool
 

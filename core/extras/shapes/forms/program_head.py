@@ -5,11 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 from core.extras.shapes.cutting_data import MATERIALS
-from core.extras.shapes.lines.code_lines import Code
-from core.extras.shapes.number_words import plain
+from core.extras.shapes.lines.code_lines import Code, plain
 from core.extras.shapes.shape import Filled, Shape
-from core.extras.shapes.shape_fields import Field, Kind, Proposal, Value, Values, text
-from core.extras.shapes.shape_setting import CLEAR, Setting
+from core.extras.shapes.shape_fields import CLEAR, Field, Kind, Proposal, Setting, Value, Values, text
 from core.sketch import Dim, Sketch, part, sketch
 
 INCH, MM = "INCH", "METRIC"

@@ -10,8 +10,7 @@ from core.extras.shapes.contour import SAME, Row, contour_refusals, outline, poi
 from core.extras.shapes.cutting_data import Work, facing_depth, finish_depth, most_depth, rough_depth
 from core.extras.shapes.lines.code_lines import Along, Code
 from core.extras.shapes.shape import Filled, Shape
-from core.extras.shapes.shape_fields import Field, Kind, Refusal, Value, Values, number, text
-from core.extras.shapes.shape_setting import Setting
+from core.extras.shapes.shape_fields import Field, Kind, Refusal, Setting, Value, Values, number, text
 from core.extras.shapes.usual_fields import (
     around,
     bar,
