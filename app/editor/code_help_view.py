@@ -1,4 +1,4 @@
-"""The codes beside the text: what the one at the cursor means, and a list to choose from."""
+"""The codes beside the text: what that at the cursor means, with its picture, and a list to choose from."""
 
 from __future__ import annotations
 

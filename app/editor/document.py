@@ -1,4 +1,4 @@
-"""The program that is edited: where it lies, what it may be called, and how it is saved."""
+"""The program that is edited: where it lies, how it is saved, and the draft that is kept until it is."""
 
 from __future__ import annotations
 

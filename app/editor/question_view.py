@@ -1,4 +1,4 @@
-"""The line that asks: what to find and by what to replace it, where to go, what name to save under."""
+"""The line that asks: what to find and to replace, where to go, what name to save under."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The text with its margin: line numbers, a mark at each line that proving has found fault with, and why."""
+"""The text with its colours and margin: line numbers, and a mark at each line with a finding, and why."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A held jog: a slide moves by hand only while one key or finger is held, and is seen to be held.
+"""A held jog, its steps, speeds and directions: a slide moves by hand only while one key or finger is held.
 
 Everything that is not exactly that ends the move: the release, the loss of the keyboard, another key, a
 second finger, a changed increment, a screen that was away, a key that has gone silent. After such an end

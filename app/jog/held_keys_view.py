@@ -1,4 +1,4 @@
-"""A page on which keys and fingers are held to move a slide: what counts as held, and what ends it."""
+"""A page on which keys and fingers are held to move a slide, and the cross of targets that they hold."""
 
 from __future__ import annotations
 

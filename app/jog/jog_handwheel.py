@@ -1,4 +1,4 @@
-"""The handwheel as the Jog page asks for it: an axis, a step, and a lease that is renewed once a frame.
+"""The handwheel as the Jog page asks for it, and buttons beside the slides that jog.
 
 By hand it is selected with a key or a finger; a station with switches of its own selects by them, and what
 was taken away comes back only when the switch was elsewhere in between, or by the key.

@@ -1,4 +1,4 @@
-"""Skim cut: a tool is touched off by a cut of its own: cut, retract, stop the spindle, measure, type.
+"""Tools touched off by a skim cut of their own (cut, retract, stop, measure, type), or at the tool setter.
 
 Of a diameter X is kept from the cut to the answer, of a face Z: the slide goes away along the other axis.
 What counts is where the slide stood in the cut; has it moved since, that may be the place of another cut.

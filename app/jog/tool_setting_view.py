@@ -1,4 +1,4 @@
-"""Tool setting: the chosen tool, its tip in a drawing, its fields, and what can be asked of it."""
+"""The right side of the Jog page: tool setting on a lathe; tool, preset, tip and 3D-ROT on a mill."""
 
 from __future__ import annotations
 

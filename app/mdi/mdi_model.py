@@ -1,4 +1,4 @@
-"""MDI without Qt: a line is typed, proved on a worker, made ready, and started by the palms."""
+"""MDI without Qt: a line is typed and completed, proved on a worker, made ready, and started by the palms."""
 
 from __future__ import annotations
 

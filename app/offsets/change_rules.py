@@ -1,4 +1,4 @@
-"""Changes of offsets that are probably typing mistakes: the one rule for the screen and the command line.
+"""The rules on changes of offsets, for screen and command line: which are doubtful, and which act each is.
 
 The rule compares the new value with the value in use. Its limits are TurnDesk's own. They are larger than
 the usual correction of a size between two parts and smaller than most slips of a digit, a sign or a decimal

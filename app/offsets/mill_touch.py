@@ -1,4 +1,4 @@
-"""Touching off on a mill: where the tip is, and how high the spindle's nose, from the machine's own chain."""
+"""Tools in a mill: touching off by the machine's own chain, and tool life in the tool table."""
 
 from __future__ import annotations
 

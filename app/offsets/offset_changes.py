@@ -1,4 +1,4 @@
-"""Changes of offsets that are asked before they take effect: suspicious values, a master, undo.
+"""Changes of offsets: asked before they take effect where suspicious, remembered, and taken back.
 
 Every page changes offsets through this class. A question names the old and the new value; Y changes the
 offset, N and Esc leave it as it is.

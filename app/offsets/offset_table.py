@@ -1,4 +1,4 @@
-"""A table of offsets that the operator changes: what tool, secondary and zero offsets have in common.
+"""Tables of offsets that the operator changes: what all have in common, and the fields of a tool.
 
 A page shows the table, the line that is typed under it, the history, and what a change does to the path.
 """

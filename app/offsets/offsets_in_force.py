@@ -1,4 +1,4 @@
-"""From the rows of the store to what the interpreter counts with: tools, secondary offsets, the preset."""
+"""From the rows of the store to what the interpreter counts with, on lathes and mills."""
 
 from __future__ import annotations
 

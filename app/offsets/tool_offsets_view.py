@@ -1,4 +1,4 @@
-"""Tool offsets, F8: some of the 32 tools, each field a cell that a finger or the cursor chooses."""
+"""Tool offsets and shape of a tool, F8: their cells and fields, and a drawing of insert, holder and tip."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The preset table of a mill: the workpiece's zero in X Y Z A B C, its basic rotation; touch-off."""
+"""Zero offsets G54 to G59 of a lathe, and the presets of a mill: where the workpiece is."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The pane of the part: its section as a drawing, stock and tool with it, red where something is hit."""
+"""The panes of the part: its section as a drawing, red where something is hit; and the part in space."""
 
 from __future__ import annotations
 

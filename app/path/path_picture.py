@@ -1,4 +1,4 @@
-"""The path of a program as polylines, made once from its elementary blocks on a worker thread.
+"""The path of a program as polylines, also on face and side with C locked; made once on a worker thread.
 
 Coordinates are the part's: machine position less the offset of the active tool, so that work shifts (G10)
 and presets (G92) stand where they are cut. mm, X a radius.

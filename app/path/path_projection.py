@@ -1,4 +1,4 @@
-"""How a path is projected onto pixels: what is looked at, points thinned out to the pixel, cut to the edge.
+"""How a path and the section of a part are projected onto pixels: thinned out to what can be seen.
 
 Everything is done for whole arrays: no Python loop goes over the points.
 """

@@ -1,4 +1,4 @@
-"""The programs that can be chosen, with all that is known of each; how they are sorted."""
+"""The programs that can be chosen: what is known of each, how they are sorted, pictures of the marked one."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""USB sticks and other removable media: which are mounted now, what is free, and why one cannot be written.
+"""USB sticks and folders to choose programs from: which are there, what is free, why one cannot be written.
 
 The kernel's own list of mounts tells (``/proc/self/mountinfo``); elsewhere folders are asked one by one.
 """

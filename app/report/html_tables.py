@@ -1,4 +1,4 @@
-"""Tables, figures and the frame of the pages of reports and setup sheets, as HTML."""
+"""Tables, figures, style and frame of the pages of reports and setup sheets, as HTML."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The drawings of a report: the part before and after in section, the path, a finding's place, a tool."""
+"""The drawings of a report as inline SVG: part before and after, path, a finding's place, a tool."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The window of the scope: which seconds are seen, zoomed and panned, and the two cursors in it."""
+"""Which seconds the scope shows: its window with two cursors, and the trigger that freezes the curves."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The drawing of a shape: its outlines, and dimensions that are the fields; a finger on one goes to it."""
+"""Drawings of a tool's outline and of its tip, and of a shape whose dimensions are the fields."""
 
 from __future__ import annotations
 

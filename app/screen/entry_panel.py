@@ -1,4 +1,4 @@
-"""What all entries of figures look like: what is asked, what was typed, old → new, and keys for fingers."""
+"""What all entries look like: what is asked, what was typed, old → new; keys and keyboards for fingers."""
 
 from __future__ import annotations
 

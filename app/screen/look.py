@@ -1,4 +1,4 @@
-"""What every part of the screen draws with: colours, the bundled fonts, and the one unit of size."""
+"""What every part of the screen draws with: themes, the bundled fonts, the unit of size, the language."""
 
 from __future__ import annotations
 

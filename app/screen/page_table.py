@@ -1,4 +1,4 @@
-"""The pages of the main window, one entry a page: name, view, model; key, label and use in the main menu."""
+"""The pages of the main window, one entry a page, and how they are loaded ahead of their first opening."""
 
 from __future__ import annotations
 

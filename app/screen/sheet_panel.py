@@ -1,4 +1,4 @@
-"""A table with head line, lamps, a marked row, notes and a question below; and a page that opens with one."""
+"""Panels with rows: a list that scrolls; a table with head line, lamps, notes and a question; its page."""
 
 from __future__ import annotations
 

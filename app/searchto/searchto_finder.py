@@ -1,4 +1,4 @@
-"""The worker of SEARCHTO: finds lines and proves restarts, one at a time; what nobody wants is given up."""
+"""The line that SEARCHTO looks for: by number or text, found and proved on a worker, one at a time."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Inputs, outputs and lamps, live; outputs are switched by hand at rest only, inputs where simulated."""
+"""Drives, inputs, outputs and lamps, live; outputs are switched by hand at rest only."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The event log: what happened when, newest first; searched and filtered on a worker."""
+"""The event log, newest first, and what has changed in the machine file since somebody accepted it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""R parameters of SINUMERIK programs: what the operator sets, and every program begins with."""
+"""What the operator sets: units, language and theme; the speed limit until restart; R parameters."""
 
 from __future__ import annotations
 

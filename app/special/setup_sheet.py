@@ -1,4 +1,4 @@
-"""The setup sheet of a program: tools by station, offsets, stock, chuck, stops, time a part."""
+"""The setup sheet of a program on lathe or mill: tools, offsets, stock, chuck, stops, time a part."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Tool life of every tool: limits by parts and minutes, what is used, and the change of an insert."""
+"""The counters of F10: parts with target and times, and the life of every tool with its limits."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``turndesk access``: people, their levels and PINs, and the service reset at the machine's own keyboard."""
+"""``turndesk access``: people, levels, PINs, the service reset; the PIN that other commands ask for."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Signing in with a PIN at the desk, and the time after which a level falls back. No Qt, never waits."""
+"""Signing in with a PIN at the desk, the time after which a level falls back, and the service reset."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The page of the analyses: path error, thread passes, ball bar; the drawing and its figures."""
+"""The page of the analyses: path error, thread passes, ball bar; the drawing (loaded late) and figures."""
 
 from __future__ import annotations
 

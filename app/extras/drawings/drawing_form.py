@@ -1,4 +1,4 @@
-"""The form of a drawing (DXF, SVG): which contour, about which axis, by which tools; it writes shapes."""
+"""The form of a drawing (DXF, SVG): read, planned and tried beside the screen; it writes shapes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``turndesk profile PART.dxf``: the contour of a drawing, and the program that turns it."""
+"""``turndesk profile PART.dxf``: the contour of a drawing, and the program that turns it; its JSON keys."""
 
 from __future__ import annotations
 

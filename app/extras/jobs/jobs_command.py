@@ -1,4 +1,4 @@
-"""``turndesk jobs``: the queue of programs that are to be made, and how many parts of each."""
+"""``turndesk jobs``: the queue of programs, how many parts of each, and the keys of its JSON."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The queue of jobs in every frame: what is under way, when its count is reached, what comes next.
+"""The queue of jobs in every frame: what is under way, what comes next, and what that needs on the plate.
 
 The next job is proved while another one runs, on a worker of the desk and never in the executor's way.
 """

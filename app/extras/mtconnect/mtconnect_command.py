@@ -1,4 +1,4 @@
-"""``turndesk machine mtconnect``: the device model for an MTConnect agent."""
+"""``turndesk machine mtconnect``: the device model for an agent; and the adapter's row of machine check."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Following errors in the seconds about an alarm, as a small SVG drawing for the office's page."""
+"""Pictures for the office's page: following errors about an alarm as SVG, and a picture in memory as PNG."""
 
 from __future__ import annotations
 

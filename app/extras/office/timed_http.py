@@ -1,4 +1,4 @@
-"""HTTP exchanges with a deadline for the whole of each, however slowly its bytes arrive."""
+"""HTTP exchanges with a deadline for the whole of each, and why another computer could not be reached."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Trends: cycle time and spindle load by part, wear over parts, reasons of stops, availability."""
+"""Control charts of a feature with its Cpk, and trends: cycle time, load, wear, stops, availability."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The gauge of a machine file: a thread listens to its serial line, the screen takes up what has come."""
+"""The gauge of a machine file: a thread listens to its serial line and reads Digimatic or plain values."""
 
 from __future__ import annotations
 

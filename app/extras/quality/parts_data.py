@@ -1,4 +1,4 @@
-"""Measured parts of a program as they are kept: features, readings, cycles and corrections."""
+"""Measured parts of a program as they are kept: features, readings, cycles, corrections; readings as CSV."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Measured parts and trends of a desk: put together and given to it."""
+"""Measured parts and trends of a desk: put together, given to it; their entry in the special functions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is drawn of measured parts and trends: curves, levels, marks and bars, without anything that draws."""
+"""One section of the page of measured parts: its table with keys, and what its chart is to draw."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The figures of a shift, out of what the store keeps: parts, cycle times, stops, alarms, offsets, readings.
+"""The figures of a shift, out of what the store keeps; and when a shift begins and ends.
 
 The rows are those of the trends and of ``turndesk parts``: nothing is counted a second time.
 """

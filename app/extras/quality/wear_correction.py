@@ -1,4 +1,4 @@
-"""The proposed wear correction of a feature, taken over as a typed one: history, range, the next part."""
+"""The proposed wear correction of a feature: what it does to the part, and taken over as a typed one."""
 
 from __future__ import annotations
 

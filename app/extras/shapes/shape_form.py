@@ -1,4 +1,4 @@
-"""The form of one shape: what is typed into its fields, what that comes to, and what is wrong with it."""
+"""The form of one shape: what is typed, what it comes to, what is wrong; and forms that features add."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``turndesk shapes FORM.toml --out part.nc``: the forms of the editor as a file, and their program."""
+"""``turndesk shapes FORM.toml --out part.nc``: the forms of the editor as a file; keys of its JSON."""
 
 from __future__ import annotations
 

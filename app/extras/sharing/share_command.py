@@ -1,4 +1,4 @@
-"""``turndesk share``: programs shared with other desks: what is newer elsewhere, publish, take, compare."""
+"""``turndesk share``: programs shared with other desks: newer, publish, take, compare; its JSON keys."""
 
 from __future__ import annotations
 

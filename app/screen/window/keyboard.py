@@ -1,4 +1,4 @@
-"""The keyboard: every key passes here before any page, field, dialog or drawn keyboard sees it.
+"""The keyboard: every key passes here before anything else sees it, with the time when it went down.
 
 Two keys act everywhere, with any modifier, lock and layout: Pause holds the feed, Scroll Lock is the E-stop.
 H, Space and E do the same where no caret is visible. Esc holds while something moves, unless the page uses

@@ -1,4 +1,4 @@
-"""Splines, ellipses and Bezier curves as arcs, to a tolerance: biarcs, without corners at their joints."""
+"""What the readers of drawings share: how many entities blocks come to, and curves as arcs to a tolerance."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A contour picked out of a drawing: ends that nearly meet are joined, and its outer or inner side is walked.
+"""A contour picked out of a drawing: ends joined, its outer or inner side walked, a wrong unit told.
 
 All points are (r, z) from the axis and the zero of Z, mm, as a lathe has them.
 """

@@ -1,4 +1,4 @@
-"""A drawing: lines and arcs by layer, in the unit of its file; and why one cannot be used."""
+"""A drawing: lines and arcs by layer, why one cannot be used, the limit of work on it, and it as bytes."""
 
 from __future__ import annotations
 

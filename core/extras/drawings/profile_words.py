@@ -1,4 +1,4 @@
-"""What a program from a drawing leaves of it, and what it needs: as a person reads it, and as JSON."""
+"""A program from a drawing: what is proposed for it, what it leaves of the drawing, and what it needs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The contour that a turning tool follows: grooves bridged, overhangs cut short, faces left off.
+"""The contour that a turning tool follows, as far as its nose reaches: grooves bridged, faces left off.
 
 Worked out for the outside; the wall of a bore is its mirror image, so both are one.
 """

@@ -1,4 +1,4 @@
-"""Control charts of Shewhart: average and range (X-bar/R), individuals and moving range (I-MR).
+"""Control charts of Shewhart (X-bar/R, I-MR), and the capability of a process (ISO 22514-2).
 
 Limits are three standard deviations of the process within its samples, by the constants of ISO 7870-2 and
 ASTM E2587 for normally distributed values. Lengths are whatever unit the values have. The rules that tell

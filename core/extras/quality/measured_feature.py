@@ -1,4 +1,4 @@
-"""A feature of a part that is measured: nominal, limits, and the tool or secondary offset that corrects it.
+"""A feature of a part that is measured: nominal, limits, what corrects it, and the proposed correction.
 
 Lengths mm; a diameter is a diameter. ``grows`` says what the feature does when the correction grows: +1 it
 grows with it, -1 it shrinks. A diameter, outside or inside, grows with X of a tool at X positive, and shrinks

@@ -1,4 +1,4 @@
-"""Fields of a shape: what they are called, what they measure, what is proposed and between what they lie."""
+"""Fields of a shape, and the setting they are filled in for: program, machine, material, tools."""
 
 from __future__ import annotations
 

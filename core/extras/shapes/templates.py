@@ -1,4 +1,4 @@
-"""Templates of the editor: lines that begin a program, change a tool, rough, thread, feed a bar."""
+"""Templates of the editor; with the calculators, in SINUMERIK: begin, change a tool, rough, thread, bar."""
 
 from __future__ import annotations
 

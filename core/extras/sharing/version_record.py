@@ -1,4 +1,4 @@
-"""The record of a shared version and of what a desk has: how they are written, and what is no good one."""
+"""The record of a shared version and of what a desk has; and what a place must offer that takes them."""
 
 from __future__ import annotations
 

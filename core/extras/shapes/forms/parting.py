@@ -1,4 +1,4 @@
-"""Part off: to the centre or to a bore, chamfers on both sides of the cut."""
+"""Part off: to the centre or to a bore, with chamfers; and the blade that plunges."""
 
 from __future__ import annotations
 

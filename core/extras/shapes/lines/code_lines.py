@@ -1,4 +1,4 @@
-"""The lines of a shape: rapids, cuts and feeds as a programmer of this control writes them."""
+"""The lines of a shape and of a bar loop: numbers as words, rapids, cuts and feeds of this control."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The lines of a live tool: the spindle held as C, holes from the side, and the planes XC and ZC."""
+"""The lines of a live tool, also in SINUMERIK: the spindle held as C, and the planes XC and ZC."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Tap on the axis: in at the pitch, the spindle turned back, out at the pitch, in a holder that gives."""
+"""Tap on the axis in a holder that gives, and the drill for its hole as drills are sold."""
 
 from __future__ import annotations
 

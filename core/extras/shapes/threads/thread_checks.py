@@ -1,4 +1,4 @@
-"""What is refused of a thread: by its figures, by the slide, by the sheet of its tool."""
+"""What is proposed for a thread by its size and tool, and what is refused of it."""
 
 from __future__ import annotations
 

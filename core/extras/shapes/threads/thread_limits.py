@@ -1,4 +1,4 @@
-"""Limits of a thread by its class: major, pitch and minor diameter, from the formulas of the standards.
+"""Thread series by name, and limits of a thread by its class from the formulas of the standards.
 
 Unified: ASME B1.1. Metric: ISO 965-1, whose tolerances are rounded to preferred numbers (R 40). Pipe:
 B1.20.1, ISO 7-1, ISO 228-1. ACME: B1.5, general purpose.
