@@ -15,13 +15,13 @@ from app.desk.program_loading import LoadingSteps
 from app.production.parts_watch import PartsWatch
 from app.scope.scope_function import ScopeFunction
 from app.special.backup_and_restore import BackupAndRestore
+from app.special.counters import PartsCounterFunction, ToolLifeFunction
 from app.special.inputs_outputs import DriveStatus, InputsOutputs
 from app.special.lamps_and_sound import DeskSounds, LampsAndSound
-from app.special.logged_events import LoggedEvents, MachineFileAcceptance
-from app.special.r_parameters import RParameters, ScreenPreferences, SpindleSpeedLimit
+from app.special.machine_records import LoggedEvents, MachineFileAcceptance
+from app.special.operator_settings import RParameters, ScreenPreferences, SpindleSpeedLimit
 from app.special.setup_sheet_function import SetupSheetFunction
 from app.special.special_functions import SpecialFunction, SpecialFunctions
-from app.special.tool_life_function import PartsCounterFunction, ToolLifeFunction
 from app.transfer.serial_transfer import SerialTransfer
 from core.language.source import Dialect, usual_ending
 from core.machine.desk_tables import BackupTable, DncModel

@@ -21,7 +21,7 @@ from app.jog.hand_functions import (
 )
 from app.jog.jog_model import JogModel
 from app.jog.jog_touch_off import TOUCH_X, TOUCH_Z
-from app.jog.skim_cut import CutStep
+from app.jog.skim_and_setter import CutStep
 from app.screen.look import CENTRE, LEFT, Look, Painter
 from app.screen.panel import FingerPanel, Shown, pressed
 from app.screen.window_layout import FINGER

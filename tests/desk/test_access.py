@@ -15,13 +15,13 @@ from app.editor.editor import Editor
 from app.offsets.offset_changes import OffsetHistory, OffsetQuestions
 from app.production.parts_watch import PartsWatch
 from app.programs.program_list import ProgramList
+from app.special.counters import PartsCounterFunction
 from app.special.inputs_outputs import InputsOutputs
 from app.special.inputs_outputs import Kind as Shown
 from app.special.lamps_and_sound import LampsAndSound
-from app.special.logged_events import FILTERS, MachineFileAcceptance
-from app.special.r_parameters import SpindleSpeedLimit
+from app.special.machine_records import FILTERS, MachineFileAcceptance
+from app.special.operator_settings import SpindleSpeedLimit
 from app.special.setup_sheet_function import SetupSheetFunction
-from app.special.tool_life_function import PartsCounterFunction
 from app.transfer.line_transfer import Received
 from app.transfer.serial_transfer import SerialTransfer
 from core.access.access_page import page

@@ -17,7 +17,7 @@ from app.compose.screen_desk import desk_and_executor
 from app.compose.stored_offsets import NONE
 from app.desk.desk import Desk
 from app.desk.persistence import Persistence
-from app.special.logged_events import MachineFileAcceptance
+from app.special.machine_records import MachineFileAcceptance
 from app.special.special_functions import SpecialFunctions
 from core.executor.executor import Executor
 from core.executor.snapshot import State

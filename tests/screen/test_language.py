@@ -23,7 +23,7 @@ from app.screen import look
 from app.screen.look import CONTEXT, DARK, Look, speak_in
 from app.screen.page_base import Page
 from app.screen.window.main_window import MainWindow
-from app.special.logged_events import event_row
+from app.special.machine_records import event_row
 from core.alarms import CATALOGUE, Code, Entry
 from core.executor.raised_alarm import log_line, make_alarm
 from core.executor.snapshot import Alarm

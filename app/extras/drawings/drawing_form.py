@@ -18,7 +18,7 @@ from core.extras.drawings.drawing_file import is_drawing
 from core.extras.drawings.drawing_process import read_in_process
 from core.extras.drawings.drawing_view import Front, Side, Zero
 from core.extras.drawings.part_against_drawing import Comparison
-from core.extras.drawings.profile_words import in_words
+from core.extras.drawings.profile_job import in_words
 from core.extras.shapes.cutting_data import MATERIALS
 from core.extras.shapes.lines.code_lines import Code
 from core.extras.shapes.shape import Filled, Shape

@@ -24,8 +24,8 @@ from core.extras.drawings.drawing_view import (
     on_lathe,
     profile,
 )
+from core.extras.drawings.profile_job import proposed_fields
 from core.extras.drawings.profile_program import ProfileProgram, profile_program
-from core.extras.drawings.profile_words import proposed_fields
 from core.extras.shapes.shape_fields import Setting, Value, Values
 from core.geometry.lines_and_arcs import Arc, Element, Line
 from core.message import Message

@@ -353,7 +353,7 @@ def _shapes(args: argparse.Namespace) -> Mapping[int, ToolShape]:
 
 def _typed(chosen: Profile, args: argparse.Namespace, shapes: Mapping[int, ToolShape]) -> dict[str, Value]:
     """The fields of the shapes, lengths in the unit of the program."""
-    from core.extras.drawings.profile_words import proposed_fields
+    from core.extras.drawings.profile_job import proposed_fields
 
     said: dict[str, Value | None] = {
         "BAR": args.bar,
@@ -385,7 +385,7 @@ def _program(
 
 
 def _tell(made: ProfileProgram, trial: Trial, chosen: Profile, text: str, args: argparse.Namespace) -> None:
-    from core.extras.drawings.profile_words import in_json, in_words
+    from core.extras.drawings.profile_job import in_json, in_words
 
     if args.json:
         told = {

@@ -17,7 +17,7 @@ from app.desk.prompt_line import UNDER_WAY
 from app.desk.sheet import STEPS, Entry, Key, Row, Sheet, refused
 from app.desk.translation import tr
 from app.extras.jobs.jobs_watch import JobsWatch, ProvedJob, Station, findings, missing, stations, tool_name
-from app.special.tool_life_function import whole_number
+from app.special.counters import whole_number
 from core.access.access_table import Act
 from core.executor.snapshot import Snapshot
 from core.language.diagnostics import Severity

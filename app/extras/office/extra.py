@@ -42,7 +42,7 @@ class Office(Extra):
         return open_office(desk, desk.lathe, journal, tell)
 
     def floor_outputs(self) -> Sequence[Output]:
-        from app.extras.office.office_json_keys import OUTPUTS
+        from app.extras.office.office_reference import OUTPUTS
 
         return OUTPUTS
 

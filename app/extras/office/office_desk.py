@@ -222,7 +222,7 @@ class PartPicture:
         return png if job is not None and job.digest == digest else b""
 
     def _png(self, job: Job) -> bytes:
-        from app.extras.office.alarm_drawing import png_of
+        from app.extras.office.office_pictures import png_of
 
         found = self.draw(job, lambda _done: None)
         return png_of(found.pixels, found.width, found.height) if found is not None else b""
@@ -250,7 +250,7 @@ class AlarmDrawing:
 
 
 def _drawing(record: Path) -> bytes:
-    from app.extras.office.alarm_drawing import alarm_drawing
+    from app.extras.office.office_pictures import alarm_drawing
     from core.records.record import RecordError
     from core.records.record_file import open_record
 

@@ -13,8 +13,8 @@ from app.extras.quality.gauge_wire import GaugeWire
 from app.extras.quality.readings_section import ReadingsSection
 from app.extras.quality.sample_plan import SamplePlan
 from app.production.parts_watch import PartsWatch
+from app.special.counters import ToolLifeFunction
 from app.special.special_functions import SpecialFunction
-from app.special.tool_life_function import ToolLifeFunction
 from core.machine.machine_model import Machine
 
 

@@ -16,8 +16,8 @@ from core.extras.shapes.lines.code_lines import plain
 from core.extras.shapes.pieces import Piece
 from core.extras.shapes.shape import Filled, Shape, filled
 from core.extras.shapes.shape_fields import Field, Kind, Refusal, Setting, Value, choice_text
-from core.extras.shapes.threads.thread_checks import class_choices, series_of
-from core.extras.shapes.threads.thread_limits import SIZES
+from core.extras.shapes.threads.thread_series import SIZES
+from core.extras.shapes.threads.thread_values import class_choices, series_of
 from core.sketch import Sketch
 
 COLUMNS = ("X", "Z", "C", "R", "A")

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from core.extras.shapes.shape import Shape
 from core.extras.shapes.shape_fields import Field, choice_text
-from core.extras.shapes.threads.thread_limits import Series
+from core.extras.shapes.threads.thread_series import Series
 
 
 def words_of(shapes: Iterable[Shape]) -> list[str]:

@@ -24,7 +24,7 @@ from core.store.store import Store
 if TYPE_CHECKING:
     from app.extras.sharing.sharing import Shared, Sharing
     from app.extras.sharing.sharing_model import SharingModel
-    from core.extras.sharing.version_record import SharedPlace
+    from core.extras.sharing.shared_place import SharedPlace
 
 HOME_FILE = "sharing-id"  # beside the store and not in it: a setup or a backup of another desk has another
 

@@ -21,7 +21,7 @@ from core.extras.shapes.shape_fields import (
     number,
     text,
 )
-from core.extras.shapes.threads.thread_checks import filled_depth
+from core.extras.shapes.threads.thread_values import filled_depth
 from core.extras.shapes.threads.threading import THREAD, first_depth, first_word
 from core.extras.shapes.usual_fields import MOST_RPM, too_fast
 from core.message import Message

@@ -7,6 +7,7 @@ from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any
 
 from core.extras.sharing.connection_string import parsed, shown, with_tls
+from core.extras.sharing.shared_place import Found, Published, database_at
 from core.extras.sharing.shared_versions import SharedVersion
 from core.extras.sharing.sharing_errors import Cause, SharingError
 from core.extras.sharing.version_record import (
@@ -15,11 +16,8 @@ from core.extras.sharing.version_record import (
     LONGEST_STATE,
     MOST_BYTES,
     DeskState,
-    Found,
-    Published,
     RecordError,
     checked_text,
-    database_at,
     read_state,
     read_version,
     written,

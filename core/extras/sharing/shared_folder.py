@@ -13,6 +13,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+from core.extras.sharing.shared_place import Found, Published, folder_at
 from core.extras.sharing.shared_versions import SharedVersion
 from core.extras.sharing.sharing_errors import Cause, of_system
 from core.extras.sharing.version_record import (
@@ -21,11 +22,8 @@ from core.extras.sharing.version_record import (
     LONGEST_STATE,
     MOST_BYTES,
     DeskState,
-    Found,
-    Published,
     RecordError,
     checked_text,
-    folder_at,
     is_id,
     read_state,
     read_version,

@@ -12,8 +12,8 @@ import numpy as np
 from app.extras.drawings.drawing_plan import Asked, Plan, Planner
 from core.extras.drawings.drawing_file import read_drawing
 from core.extras.drawings.drawing_view import Profile, Side, View, axis_named, contours, profile
+from core.extras.drawings.profile_job import proposed_fields
 from core.extras.drawings.profile_program import ProfileProgram, profile_program
-from core.extras.drawings.profile_words import proposed_fields
 from core.extras.shapes.shape_fields import Setting, Shop
 from core.interpreter.job_setup import SecondaryOffset
 from core.language.source import Dialect

@@ -11,8 +11,8 @@ import pytest
 from app.cli.main import main
 from app.extras.drawings.profile_trial_desk import Trial, TrialStock, tried
 from core.extras.drawings.drawing_view import Profile, Side
+from core.extras.drawings.profile_job import in_json, in_words
 from core.extras.drawings.profile_program import ProfileProgram
-from core.extras.drawings.profile_words import in_json, in_words
 from core.extras.shapes.pieces import pieces
 from core.extras.shapes.shape_fields import Setting, Shop
 from core.language.source import Dialect

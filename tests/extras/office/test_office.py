@@ -23,8 +23,8 @@ from PySide6.QtGui import QImage
 from app.compose.machine_answers import check_ports
 from app.compose.machine_files import load_machine, parse_machine
 from app.extras.office import other_desks
-from app.extras.office.alarm_drawing import HIGH, alarm_drawing, png_of
 from app.extras.office.office_desk import STOPS, AlarmDrawing, OfficeLook, PartPicture
+from app.extras.office.office_pictures import HIGH, alarm_drawing, png_of
 from app.extras.office.other_desks import OtherDesks, asked, status_address
 from app.extras.office.page_connections import DEADLINE, MOST, MOST_OF_ONE
 from app.extras.office.page_server import PageServer, listening_at

@@ -9,7 +9,7 @@ import pytest
 from core.extras.shapes.shape import Filled, filled
 from core.extras.shapes.shape_fields import Setting, Shop
 from core.extras.shapes.shape_table import SHAPES
-from core.extras.shapes.threads.thread_limits import (
+from core.extras.shapes.threads.thread_series import (
     METRIC,
     Limits,
     Series,

@@ -13,8 +13,9 @@ import pytest
 
 from core.extras.sharing.connection_string import parsed, with_tls
 from core.extras.sharing.shared_database import SharedDatabase
+from core.extras.sharing.shared_place import Published, SharedPlace
 from core.extras.sharing.sharing_errors import Cause, SharingError
-from core.extras.sharing.version_record import DeskState, Published, SharedPlace, new_version
+from core.extras.sharing.version_record import DeskState, new_version
 from tests.extras.sharing.rigs import PostgresRig, PowerCut, Rig, rig_of
 
 AT = "2026-01-02T03:04:05.678Z"

@@ -11,7 +11,8 @@ from core.extras.shapes.cutting_data import Work, rpm
 from core.extras.shapes.lines.code_lines import Code, Tap, plain
 from core.extras.shapes.shape import Filled, Shape
 from core.extras.shapes.shape_fields import Field, Kind, Refusal, Setting, Value, Values, number, text
-from core.extras.shapes.threads.thread_checks import (
+from core.extras.shapes.threads.thread_series import METRIC, TAPERED, Series, in_unit, size_of
+from core.extras.shapes.threads.thread_values import (
     INSIDE,
     LEFT,
     RIGHT,
@@ -20,7 +21,6 @@ from core.extras.shapes.threads.thread_checks import (
     series_of,
     unknown_name,
 )
-from core.extras.shapes.threads.thread_limits import METRIC, TAPERED, Series, in_unit, size_of
 from core.extras.shapes.usual_fields import MOST_RPM, too_deep, too_fast, tool_field
 from core.message import Message
 from core.part.tool_shape import ToolKind

@@ -9,7 +9,8 @@ from functools import partial
 from core.extras.shapes.lines.code_lines import Code, figure, plain, rounded_up
 from core.extras.shapes.shape import Filled, Shape
 from core.extras.shapes.shape_fields import Field, Kind, Setting, text
-from core.extras.shapes.threads.thread_checks import (
+from core.extras.shapes.threads.thread_series import TAPERED, Series, classes, in_unit
+from core.extras.shapes.threads.thread_values import (
     COARSE,
     INSIDE,
     LEFT,
@@ -35,7 +36,6 @@ from core.extras.shapes.threads.thread_checks import (
     thread_checks,
     unknown_name,
 )
-from core.extras.shapes.threads.thread_limits import TAPERED, Series, classes, in_unit
 from core.extras.shapes.usual_fields import MOST_RPM, tool_field
 from core.message import Message
 from core.part.tool_shape import ToolKind

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from core.extras.shapes.cutting_data import Work, rpm
 from core.extras.shapes.shape import Filled
 from core.extras.shapes.shape_fields import Proposal, Refusal, Setting, Value, Values, number, text
-from core.extras.shapes.threads.thread_limits import (
+from core.extras.shapes.threads.thread_series import (
     TAPERED,
     Limits,
     Series,
