@@ -7,16 +7,13 @@ import sys
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING
 
-from app.compose.check_rows import Answers, Row
 from app.desk.command_errors import EXIT_OK, as_command_error
-from app.extras.mtconnect.driver.mtconnect_table import MtconnectTable
-from app.extras.mtconnect.shop_floor import try_shop_floor
-from core.machine.machine_model import Machine
 from core.message import Message
-from core.ports import DriverError
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
+    from app.compose.check_rows import Answers
+    from core.machine.machine_model import Machine
 
 
 def add_parser(actions: SubParsers) -> None:
@@ -44,6 +41,11 @@ def run(args: argparse.Namespace) -> int:
 
 def check_mtconnect(machine: Machine, answers: Answers) -> None:
     """Add whether agents would find the adapter, and accept its device model."""
+    from app.compose.check_rows import Row
+    from app.extras.mtconnect.driver.mtconnect_table import MtconnectTable
+    from app.extras.mtconnect.shop_floor import try_shop_floor
+    from core.ports import DriverError
+
     model = machine.hardware.table(MtconnectTable)
     if model is None or not model.enabled:
         return
