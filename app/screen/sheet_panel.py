@@ -12,7 +12,6 @@ from PySide6.QtWidgets import QWidget
 
 from app.desk.sheet import Key, Row, Sheet
 from app.screen import page_table
-from app.screen.drawings import draw_outline
 from app.screen.entry_panel import draw_entry_box
 from app.screen.look import LEFT, RIGHT, Look, Painter
 from app.screen.page_base import Host, ModelPage, PageModel
@@ -250,6 +249,8 @@ class SheetPanel(RowPanel):
                 at.setHeight(half.height())
             painter.write(at, first, 2.1 * self._letters, "text", at=side, bold=bold, raw=raw)
             if row.outline is not None and number == len(row.cells) - 1:
+                from app.screen.drawings import draw_outline
+
                 draw_outline(painter, at.adjusted(0, 0.2 * u, 0, -0.2 * u), row.outline, small=True)
 
     def _filled(self, painter: Painter, at: QRectF, row: Row) -> None:
