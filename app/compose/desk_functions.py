@@ -14,9 +14,8 @@ from app.desk.first_job import FirstJob
 from app.desk.persistence import Persistence
 from app.desk.program_loading import LoadingSteps
 from app.desk.screen_settings import SettingsBook
-from app.programs.run_history import RunHistory
+from app.programs.run_history import PartCounter, RunHistory
 from app.special.lamps_and_sound import DeskSounds
-from app.special.part_count import PartCounter
 from core.machine.machine_model import Machine
 from core.store.store_errors import StoreError
 

@@ -34,8 +34,7 @@ from app.desk.station_hands import OVERRIDE_MOST, StationHands, StationPanel, st
 from app.desk.translation import tr
 from app.desk.waiting import how_it_ends
 from app.offsets.offset_book import NONE_KEPT, OffsetBook
-from app.programs.run_history import RunHistory
-from app.special.part_count import PartCounter
+from app.programs.run_history import PartCounter, RunHistory
 from core.access.access_table import Act
 from core.closing import ClosingStep, Wait, close_in_order, close_together, wait_for
 from core.executor.commands import (

@@ -14,8 +14,7 @@ from app.desk.formats import length
 from app.desk.readouts import TURNING
 from app.desk.translation import tr
 from app.jog.held_jog import Held, HeldJog, JogDirection
-from app.jog.jog_touch_off import MOVED, TOUCH_X, TOUCH_Z, TOUCHES
-from app.jog.tool_setting import ToolSetting
+from app.jog.tool_setting import MOVED, TOUCH_X, TOUCH_Z, TOUCHES, ToolSetting
 from app.offsets.offset_changes import refusal
 from app.offsets.offset_values import signed
 from core.executor.commands import Command, Touch

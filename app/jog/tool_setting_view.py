@@ -11,9 +11,8 @@ from PySide6.QtWidgets import QWidget
 from app.desk.formats import length
 from app.desk.translation import tr
 from app.jog.jog_model import JogModel
-from app.jog.jog_touch_off import TOUCH_X, TOUCH_Z
 from app.jog.tilted_jog import SLIDES
-from app.jog.tool_setting import TOOL
+from app.jog.tool_setting import TOOL, TOUCH_X, TOUCH_Z
 from app.offsets.offset_values import Mode, marked, not_set, shown_value, signed, word
 from app.screen.drawings import draw_tip
 from app.screen.look import CENTRE, LEFT, RIGHT, Look, Painter

@@ -14,7 +14,7 @@ from app.desk.machine_status import Tone
 from app.desk.sheet import Key, Row, Sheet, following, refused
 from app.desk.translation import tr
 from app.production.parts_watch import PartsWatch
-from app.special.part_count import MOST, PartCounter
+from app.programs.run_history import MOST, PartCounter
 from app.special.special_functions import FigureFunction
 from core.access.access_table import Act
 from core.executor.snapshot import Snapshot

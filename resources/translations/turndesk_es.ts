@@ -7304,7 +7304,7 @@
       <translation>AVISO</translation>
     </message>
     <message>
-      <location filename="app/editor/heading_view.py" />
+      <location filename="app/editor/editor_parts_view.py" />
       <source>KEYBOARD</source>
       <translation>TECLADO</translation>
     </message>
@@ -8744,7 +8744,7 @@
       <translation>MTCONNECT</translation>
     </message>
     <message>
-      <location filename="app/extras/office/agent_desk.py" />
+      <location filename="app/extras/office/other_desks.py" />
       <source>the MTConnect agent reports that the machine is unavailable</source>
       <translation>el agente MTConnect indica que la máquina no está disponible</translation>
     </message>
@@ -9794,7 +9794,7 @@
       <translation>Estos valores no dan una forma válida: revise el último valor que introdujo.</translation>
     </message>
     <message>
-      <location filename="app/extras/shapes/shape_words.py" />
+      <location filename="app/extras/shapes/shape_form.py" />
       <source>SERIES</source>
       <translation>SERIE</translation>
     </message>
@@ -10604,47 +10604,47 @@
       <translation>°/MIN</translation>
     </message>
     <message>
-      <location filename="app/jog/jog_touch_off.py" />
+      <location filename="app/jog/tool_setting.py" />
       <source>, this tool only</source>
       <translation>, solo esta herramienta</translation>
     </message>
     <message>
-      <location filename="app/jog/jog_touch_off.py" />
+      <location filename="app/jog/tool_setting.py" />
       <source>TOUCH OFF ONLY WITH THE MACHINE STOPPED AND READY</source>
       <translation>TOQUE SOLO CON LA MÁQUINA PARADA Y LISTA</translation>
     </message>
     <message>
-      <location filename="app/jog/jog_touch_off.py" />
+      <location filename="app/jog/tool_setting.py" />
       <source>skim cut Z</source>
       <translation>pasada de medida Z</translation>
     </message>
     <message>
-      <location filename="app/jog/jog_touch_off.py" />
+      <location filename="app/jog/tool_setting.py" />
       <source>skim cut Ø</source>
       <translation>pasada de medida Ø</translation>
     </message>
     <message>
-      <location filename="app/jog/jog_touch_off.py" />
+      <location filename="app/jog/tool_setting.py" />
       <source>the {axis} offset would be outside the allowed range</source>
       <translation>el corrector {axis} quedaría fuera del rango permitido</translation>
     </message>
     <message>
-      <location filename="app/jog/jog_touch_off.py" />
+      <location filename="app/jog/tool_setting.py" />
       <source>touch-off Z</source>
       <translation>toque Z</translation>
     </message>
     <message>
-      <location filename="app/jog/jog_touch_off.py" />
+      <location filename="app/jog/tool_setting.py" />
       <source>touch-off of a new tool</source>
       <translation>toque de una herramienta nueva</translation>
     </message>
     <message>
-      <location filename="app/jog/jog_touch_off.py" />
+      <location filename="app/jog/tool_setting.py" />
       <source>touch-off Ø</source>
       <translation>toque Ø</translation>
     </message>
     <message>
-      <location filename="app/jog/jog_touch_off.py" />
+      <location filename="app/jog/tool_setting.py" />
       <source>{axis} IS NOT HOMED AND ITS POSITION IS UNKNOWN. HOME IT FIRST</source>
       <translation>{axis} NO TIENE REFERENCIA Y SU POSICIÓN NO SE CONOCE. REFERÉNCIELO ANTES</translation>
     </message>
@@ -15249,27 +15249,27 @@
       <translation>{rpm} rpm está fuera del margen de este husillo, de {low} a {high} rpm</translation>
     </message>
     <message>
-      <location filename="app/special/part_count.py" />
+      <location filename="app/programs/run_history.py" />
       <source>TARGET REACHED: {count} OF {target} PARTS</source>
       <translation>META ALCANZADA: {count} DE {target} PIEZAS</translation>
     </message>
     <message>
-      <location filename="app/special/part_count.py" />
+      <location filename="app/programs/run_history.py" />
       <source>THIS PART REACHES THE TARGET. CYCLE REPEAT IS NOW OFF</source>
       <translation>CON ESTA PIEZA SE ALCANZA LA META. REPETIR CICLO QUEDA APAGADO</translation>
     </message>
     <message>
-      <location filename="app/special/part_count.py" />
+      <location filename="app/programs/run_history.py" />
       <source>part count of {program}: {before} → 0</source>
       <translation>cuenta de piezas de {program}: {before} → 0</translation>
     </message>
     <message>
-      <location filename="app/special/part_count.py" />
+      <location filename="app/programs/run_history.py" />
       <source>part count of {program}: {count} → {count2}</source>
       <translation>cuenta de piezas de {program}: {count} → {count2}</translation>
     </message>
     <message>
-      <location filename="app/special/part_count.py" />
+      <location filename="app/programs/run_history.py" />
       <source>part target of {program}: {before} → {target}</source>
       <translation>meta de piezas de {program}: {before} → {target}</translation>
     </message>
@@ -18744,22 +18744,22 @@
       <translation>este intervalo no contiene ningún arco; elija una línea que programe un arco</translation>
     </message>
     <message>
-      <location filename="core/extras/analyses/path_error.py" />
+      <location filename="core/extras/analyses/ball_bar.py" />
       <source>a path error plot needs at least {minimum} samples of a path; record while a program runs</source>
       <translation>un diagrama de error de trayectoria necesita al menos {minimum} muestras; registre mientras corre un programa</translation>
     </message>
     <message>
-      <location filename="core/extras/analyses/path_error.py" />
+      <location filename="core/extras/analyses/ball_bar.py" />
       <source>no axis moved in this time range; record while a program runs</source>
       <translation>ningún eje se movió en este intervalo; registre mientras corre un programa</translation>
     </message>
     <message>
-      <location filename="core/extras/analyses/path_error.py" />
+      <location filename="core/extras/analyses/ball_bar.py" />
       <source>the driver does not report the axis positions, so no path can be compared</source>
       <translation>el driver no informa de las posiciones de los ejes, así que no se puede comparar ninguna trayectoria</translation>
     </message>
     <message>
-      <location filename="core/extras/analyses/path_error.py" />
+      <location filename="core/extras/analyses/ball_bar.py" />
       <source>the number of path points and the number of line numbers differ</source>
       <translation>el número de puntos de la trayectoria y el de números de línea difieren</translation>
     </message>
@@ -19454,57 +19454,57 @@
       <translation>ACERO PARA HERRAMIENTAS</translation>
     </message>
     <message>
-      <location filename="core/extras/shapes/forms/bar_work.py" />
+      <location filename="core/extras/shapes/forms/parting.py" />
       <source>A bar feed loop cannot be inside another bar feed loop: write this shape before or after the other loop.</source>
       <translation>Un bucle de avance de barra no puede estar dentro de otro: escriba esta forma antes o después del otro bucle.</translation>
     </message>
     <message>
-      <location filename="core/extras/shapes/forms/bar_work.py" />
+      <location filename="core/extras/shapes/forms/parting.py" />
       <source>BAR FEED PER MINUTE</source>
       <translation>AVANCE DE BARRA POR MINUTO</translation>
     </message>
     <message>
-      <location filename="core/extras/shapes/forms/bar_work.py" />
+      <location filename="core/extras/shapes/forms/parting.py" />
       <source>BAR LENGTH PER PART + CUT-OFF</source>
       <translation>LARGO DE BARRA POR PIEZA + CORTE</translation>
     </message>
     <message>
-      <location filename="core/extras/shapes/forms/bar_work.py" />
+      <location filename="core/extras/shapes/forms/parting.py" />
       <source>BAR LOOP</source>
       <translation>BUCLE DE BARRA</translation>
     </message>
     <message>
-      <location filename="core/extras/shapes/forms/bar_work.py" />
+      <location filename="core/extras/shapes/forms/parting.py" />
       <source>EACH PART</source>
       <translation>CADA PIEZA</translation>
     </message>
     <message>
-      <location filename="core/extras/shapes/forms/bar_work.py" />
+      <location filename="core/extras/shapes/forms/parting.py" />
       <source>FACING ALLOWANCE</source>
       <translation>SOBRANTE PARA CAREAR</translation>
     </message>
     <message>
-      <location filename="core/extras/shapes/forms/bar_work.py" />
+      <location filename="core/extras/shapes/forms/parting.py" />
       <source>FEED THE BAR</source>
       <translation>SACAR LA BARRA</translation>
     </message>
     <message>
-      <location filename="core/extras/shapes/forms/bar_work.py" />
+      <location filename="core/extras/shapes/forms/parting.py" />
       <source>PART SUBROUTINE NUMBER</source>
       <translation>NÚMERO DE SUBRUTINA</translation>
     </message>
     <message>
-      <location filename="core/extras/shapes/forms/bar_work.py" />
+      <location filename="core/extras/shapes/forms/parting.py" />
       <source>TOOL USED AS STOP</source>
       <translation>HERRAMIENTA DE TOPE</translation>
     </message>
     <message>
-      <location filename="core/extras/shapes/forms/bar_work.py" />
+      <location filename="core/extras/shapes/forms/parting.py" />
       <source>This machine has no M codes that open and close the chuck: assign two M codes to the output named collet under [m_codes] in the machine file.</source>
       <translation>Esta máquina no tiene códigos M que abran y cierren el plato: asigne dos códigos M a la salida llamada collet bajo [m_codes] en el archivo de máquina.</translation>
     </message>
     <message>
-      <location filename="core/extras/shapes/forms/bar_work.py" />
+      <location filename="core/extras/shapes/forms/parting.py" />
       <source>feeds the bar to a stop and repeats the following lines for a number of parts; these lines make the part</source>
       <translation>saca la barra hasta un tope y repite las líneas siguientes para varias piezas; esas líneas hacen la pieza</translation>
     </message>
@@ -19879,17 +19879,17 @@
       <translation>tronza hasta el centro o hasta un taladro, con chaflanes a ambos lados del corte</translation>
     </message>
     <message>
-      <location filename="core/extras/shapes/forms/program_head.py" />
+      <location filename="core/extras/shapes/templates.py" />
       <source>BAR DIAMETER</source>
       <translation>DIÁMETRO DE LA BARRA</translation>
     </message>
     <message>
-      <location filename="core/extras/shapes/forms/program_head.py" />
+      <location filename="core/extras/shapes/templates.py" />
       <source>TOOL CHANGE AT Z</source>
       <translation>CAMBIO DE HERRAMIENTA EN Z</translation>
     </message>
     <message>
-      <location filename="core/extras/shapes/forms/program_head.py" />
+      <location filename="core/extras/shapes/templates.py" />
       <source>the start of the program: units, diameter programming, rapid rates, material</source>
       <translation>el inicio del programa: unidades, programación en diámetros, avances rápidos, material</translation>
     </message>

@@ -34,7 +34,7 @@ class Drawings(Extra):
 
     def words(self) -> Sequence[str]:
         from app.extras.drawings.drawing_form import PROFILE
-        from app.extras.shapes.shape_words import words_of
+        from app.extras.shapes.shape_form import words_of
 
         of_drawings = ("DRAWING UNIT: INCH", "DRAWING UNIT: AS DRAWN", "LAYER: ALL")  # not in the table
         return (*words_of([PROFILE]), *of_drawings)

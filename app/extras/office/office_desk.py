@@ -168,8 +168,7 @@ def _page(
     if find_spec("waitress") is None:
         tell(MISSING.format(what="[status_page]", package="waitress"))
         return []
-    from app.extras.office.agent_desk import asked_agent
-    from app.extras.office.other_desks import OtherDesks, asked
+    from app.extras.office.other_desks import OtherDesks, asked, asked_agent
     from app.extras.office.status_page import StatusPage
 
     try:

@@ -32,7 +32,7 @@ class ShapesAndCalculators(Extra):
         return {"store verify --json": OUTPUTS}
 
     def words(self) -> Sequence[str]:
-        from app.extras.shapes.shape_words import words_of
+        from app.extras.shapes.shape_form import words_of
         from core.extras.shapes.shape_table import HELPERS_OF, SHAPES_OF
 
         tables = (*SHAPES_OF.values(), *HELPERS_OF.values())

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
@@ -16,7 +16,7 @@ from core.extras.shapes.lines.code_lines import plain
 from core.extras.shapes.pieces import Piece
 from core.extras.shapes.shape import Filled, Shape, filled
 from core.extras.shapes.shape_fields import Field, Kind, Refusal, Setting, Value, choice_text
-from core.extras.shapes.threads.thread_series import SIZES
+from core.extras.shapes.threads.thread_series import SIZES, Series
 from core.extras.shapes.threads.thread_values import class_choices, series_of
 from core.sketch import Sketch
 
@@ -395,3 +395,19 @@ class AddedForm(ABC):
     @abstractmethod
     def close(self) -> None:
         """End the workers."""
+
+
+def words_of(shapes: Iterable[Shape]) -> list[str]:
+    """Return the names of shapes and of their fields: many are single words."""
+    shapes = tuple(shapes)
+    fields = [field for shape in shapes for field in shape.fields]
+    labels = {field.label for field in fields if len(field.label) > 1}
+    choices = {choice_text(field, choice) for field in fields for choice in _in_words(field)}
+    return sorted({shape.name for shape in shapes} | labels | choices)
+
+
+def _in_words(field: Field) -> tuple[str, ...]:
+    """The choices that are words: series and classes of threads have names that all languages use."""
+    if field.word == "SERIES":
+        return (Series.OWN.value,)
+    return () if field.word in {"CLASS", "SIZE"} else field.choices

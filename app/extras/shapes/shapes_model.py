@@ -11,7 +11,6 @@ from app.desk.latest import Latest
 from app.desk.sheet import STEPS, Key
 from app.desk.translation import tr
 from app.extras.shapes.shape_form import AddedForm, ShapeForm
-from core.extras.shapes.forms.program_head import HEAD
 from core.extras.shapes.pieces import (
     Piece,
     begins_subroutine,
@@ -26,6 +25,7 @@ from core.extras.shapes.pieces import (
 from core.extras.shapes.shape import Shape
 from core.extras.shapes.shape_fields import Setting, Shop
 from core.extras.shapes.shape_table import HELPERS_OF, SHAPES, SHAPES_OF
+from core.extras.shapes.templates import HEAD
 from core.language.source import dialect_of
 from core.message import Message
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 from core.extras.shapes.calculators import SPEED, THREADS, TRIANGLE
-from core.extras.shapes.forms.bar_work import LOOP, SINUMERIK_LOOP
 from core.extras.shapes.forms.drilling import DRILL
 from core.extras.shapes.forms.grooving import GROOVE, SINUMERIK_GROOVE
 from core.extras.shapes.forms.live_tools import (
@@ -16,15 +15,16 @@ from core.extras.shapes.forms.live_tools import (
     SINUMERIK_SLOT,
     SLOT,
 )
-from core.extras.shapes.forms.parting import PART_OFF
-from core.extras.shapes.forms.program_head import HEAD, SINUMERIK_HEAD
+from core.extras.shapes.forms.parting import LOOP, PART_OFF, SINUMERIK_LOOP
 from core.extras.shapes.forms.tapers_and_bores import BORE, EDGE, TAPER
 from core.extras.shapes.forms.turning import FACE, LABEL, TURN
 from core.extras.shapes.shape import Shape
 from core.extras.shapes.templates import (
     BAR_FEED,
+    HEAD,
     ROUGH,
     SINUMERIK_BAR_FEED,
+    SINUMERIK_HEAD,
     SINUMERIK_ROUGH,
     SINUMERIK_SPEED,
     SINUMERIK_START,
