@@ -1,4 +1,4 @@
-"""The parts of the page EDITOR: which are seen for what the keys do, where they stand, and what they show."""
+"""The parts of the page EDITOR: the line over the text, which parts are seen when, and where they stand."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Tool setting: a tool is chosen, touched off, and its other fields are asked one by one."""
+"""Tool setting: a tool is chosen, touched off where its tip stood, and its other fields are asked."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from app.desk.arithmetic import CHARACTERS, LONGEST, EntryError, value_of
 from app.desk.desk import Desk
 from app.desk.sheet import edited, refused
 from app.desk.translation import tr
-from app.jog import tool_setting
 from app.offsets.change_rules import CORRECTIONS
 from app.offsets.offset_book import OffsetBook
 from app.offsets.offset_changes import OffsetHistory, OffsetQuestions, follower_names, refusal
@@ -35,7 +34,7 @@ TOUCHES = {TOUCH_X: "x", TOUCH_Z: "z"}
 MOVED = 0.005  # mm: more than this since the question was opened is no longer where the tip touched
 
 
-def refusal(what: str, snapshot: Snapshot) -> str:
+def touch_refusal(what: str, snapshot: Snapshot) -> str:
     """Why nothing is touched off now; empty when it may be."""
     axis = TOUCHES[what].upper()
     if not snapshot.homed[snapshot.axes.index(axis)]:
@@ -327,7 +326,7 @@ class ToolSetting:
         if why or not self.number:
             return why or _which_tool()
         if what in TOUCHES:
-            return tool_setting.refusal(what, snapshot)
+            return touch_refusal(what, snapshot)
         if self.row is None:
             return tr(
                 Message("T{number} IS NOT SET. TOUCH OFF X AND Z FIRST", number=edge_number(self.number))

@@ -1,4 +1,4 @@
-"""What each program does, from the snapshots: when it ran, how that ended, cycle times, proof."""
+"""What each program does, from the snapshots: runs and how they ended, cycle times, proof, parts counted."""
 
 from __future__ import annotations
 
@@ -104,7 +104,7 @@ def note_cut_off_runs(store: Store) -> None:
 
 
 MOST = 9_999_999
-_MAKES_PARTS = frozenset({State.RUN, State.WAIT})
+_MAKING = frozenset({State.RUN, State.WAIT})
 
 
 @dataclass(slots=True)
@@ -171,12 +171,7 @@ class PartCounter:
         self, snapshot: Snapshot, post: Callable[[Command], None], say: Callable[[str], None]
     ) -> None:
         last = snapshot.counts and self.aim > 0 and self.count + 1 >= self.aim
-        if (
-            last
-            and snapshot.cycle_repeat
-            and snapshot.state in _MAKES_PARTS
-            and self._announced != self.count
-        ):
+        if last and snapshot.cycle_repeat and snapshot.state in _MAKING and self._announced != self.count:
             self._announced = self.count
             post(SetSwitch("cycle_repeat", False))
             say("THIS PART REACHES THE TARGET. CYCLE REPEAT IS NOW OFF")

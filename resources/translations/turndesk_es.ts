@@ -7169,6 +7169,21 @@
       <translation>{} CAMBIÓ EN EL DISCO. F6: SOBRESCRIBIR   ESC: SEGUIR EDITANDO</translation>
     </message>
     <message>
+      <location filename="app/editor/editor_parts_view.py" />
+      <source>KEYBOARD</source>
+      <translation>TECLADO</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_parts_view.py" />
+      <source>LINE {line} OF {count}  ·  COL {column}</source>
+      <translation>LÍNEA {line} DE {count}  ·  COL {column}</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_parts_view.py" />
+      <source>go to</source>
+      <translation>ir a</translation>
+    </message>
+    <message>
       <location filename="app/editor/editor_view.py" />
       <source>ABORT</source>
       <translation>CANCELAR</translation>
@@ -7225,11 +7240,6 @@
     </message>
     <message>
       <location filename="app/editor/editor_view.py" />
-      <source>LINE {line} OF {count}  ·  COL {column}</source>
-      <translation>LÍNEA {line} DE {count}  ·  COL {column}</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_view.py" />
       <source>LINE {line}: {value} {hint}</source>
       <translation>LÍNEA {line}: {value} {hint}</translation>
     </message>
@@ -7279,11 +7289,6 @@
       <translation>DESHACER</translation>
     </message>
     <message>
-      <location filename="app/editor/editor_view.py" />
-      <source>go to</source>
-      <translation>ir a</translation>
-    </message>
-    <message>
       <location filename="app/editor/findings_view.py" />
       <source>ERROR</source>
       <translation>ERROR</translation>
@@ -7302,11 +7307,6 @@
       <location filename="app/editor/findings_view.py" />
       <source>WARNING</source>
       <translation>AVISO</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_parts_view.py" />
-      <source>KEYBOARD</source>
-      <translation>TECLADO</translation>
     </message>
     <message>
       <location filename="app/editor/live_proof.py" />
@@ -8744,11 +8744,6 @@
       <translation>MTCONNECT</translation>
     </message>
     <message>
-      <location filename="app/extras/office/other_desks.py" />
-      <source>the MTConnect agent reports that the machine is unavailable</source>
-      <translation>el agente MTConnect indica que la máquina no está disponible</translation>
-    </message>
-    <message>
       <location filename="app/extras/office/announcements.py" />
       <source>part {number} of {program} is finished</source>
       <translation>pieza {number} de {program} terminada</translation>
@@ -8787,6 +8782,11 @@
       <location filename="app/extras/office/other_desks.py" />
       <source>no response for {age} s</source>
       <translation>sin respuesta desde hace {age} s</translation>
+    </message>
+    <message>
+      <location filename="app/extras/office/other_desks.py" />
+      <source>the MTConnect agent reports that the machine is unavailable</source>
+      <translation>el agente MTConnect indica que la máquina no está disponible</translation>
     </message>
     <message>
       <location filename="app/extras/office/other_desks.py" />
@@ -9790,13 +9790,13 @@
     </message>
     <message>
       <location filename="app/extras/shapes/shape_form.py" />
-      <source>These values do not make a valid shape: check the last value that you entered.</source>
-      <translation>Estos valores no dan una forma válida: revise el último valor que introdujo.</translation>
+      <source>SERIES</source>
+      <translation>SERIE</translation>
     </message>
     <message>
       <location filename="app/extras/shapes/shape_form.py" />
-      <source>SERIES</source>
-      <translation>SERIE</translation>
+      <source>These values do not make a valid shape: check the last value that you entered.</source>
+      <translation>Estos valores no dan una forma válida: revise el último valor que introdujo.</translation>
     </message>
     <message>
       <location filename="app/extras/shapes/shapes_model.py" />
@@ -10604,51 +10604,6 @@
       <translation>°/MIN</translation>
     </message>
     <message>
-      <location filename="app/jog/tool_setting.py" />
-      <source>, this tool only</source>
-      <translation>, solo esta herramienta</translation>
-    </message>
-    <message>
-      <location filename="app/jog/tool_setting.py" />
-      <source>TOUCH OFF ONLY WITH THE MACHINE STOPPED AND READY</source>
-      <translation>TOQUE SOLO CON LA MÁQUINA PARADA Y LISTA</translation>
-    </message>
-    <message>
-      <location filename="app/jog/tool_setting.py" />
-      <source>skim cut Z</source>
-      <translation>pasada de medida Z</translation>
-    </message>
-    <message>
-      <location filename="app/jog/tool_setting.py" />
-      <source>skim cut Ø</source>
-      <translation>pasada de medida Ø</translation>
-    </message>
-    <message>
-      <location filename="app/jog/tool_setting.py" />
-      <source>the {axis} offset would be outside the allowed range</source>
-      <translation>el corrector {axis} quedaría fuera del rango permitido</translation>
-    </message>
-    <message>
-      <location filename="app/jog/tool_setting.py" />
-      <source>touch-off Z</source>
-      <translation>toque Z</translation>
-    </message>
-    <message>
-      <location filename="app/jog/tool_setting.py" />
-      <source>touch-off of a new tool</source>
-      <translation>toque de una herramienta nueva</translation>
-    </message>
-    <message>
-      <location filename="app/jog/tool_setting.py" />
-      <source>touch-off Ø</source>
-      <translation>toque Ø</translation>
-    </message>
-    <message>
-      <location filename="app/jog/tool_setting.py" />
-      <source>{axis} IS NOT HOMED AND ITS POSITION IS UNKNOWN. HOME IT FIRST</source>
-      <translation>{axis} NO TIENE REFERENCIA Y SU POSICIÓN NO SE CONOCE. REFERÉNCIELO ANTES</translation>
-    </message>
-    <message>
       <location filename="app/jog/jog_view.py" />
       <source>Enter: accept   Esc: cancel</source>
       <translation>Enter: aceptar   Esc: cancelar</translation>
@@ -10810,6 +10765,11 @@
     </message>
     <message>
       <location filename="app/jog/tool_setting.py" />
+      <source>, this tool only</source>
+      <translation>, solo esta herramienta</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting.py" />
       <source>AXIS MOVED AFTER TOUCH-OFF. PRESS ESC, THEN TOUCH OFF AGAIN</source>
       <translation>EL EJE SE MOVIÓ TRAS EL TOQUE. PULSE ESC Y TOQUE OTRA VEZ</translation>
     </message>
@@ -10832,6 +10792,11 @@
       <location filename="app/jog/tool_setting.py" />
       <source>TOOL NUMBER?</source>
       <translation>¿NÚMERO DE HERRAMIENTA?</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting.py" />
+      <source>TOUCH OFF ONLY WITH THE MACHINE STOPPED AND READY</source>
+      <translation>TOQUE SOLO CON LA MÁQUINA PARADA Y LISTA</translation>
     </message>
     <message>
       <location filename="app/jog/tool_setting.py" />
@@ -10867,6 +10832,41 @@
       <location filename="app/jog/tool_setting.py" />
       <source>no tools</source>
       <translation>ninguna herramienta</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting.py" />
+      <source>skim cut Z</source>
+      <translation>pasada de medida Z</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting.py" />
+      <source>skim cut Ø</source>
+      <translation>pasada de medida Ø</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting.py" />
+      <source>the {axis} offset would be outside the allowed range</source>
+      <translation>el corrector {axis} quedaría fuera del rango permitido</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting.py" />
+      <source>touch-off Z</source>
+      <translation>toque Z</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting.py" />
+      <source>touch-off of a new tool</source>
+      <translation>toque de una herramienta nueva</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting.py" />
+      <source>touch-off Ø</source>
+      <translation>toque Ø</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting.py" />
+      <source>{axis} IS NOT HOMED AND ITS POSITION IS UNKNOWN. HOME IT FIRST</source>
+      <translation>{axis} NO TIENE REFERENCIA Y SU POSICIÓN NO SE CONOCE. REFERÉNCIELO ANTES</translation>
     </message>
     <message>
       <location filename="app/jog/tool_setting.py" />
@@ -12997,6 +12997,31 @@
       <location filename="app/programs/run_history.py" />
       <source>NOT COUNTED</source>
       <translation>NO CONTADO</translation>
+    </message>
+    <message>
+      <location filename="app/programs/run_history.py" />
+      <source>TARGET REACHED: {count} OF {target} PARTS</source>
+      <translation>META ALCANZADA: {count} DE {target} PIEZAS</translation>
+    </message>
+    <message>
+      <location filename="app/programs/run_history.py" />
+      <source>THIS PART REACHES THE TARGET. CYCLE REPEAT IS NOW OFF</source>
+      <translation>CON ESTA PIEZA SE ALCANZA LA META. REPETIR CICLO QUEDA APAGADO</translation>
+    </message>
+    <message>
+      <location filename="app/programs/run_history.py" />
+      <source>part count of {program}: {before} → 0</source>
+      <translation>cuenta de piezas de {program}: {before} → 0</translation>
+    </message>
+    <message>
+      <location filename="app/programs/run_history.py" />
+      <source>part count of {program}: {count} → {count2}</source>
+      <translation>cuenta de piezas de {program}: {count} → {count2}</translation>
+    </message>
+    <message>
+      <location filename="app/programs/run_history.py" />
+      <source>part target of {program}: {before} → {target}</source>
+      <translation>meta de piezas de {program}: {before} → {target}</translation>
     </message>
     <message>
       <location filename="app/programs/run_history.py" />
@@ -15247,31 +15272,6 @@
       <location filename="app/special/operator_settings.py" />
       <source>{rpm} rpm is outside the range of this spindle, {low} to {high} rpm</source>
       <translation>{rpm} rpm está fuera del margen de este husillo, de {low} a {high} rpm</translation>
-    </message>
-    <message>
-      <location filename="app/programs/run_history.py" />
-      <source>TARGET REACHED: {count} OF {target} PARTS</source>
-      <translation>META ALCANZADA: {count} DE {target} PIEZAS</translation>
-    </message>
-    <message>
-      <location filename="app/programs/run_history.py" />
-      <source>THIS PART REACHES THE TARGET. CYCLE REPEAT IS NOW OFF</source>
-      <translation>CON ESTA PIEZA SE ALCANZA LA META. REPETIR CICLO QUEDA APAGADO</translation>
-    </message>
-    <message>
-      <location filename="app/programs/run_history.py" />
-      <source>part count of {program}: {before} → 0</source>
-      <translation>cuenta de piezas de {program}: {before} → 0</translation>
-    </message>
-    <message>
-      <location filename="app/programs/run_history.py" />
-      <source>part count of {program}: {count} → {count2}</source>
-      <translation>cuenta de piezas de {program}: {count} → {count2}</translation>
-    </message>
-    <message>
-      <location filename="app/programs/run_history.py" />
-      <source>part target of {program}: {before} → {target}</source>
-      <translation>meta de piezas de {program}: {before} → {target}</translation>
     </message>
     <message>
       <location filename="app/special/setup_sheet.py" />
@@ -18724,44 +18724,44 @@
       <translation>un PIN de una sola cifra repetida es demasiado fácil de adivinar; elija otro</translation>
     </message>
     <message>
-      <location filename="core/extras/analyses/ball_bar.py" />
+      <location filename="core/extras/analyses/path_error.py" />
       <source>a ball-bar plot needs {minimum} samples of an arc; use a lower feed or a larger arc</source>
       <translation>un diagrama ball-bar necesita {minimum} muestras de un arco; use un avance menor o un arco mayor</translation>
     </message>
     <message>
-      <location filename="core/extras/analyses/ball_bar.py" />
-      <source>the arc is shorter than {least_angle} degrees, too short for a ball-bar plot</source>
-      <translation>el arco es más corto que {least_angle} grados, demasiado corto para un diagrama ball-bar</translation>
-    </message>
-    <message>
-      <location filename="core/extras/analyses/ball_bar.py" />
-      <source>the driver does not report the axis positions, so no arc can be shown</source>
-      <translation>el driver no informa de las posiciones de los ejes, así que no se puede mostrar ningún arco</translation>
-    </message>
-    <message>
-      <location filename="core/extras/analyses/ball_bar.py" />
-      <source>this time range does not contain an arc; choose a line that programs an arc</source>
-      <translation>este intervalo no contiene ningún arco; elija una línea que programe un arco</translation>
-    </message>
-    <message>
-      <location filename="core/extras/analyses/ball_bar.py" />
+      <location filename="core/extras/analyses/path_error.py" />
       <source>a path error plot needs at least {minimum} samples of a path; record while a program runs</source>
       <translation>un diagrama de error de trayectoria necesita al menos {minimum} muestras; registre mientras corre un programa</translation>
     </message>
     <message>
-      <location filename="core/extras/analyses/ball_bar.py" />
+      <location filename="core/extras/analyses/path_error.py" />
       <source>no axis moved in this time range; record while a program runs</source>
       <translation>ningún eje se movió en este intervalo; registre mientras corre un programa</translation>
     </message>
     <message>
-      <location filename="core/extras/analyses/ball_bar.py" />
+      <location filename="core/extras/analyses/path_error.py" />
+      <source>the arc is shorter than {least_angle} degrees, too short for a ball-bar plot</source>
+      <translation>el arco es más corto que {least_angle} grados, demasiado corto para un diagrama ball-bar</translation>
+    </message>
+    <message>
+      <location filename="core/extras/analyses/path_error.py" />
+      <source>the driver does not report the axis positions, so no arc can be shown</source>
+      <translation>el driver no informa de las posiciones de los ejes, así que no se puede mostrar ningún arco</translation>
+    </message>
+    <message>
+      <location filename="core/extras/analyses/path_error.py" />
       <source>the driver does not report the axis positions, so no path can be compared</source>
       <translation>el driver no informa de las posiciones de los ejes, así que no se puede comparar ninguna trayectoria</translation>
     </message>
     <message>
-      <location filename="core/extras/analyses/ball_bar.py" />
+      <location filename="core/extras/analyses/path_error.py" />
       <source>the number of path points and the number of line numbers differ</source>
       <translation>el número de puntos de la trayectoria y el de números de línea difieren</translation>
+    </message>
+    <message>
+      <location filename="core/extras/analyses/path_error.py" />
+      <source>this time range does not contain an arc; choose a line that programs an arc</source>
+      <translation>este intervalo no contiene ningún arco; elija una línea que programe un arco</translation>
     </message>
     <message>
       <location filename="core/extras/analyses/step_response.py" />
@@ -19454,59 +19454,124 @@
       <translation>ACERO PARA HERRAMIENTAS</translation>
     </message>
     <message>
-      <location filename="core/extras/shapes/forms/parting.py" />
+      <location filename="core/extras/shapes/forms/bar_work.py" />
       <source>A bar feed loop cannot be inside another bar feed loop: write this shape before or after the other loop.</source>
       <translation>Un bucle de avance de barra no puede estar dentro de otro: escriba esta forma antes o después del otro bucle.</translation>
     </message>
     <message>
-      <location filename="core/extras/shapes/forms/parting.py" />
+      <location filename="core/extras/shapes/forms/bar_work.py" />
+      <source>A chamfer of {word} removes the whole wall: enter a smaller chamfer.</source>
+      <translation>Un chaflán de {word} quita toda la pared: introduzca un chaflán menor.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/bar_work.py" />
       <source>BAR FEED PER MINUTE</source>
       <translation>AVANCE DE BARRA POR MINUTO</translation>
     </message>
     <message>
-      <location filename="core/extras/shapes/forms/parting.py" />
+      <location filename="core/extras/shapes/forms/bar_work.py" />
       <source>BAR LENGTH PER PART + CUT-OFF</source>
       <translation>LARGO DE BARRA POR PIEZA + CORTE</translation>
     </message>
     <message>
-      <location filename="core/extras/shapes/forms/parting.py" />
+      <location filename="core/extras/shapes/forms/bar_work.py" />
       <source>BAR LOOP</source>
       <translation>BUCLE DE BARRA</translation>
     </message>
     <message>
-      <location filename="core/extras/shapes/forms/parting.py" />
+      <location filename="core/extras/shapes/forms/bar_work.py" />
+      <source>BLADE WIDTH</source>
+      <translation>ANCHO DE LA CUCHILLA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/bar_work.py" />
+      <source>CHAMFER ON THE BAR</source>
+      <translation>CHAFLÁN DE LA BARRA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/bar_work.py" />
+      <source>CHAMFER ON THE PART</source>
+      <translation>CHAFLÁN DE LA PIEZA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/bar_work.py" />
+      <source>CORNER USED FOR TOUCH-OFF</source>
+      <translation>ESQUINA DE REFERENCIA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/bar_work.py" />
+      <source>Depth {depth} is more than the reach of {name}, which is {length}. Use a longer blade.</source>
+      <translation>La profundidad {depth} es más que el alcance de {name}, que es {length}. Use una cuchilla más larga.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/bar_work.py" />
       <source>EACH PART</source>
       <translation>CADA PIEZA</translation>
     </message>
     <message>
-      <location filename="core/extras/shapes/forms/parting.py" />
+      <location filename="core/extras/shapes/forms/bar_work.py" />
+      <source>END DIAMETER</source>
+      <translation>DIÁMETRO FINAL</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/bar_work.py" />
       <source>FACING ALLOWANCE</source>
       <translation>SOBRANTE PARA CAREAR</translation>
     </message>
     <message>
-      <location filename="core/extras/shapes/forms/parting.py" />
+      <location filename="core/extras/shapes/forms/bar_work.py" />
       <source>FEED THE BAR</source>
       <translation>SACAR LA BARRA</translation>
     </message>
     <message>
-      <location filename="core/extras/shapes/forms/parting.py" />
+      <location filename="core/extras/shapes/forms/bar_work.py" />
+      <source>PART LENGTH</source>
+      <translation>LONGITUD DE LA PIEZA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/bar_work.py" />
+      <source>PART OFF</source>
+      <translation>TRONZADO</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/bar_work.py" />
       <source>PART SUBROUTINE NUMBER</source>
       <translation>NÚMERO DE SUBRUTINA</translation>
     </message>
     <message>
-      <location filename="core/extras/shapes/forms/parting.py" />
+      <location filename="core/extras/shapes/forms/bar_work.py" />
+      <source>Parting off starts at diameter {top} and runs inward: end diameter {end} must be less.</source>
+      <translation>El tronzado empieza en el diámetro {top} y va hacia dentro: el diámetro final {end} debe ser menor.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/bar_work.py" />
       <source>TOOL USED AS STOP</source>
       <translation>HERRAMIENTA DE TOPE</translation>
     </message>
     <message>
-      <location filename="core/extras/shapes/forms/parting.py" />
+      <location filename="core/extras/shapes/forms/bar_work.py" />
+      <source>The blade width in the tool data of {name} is {width}: enter that width.</source>
+      <translation>El ancho de cuchilla en los datos de herramienta de {name} es {width}: introduzca ese ancho.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/bar_work.py" />
+      <source>The chamfer is longer than the part: enter a smaller chamfer.</source>
+      <translation>El chaflán es más largo que la pieza: introduzca un chaflán menor.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/bar_work.py" />
       <source>This machine has no M codes that open and close the chuck: assign two M codes to the output named collet under [m_codes] in the machine file.</source>
       <translation>Esta máquina no tiene códigos M que abran y cierren el plato: asigne dos códigos M a la salida llamada collet bajo [m_codes] en el archivo de máquina.</translation>
     </message>
     <message>
-      <location filename="core/extras/shapes/forms/parting.py" />
+      <location filename="core/extras/shapes/forms/bar_work.py" />
       <source>feeds the bar to a stop and repeats the following lines for a number of parts; these lines make the part</source>
       <translation>saca la barra hasta un tope y repite las líneas siguientes para varias piezas; esas líneas hacen la pieza</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/bar_work.py" />
+      <source>parts off to the center or to a bore, with chamfers on both sides of the cut</source>
+      <translation>tronza hasta el centro o hasta un taladro, con chaflanes a ambos lados del corte</translation>
     </message>
     <message>
       <location filename="core/extras/shapes/forms/drilling.py" />
@@ -19814,86 +19879,6 @@
       <translation>{number} agujeros separados {number2}° dan más de una vuelta a la pieza: introduzca un ángulo menor.</translation>
     </message>
     <message>
-      <location filename="core/extras/shapes/forms/parting.py" />
-      <source>A chamfer of {word} removes the whole wall: enter a smaller chamfer.</source>
-      <translation>Un chaflán de {word} quita toda la pared: introduzca un chaflán menor.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/parting.py" />
-      <source>BLADE WIDTH</source>
-      <translation>ANCHO DE LA CUCHILLA</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/parting.py" />
-      <source>CHAMFER ON THE BAR</source>
-      <translation>CHAFLÁN DE LA BARRA</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/parting.py" />
-      <source>CHAMFER ON THE PART</source>
-      <translation>CHAFLÁN DE LA PIEZA</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/parting.py" />
-      <source>CORNER USED FOR TOUCH-OFF</source>
-      <translation>ESQUINA DE REFERENCIA</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/parting.py" />
-      <source>Depth {depth} is more than the reach of {name}, which is {length}. Use a longer blade.</source>
-      <translation>La profundidad {depth} es más que el alcance de {name}, que es {length}. Use una cuchilla más larga.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/parting.py" />
-      <source>END DIAMETER</source>
-      <translation>DIÁMETRO FINAL</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/parting.py" />
-      <source>PART LENGTH</source>
-      <translation>LONGITUD DE LA PIEZA</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/parting.py" />
-      <source>PART OFF</source>
-      <translation>TRONZADO</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/parting.py" />
-      <source>Parting off starts at diameter {top} and runs inward: end diameter {end} must be less.</source>
-      <translation>El tronzado empieza en el diámetro {top} y va hacia dentro: el diámetro final {end} debe ser menor.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/parting.py" />
-      <source>The blade width in the tool data of {name} is {width}: enter that width.</source>
-      <translation>El ancho de cuchilla en los datos de herramienta de {name} es {width}: introduzca ese ancho.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/parting.py" />
-      <source>The chamfer is longer than the part: enter a smaller chamfer.</source>
-      <translation>El chaflán es más largo que la pieza: introduzca un chaflán menor.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/parting.py" />
-      <source>parts off to the center or to a bore, with chamfers on both sides of the cut</source>
-      <translation>tronza hasta el centro o hasta un taladro, con chaflanes a ambos lados del corte</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/templates.py" />
-      <source>BAR DIAMETER</source>
-      <translation>DIÁMETRO DE LA BARRA</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/templates.py" />
-      <source>TOOL CHANGE AT Z</source>
-      <translation>CAMBIO DE HERRAMIENTA EN Z</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/templates.py" />
-      <source>the start of the program: units, diameter programming, rapid rates, material</source>
-      <translation>el inicio del programa: unidades, programación en diámetros, avances rápidos, material</translation>
-    </message>
-    <message>
       <location filename="core/extras/shapes/forms/tapers_and_bores.py" />
       <source>An edge size of {edge} is more than half of diameter {across}: enter {across2} or less.</source>
       <translation>Un canto de {edge} es más que la mitad del diámetro {across}: introduzca {across2} o menos.</translation>
@@ -20075,6 +20060,11 @@
     </message>
     <message>
       <location filename="core/extras/shapes/templates.py" />
+      <source>BAR DIAMETER</source>
+      <translation>DIÁMETRO DE LA BARRA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/templates.py" />
       <source>BAR FEED LOOP</source>
       <translation>BUCLE DE BARRA</translation>
     </message>
@@ -20097,6 +20087,11 @@
       <location filename="core/extras/shapes/templates.py" />
       <source>TOOL CHANGE</source>
       <translation>CAMBIO DE ÚTIL</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/templates.py" />
+      <source>TOOL CHANGE AT Z</source>
+      <translation>CAMBIO DE HERRAMIENTA EN Z</translation>
     </message>
     <message>
       <location filename="core/extras/shapes/templates.py" />
@@ -20127,6 +20122,11 @@
       <location filename="core/extras/shapes/templates.py" />
       <source>retracts, changes the tool, starts the spindle and moves to the part</source>
       <translation>retira, cambia la herramienta, arranca el husillo y va a la pieza</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/templates.py" />
+      <source>the start of the program: units, diameter programming, rapid rates, material</source>
+      <translation>el inicio del programa: unidades, programación en diámetros, avances rápidos, material</translation>
     </message>
     <message>
       <location filename="core/extras/shapes/templates.py" />

@@ -32,7 +32,7 @@ from app.extras.analyses.drive_test_figures import (
 )
 from app.extras.analyses.spindle_response import SpindleResponse, last_run_up, spindle_drawing, spindle_sheet
 from app.scope.scope_model import Scope
-from core.extras.analyses.ball_bar import (
+from core.extras.analyses.path_error import (
     BallBar,
     PathError,
     WorstPlace,

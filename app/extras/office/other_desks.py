@@ -1,7 +1,4 @@
-"""The desks beside this one: their status.json read every few seconds, while somebody looks at the page.
-
-Machines that an MTConnect agent tells of are asked the same way (``agent_desk.py``).
-"""
+"""Machines beside this desk, read while somebody looks at the page: TurnDesks, and MTConnect agents."""
 
 from __future__ import annotations
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from core.extras.shapes.calculators import SPEED, THREADS, TRIANGLE
+from core.extras.shapes.forms.bar_work import LOOP, PART_OFF, SINUMERIK_LOOP
 from core.extras.shapes.forms.drilling import DRILL
 from core.extras.shapes.forms.grooving import GROOVE, SINUMERIK_GROOVE
 from core.extras.shapes.forms.live_tools import (
@@ -15,7 +16,6 @@ from core.extras.shapes.forms.live_tools import (
     SINUMERIK_SLOT,
     SLOT,
 )
-from core.extras.shapes.forms.parting import LOOP, PART_OFF, SINUMERIK_LOOP
 from core.extras.shapes.forms.tapers_and_bores import BORE, EDGE, TAPER
 from core.extras.shapes.forms.turning import FACE, LABEL, TURN
 from core.extras.shapes.shape import Shape

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from core.extras.analyses.ball_bar import of_samples, path_error, worst_places
+from core.extras.analyses.path_error import of_samples, path_error, worst_places
 from core.records.record import AnalysisError
 from tests.coded import raises_code
 

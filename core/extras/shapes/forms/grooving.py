@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from core.extras.shapes.cutting_data import Work
-from core.extras.shapes.forms.parting import (
+from core.extras.shapes.forms.bar_work import (
     BLADE_FIELD,
     CORNER_FIELD,
     FREE,

@@ -1,4 +1,4 @@
-"""Part off: to the centre or to a bore, with chamfers; and the blade that plunges."""
+"""Work on the bar: feed and loop, part off to the centre or a bore; and the blade that plunges."""
 
 from __future__ import annotations
 

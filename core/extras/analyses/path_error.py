@@ -1,4 +1,4 @@
-"""Ball-bar plot of an arc: roundness, backlash and spikes at reversals, squareness and scale of two axes.
+"""Path error along the part with the worst lines, and the ball-bar plot of an arc.
 
 The measured path lies in the plane (u, v) of the slides. What is told holds for what the encoders see: on a
 motor's encoder the play of the screw behind it is not to be seen, on a scale it is.
