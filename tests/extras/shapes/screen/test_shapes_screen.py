@@ -11,7 +11,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
-from app.editor.editor_view import Mode
+from app.editor.editor_parts_view import Mode
 from app.extras.shapes import shapes_view
 from app.extras.shapes.shapes_view import LinesPanel, RowsPanel, _Line
 from app.screen.look import DARK, Look, Painter
