@@ -66,7 +66,7 @@ SENTENCES = (
     ("What F means on a line", "code table", "core/interpreter/omniturn/code_table.py"),
     ("Work shift by G10", "work shift", "core/interpreter/omniturn/tools_and_offsets.py"),
     ("The table of secondary offsets", "secondary offsets", "app/offsets/secondary_offsets.py"),
-    ("Tools are touched off", "touch off", "app/jog/jog_touch_off.py"),
+    ("Tools are touched off", "touch off", "app/jog/tool_setting.py"),
     ("Back into the part after a stop", "restart", "core/interpreter/restart/restart_approach.py"),
     ("What a G54 is set to", "zero offsets", "app/offsets/zero_offsets.py"),
     ("No move beyond the travel is proved", "soft limits", "core/proving/checks/machine_checks.py"),

@@ -20,7 +20,7 @@ from app.programs.file_prompt_view import FilePrompt
 from app.screen import page_table
 from app.screen.page_base import Host, KeyActions, Page
 from app.screen.program_listing import Listing
-from app.screen.window_bars import CommentLine
+from app.screen.window.window_bars import CommentLine
 from app.screen.window_layout import Rect, work_parts
 from app.working_plane.plane_instant import plane_words, running
 from app.working_plane.working_plane_view import WorkingPlaneView

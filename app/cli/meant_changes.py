@@ -12,7 +12,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from app.desk.command_errors import CommandError
-from app.offsets.suspicious_changes import (
+from app.offsets.change_rules import (
     Doubt,
     Suspicion,
     Travel,

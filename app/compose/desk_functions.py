@@ -21,15 +21,14 @@ from app.desk.pages.first_job import FirstJob
 from app.desk.persistence import Persistence
 from app.desk.programs.program_loading import LoadingSteps
 from app.desk.screen_settings import SettingsBook
-from app.offsets.mill_lives import MillLives
+from app.offsets.mill_touch import MillLives
 from app.production.parts_book import PartsBook, tools_of
 from app.production.parts_watch import PartsWatch
 from app.production.tool_life_watch import ToolLifeWatch
-from app.programs.run_history import RunHistory
+from app.programs.run_history import PartCounter, RunHistory
 from app.shopfloor.floor_reading import UNKNOWN, FloorReader
 from app.shopfloor.status_file import NAME, StatusFile, StatusKeeper, status_of
 from app.special.lamps_and_sound import DeskSounds
-from app.special.part_count import PartCounter
 from core.executor.recorder import Recorder
 from core.executor.snapshot import Snapshot
 from core.machine.machine_model import Machine
@@ -38,8 +37,8 @@ from core.store.store_errors import StoreError
 from core.store.store_rows import Kind, utc_now
 
 if TYPE_CHECKING:
-    from app.programs.preview import DrawThumbnail
     from app.programs.program_list import ProgramList
+    from app.programs.program_rows import DrawThumbnail
     from app.scope.scope_curves import LiveSamples
     from app.scope.scope_model import Scope
     from app.special.special_functions import SpecialFunctions

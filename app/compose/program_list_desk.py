@@ -8,10 +8,10 @@ from app.desk.background_work import Latest
 from app.desk.desk import Desk
 from app.desk.persistence import Persistence
 from app.desk.programs.program_loading import LoadingSteps
-from app.programs.folder_chooser import FolderChooser
 from app.programs.import_export import ImportExport
-from app.programs.preview import DrawThumbnail, Preview
 from app.programs.program_list import ProgramList
+from app.programs.program_rows import DrawThumbnail, Preview
+from app.programs.removable_media import FolderChooser
 from core.message import Message
 
 

@@ -15,18 +15,13 @@ from app.desk.programs.program_loading import LoadingSteps
 from app.production.parts_watch import PartsWatch
 from app.scope.scope_function import ScopeFunction
 from app.special.backup_and_restore import BackupAndRestore
-from app.special.drive_status import DriveStatus
-from app.special.inputs_outputs import InputsOutputs
+from app.special.counters import PartsCounterFunction, ToolLifeFunction
+from app.special.inputs_outputs import DriveStatus, InputsOutputs
 from app.special.lamps_and_sound import DeskSounds, LampsAndSound
-from app.special.logged_events import LoggedEvents
-from app.special.machine_file_acceptance import MachineFileAcceptance
-from app.special.parts_counter import PartsCounterFunction
-from app.special.preferences import ScreenPreferences
-from app.special.r_parameters import RParameters
+from app.special.machine_records import LoggedEvents, MachineFileAcceptance
+from app.special.operator_settings import RParameters, ScreenPreferences, SpindleSpeedLimit
 from app.special.setup_sheet_function import SetupSheetFunction
 from app.special.special_functions import SpecialFunction, SpecialFunctions
-from app.special.spindle_limit import SpindleSpeedLimit
-from app.special.tool_life_function import ToolLifeFunction
 from app.transfer.serial_transfer import SerialTransfer
 from core.language.source import Dialect, usual_ending
 from core.machine.desk_tables import BackupTable, DncModel

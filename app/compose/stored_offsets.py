@@ -11,14 +11,16 @@ from typing import TYPE_CHECKING, NamedTuple
 from app.compose.machine.machine_setup import setup_for
 from app.desk.command_errors import CommandError, as_command_error
 from app.desk.data_folder import data_folder
-from app.offsets.mill_offsets import MillOffsets, rows_of, with_mill
 from app.offsets.offsets_in_force import (
     PRESET,
     R_PARAMETERS,
+    MillOffsets,
     preset_of,
     r_parameters,
+    rows_of,
     secondary_offsets,
     tool_offsets,
+    with_mill,
 )
 from core.interpreter.job_setup import SecondaryOffset, Setup, ToolOffset, ZeroOffset
 from core.message import Message

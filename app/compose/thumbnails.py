@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from app.compose.desk_part import PartDesk
-from app.programs.preview import Thumbnail
+from app.programs.program_rows import Thumbnail
 
 if TYPE_CHECKING:
     from app.desk.background_work import Watch

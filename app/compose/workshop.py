@@ -20,8 +20,7 @@ from app.desk.persistence import Persistence
 from app.desk.programs.prepared_line import ProveLine
 from app.desk.programs.program_loading import LoadingSteps, PartProved, Proved
 from app.jog.hand_functions import HandFunctions
-from app.mdi.mdi_line import MdiLine
-from app.mdi.mdi_model import MdiModel
+from app.mdi.mdi_model import MdiLine, MdiModel
 from app.part.part_sheet import PartSheet
 from app.searchto.searchto_model import SearchtoModel
 from core.executor.job import Job, Proof, make_job
@@ -40,7 +39,7 @@ if TYPE_CHECKING:
     from app.desk.background_work import Watch
     from app.offsets.offset_effect import ComparePart, Draw
     from app.path.path_picture import Picture, Timed
-    from app.programs.preview import DrawThumbnail
+    from app.programs.program_rows import DrawThumbnail
     from app.searchto.searchto_finder import Search
     from core.proving.program_timeline import MotionSpan, RestSpan
 

@@ -33,8 +33,7 @@ from app.desk.status.prompt_line import ONE_HAND, UNDER_WAY, YES, PromptAnswers
 from app.desk.status.readouts import Readout
 from app.desk.translation import tr
 from app.offsets.offset_book import NONE_KEPT, OffsetBook
-from app.programs.run_history import RunHistory
-from app.special.part_count import PartCounter
+from app.programs.run_history import PartCounter, RunHistory
 from core.access.access_table import Act
 from core.closing import ClosingStep
 from core.executor.commands import (

@@ -26,7 +26,7 @@ class PageEntry:
     languages: frozenset[str] = ALL_LANGUAGES  # of the machines that have it
     later: tuple[str, ...] = ()
     after: str = ""  # of a page of an optional feature: the page that it follows in the main menu
-    shortcut: str = ""  # key that opens it from any page, as app.screen.keys calls it
+    shortcut: str = ""  # key that opens it from any page, as app.screen.window.keys calls it
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,7 +1,8 @@
-"""The codes beside the text: what the one at the cursor means, and a list to choose from."""
+"""The codes beside the text: what that at the cursor means, with its picture, and a list to choose from."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from functools import partial
 
@@ -10,15 +11,107 @@ from PySide6.QtWidgets import QWidget
 
 from app.desk.pages.code_help import CodeHelp
 from app.desk.pages.sheet import Key
-from app.editor.code_pictures import picture_of
 from app.editor.live_proof import LiveProof
 from app.editor.text_view import TextField
 from app.screen.code_choices_view import CodeChoices, write_entry
+from app.screen.drawings import SketchPanel
 from app.screen.look import Look, Painter
 from app.screen.panel import Panel, Shown
-from app.screen.sketch_view import SketchPanel
 from core.language.code_book import Entry
 from core.language.source import Dialect
+from core.sketch import Dim, Outline, Sketch, cut, part, sketch
+from core.tool_edges import TIP_DIRECTIONS
+
+Point = tuple[float, float]
+
+
+def picture_of(head: str, dialect: Dialect = Dialect.OMNITURN) -> Sketch | None:
+    """The picture of a code of a lathe's language, Z to the right and r up; None where words say it all."""
+    return _PICTURES.get(dialect, {}).get(head)
+
+
+def _arc(centre: Point, radius: float, begin: float, end: float) -> tuple[Point, ...]:
+    angles = [math.radians(begin + (end - begin) * k / 12) for k in range(13)]
+    return tuple((centre[0] + radius * math.cos(a), centre[1] + radius * math.sin(a)) for a in angles)
+
+
+def _with_arc(words: str, *, convex: bool) -> Sketch:
+    """From the face to the chuck: it rounds a shoulder, or fills its corner."""
+    corner = _arc((-4, 4), 4, 0, 90) if convex else _arc((0, 8), 4, 270, 180)
+    solid = part((0, 0), *corner, (-16, 8), (-16, 0))
+    return sketch(solid, cut(*corner), _arrow(corner[5], corner[7]), dims=(Dim(words, (2, 10)),))
+
+
+def _arrow(a: Point, b: Point) -> Outline:
+    """Which way the tool goes."""
+    angle = math.atan2(b[1] - a[1], b[0] - a[0])
+    ends = [(b[0] - 1.4 * math.cos(angle + s), b[1] - 1.4 * math.sin(angle + s)) for s in (0.5, -0.5)]
+    return Outline((ends[0], b, ends[1]), "tool")
+
+
+def _roughing(deep: str, left: str, *points: str) -> Sketch:
+    """``deep`` and ``left`` name the depth of a pass and what is left; ``points`` start and ends."""
+    profile = ((0, 3), (-6, 3), (-9, 6), (-14, 6), (-14, 9))
+    passes = [
+        cut((1, r), (z, r)) for r, z in ((8.0, -13.7), (7.0, -13.7), (6.3, -9.0), (5.0, -7.7), (4.0, -6.7))
+    ]
+    solid = part((0, 0), *profile, (-20, 9), (-20, 0))
+    places = ((2.0, 10.0), (0.0, 3.0), (-14.0, 9.0))
+    named = (Dim(name, at) for name, at in zip(points, places, strict=False))
+    return sketch(solid, *passes, dims=(Dim(deep, (1.5, 7.5)), Dim(left, (-11, 6.2)), *named))
+
+
+def _threading(lead: str, start: str, last: str, end: str) -> Sketch:
+    """Words for the lead, what holds where it starts, at the last pass or behind it, and where it ends."""
+    teeth = [(-float(k), 7.0 if k % 2 else 5.6) for k in range(13)]
+    depths = [cut((3, 7.0 - 0.7 * math.sqrt(k)), (-12, 7.0 - 0.7 * math.sqrt(k))) for k in (1, 2, 3, 4)]
+    solid = part((0, 0), *teeth, (-20, 7), (-20, 0))
+    dims = (Dim(lead, (-4, 8.4)), Dim(start, (4, 6.5)), Dim(last, (-14, 5)), Dim(end, (-12, 9)))
+    return sketch(solid, *depths, dims=dims)
+
+
+def _beside(*, outside: bool) -> Sketch:
+    """The nose beside the contour of a shaft or of a bore, on the way to the chuck."""
+    solid = part((0, 0), (0, 5), (-8, 5), (-12, 8), (-18, 8), (-18, 0))
+    off = 1.2 if outside else -1.2
+    path = cut((2, 5 + off), (-8, 5 + off), (-12, 8 + off), (-18, 8 + off))
+    nose = Outline(_arc((-4, 5 + off), 1.2, 0, 360), "tool", closed=True)
+    return sketch(
+        solid, path, nose, _arrow((-14, 8 + off), (-16, 8 + off)), dims=(Dim("D R", (-4, 5 + 2 * off)),)
+    )
+
+
+def _quadrants() -> Sketch:
+    """Where the tip lies from the nose's centre; r points to the operator, here up."""
+    nose = Outline(_arc((0, 0), 3, 0, 360), "tool", closed=True)
+    tips = tuple(Dim(str(n), (6.0 * z, 6.0 * x)) for n, (z, x) in TIP_DIRECTIONS.items() if n)
+    cross = (Outline(((-4, 0), (4, 0)), "part"), Outline(((0, -4), (0, 4)), "part"))
+    return Sketch((nose, *cross), tips)
+
+
+_PICTURES: dict[Dialect, dict[str, Sketch]] = {
+    Dialect.OMNITURN: {
+        "G02": _with_arc("G02 R", convex=True),
+        "G03": _with_arc("G03 R", convex=False),
+        "G33": _threading("K", "I", "X", "Z"),
+        "G75": _roughing("I", "U", "S", "A", "B"),
+        "G78": _roughing("I", "U", "S", "A", "B"),
+        "G41": _beside(outside=True),
+        "G42": _beside(outside=False),
+        "T": _quadrants(),
+    },
+    # X is seen upwards there, so left and right, clockwise and counter-clockwise, change places.
+    Dialect.SINUMERIK: {
+        "G3": _with_arc("G3 CR=", convex=True),
+        "G2": _with_arc("G2 CR=", convex=False),
+        "CYCLE97": _threading("PIT", "APP", "ROP", "FPL"),
+        "CYCLE95": _roughing("MID", "FAL"),
+        "G42": _beside(outside=True),
+        "G41": _beside(outside=False),
+        "D": _quadrants(),
+    },
+}
+
 
 PICTURE = 17.0  # units: height of a picture
 

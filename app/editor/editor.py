@@ -22,13 +22,13 @@ from app.editor import editor_messages as messages
 from app.editor.document import (
     CHANGED,
     Document,
+    Drafts,
     NameRefusedError,
     new_document,
     open_document,
     save_document,
     with_last_line_ended,
 )
-from app.editor.drafts import Drafts
 from app.editor.live_proof import LiveProof
 from app.editor.versions import Archive
 from core.message import Message

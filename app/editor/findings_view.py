@@ -12,7 +12,7 @@ from app.desk.translation import tr
 from app.editor.live_proof import Findings
 from app.editor.text_view import TONES, WORDS
 from app.screen.look import CENTRE, Look, Painter
-from app.screen.row_panel import RowPanel
+from app.screen.sheet_panel import RowPanel
 from core.language.diagnostics import Diagnostic, Severity
 from core.message import Message
 

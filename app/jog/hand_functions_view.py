@@ -20,8 +20,8 @@ from app.jog.hand_functions import (
     STOP,
 )
 from app.jog.jog_model import JogModel
-from app.jog.jog_touch_off import TOUCH_X, TOUCH_Z
-from app.jog.skim_cut import CutStep
+from app.jog.skim_and_setter import CutStep
+from app.jog.tool_setting import TOUCH_X, TOUCH_Z
 from app.screen.look import CENTRE, LEFT, Look, Painter
 from app.screen.panel import FingerPanel, Shown, pressed
 from app.screen.window_layout import FINGER

@@ -1,4 +1,4 @@
-"""The handwheel as the Jog page asks for it: an axis, a step, and a lease that is renewed once a frame.
+"""The handwheel as the Jog page asks for it, and buttons beside the slides that jog.
 
 By hand it is selected with a key or a finger; a station with switches of its own selects by them, and what
 was taken away comes back only when the switch was elsewhere in between, or by the key.
@@ -7,16 +7,24 @@ was taken away comes back only when the switch was elsewhere in between, or by t
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from app.desk.pages.sheet import following
 from app.desk.translation import tr
-from app.jog.held_jog import BEGINS, RENEWED, HeldJog
-from app.jog.jog_speeds import CONTINUOUS, JogSpeeds
+from app.jog.held_jog import BEGINS, CONTINUOUS, RENEWED, HeldJog, JogSpeeds
 from core.executor.commands import Command, Wheel, WheelOff
 from core.executor.snapshot import Snapshot
 from core.machine.machine_model import Machine
-from core.machine.station_rules import FACTORS, WHEEL, selector
+from core.machine.station_rules import (
+    AXIS_BUTTON,
+    ENABLE,
+    FACTORS,
+    JOG_RAPID,
+    STEP_BUTTON,
+    WHEEL,
+    jog_button,
+    selector,
+)
 from core.message import Message
 
 FINE = 2  # of the steps: .001 in
@@ -146,3 +154,52 @@ class JogHandwheel:
         self.choice, self._posted = wanted, now
         axis, step = wanted
         self._post(Wheel(axis, self._speeds.distance(axis, self.hold.mode, step), self.hold.lease))
+
+
+_AWAY = 0.25  # s between two looks; what was pressed in a longer one is old
+
+
+@dataclass(slots=True)
+class PendantJog:
+    """``buttons`` are the inputs that jog: axis and sign of each."""
+
+    machine: Machine
+    hold: HeldJog
+    wheel: JogHandwheel
+    names: tuple[str, ...]  # axes that can be jogged
+    buttons: dict[str, tuple[str, int]] = field(default_factory=dict)
+    _on: frozenset[str] = frozenset()
+    _looked: float = -1e9
+
+    def __post_init__(self) -> None:
+        both = ((axis, sign) for axis in self.names for sign in (1, -1))
+        named = {jog_button(axis, sign): (axis, sign) for axis, sign in both}
+        self.buttons = {name: way for name, way in named.items() if name in self.machine.inputs}
+
+    def look(self, snapshot: Snapshot) -> None:
+        """Once a frame: what went down and what came up."""
+        now, before, on = self.hold.clock(), self._on, snapshot.inputs
+        away, self._looked, self._on = now - self._looked, now, on
+        for name in self.buttons:
+            if name in before and name not in on:
+                self.hold.release(name)
+        if away > _AWAY:
+            if self.buttons.keys() & (on - before):
+                self.hold.say(tr("SCREEN FROZE. RELEASE THE BUTTON, THEN PRESS AGAIN"))
+            return
+        if JOG_RAPID in before and JOG_RAPID not in on:
+            self.hold.shift_released()
+        for name in on - before:
+            self._press(name, on)
+
+    def _press(self, name: str, on: frozenset[str]) -> None:
+        if name == AXIS_BUTTON:
+            self.wheel.next_axis()
+        elif name == STEP_BUTTON:
+            self.wheel.next_step()
+        elif name in self.buttons:
+            if ENABLE in self.machine.inputs and ENABLE not in on:
+                self.hold.say(tr("ENABLING SWITCH NOT PRESSED. HOLD IT AND PRESS JOG BUTTON"))
+                return
+            axis, sign = self.buttons[name]
+            self.hold.press(name, axis, sign, rapid=JOG_RAPID in on, button=name)

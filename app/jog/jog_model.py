@@ -9,15 +9,12 @@ from app.desk.status import prompt_line
 from app.desk.status.prompt_line import STOP_HELD
 from app.desk.translation import tr
 from app.jog.hand_functions import HandFunctions
-from app.jog.jog_handwheel import JogHandwheel
+from app.jog.held_jog import CONTINUOUS, JogDirection, JogSpeeds, directions_of
+from app.jog.jog_handwheel import JogHandwheel, PendantJog
 from app.jog.jog_homing import HomingQuestion
-from app.jog.jog_speeds import CONTINUOUS, JogDirection, JogSpeeds, directions_of
-from app.jog.jog_touch_off import TOUCH_X, TOUCH_Z
-from app.jog.pendant_jog import PendantJog
-from app.jog.setter_touch import HeldTouch, SetterTouch
-from app.jog.skim_cut import SkimCut
+from app.jog.skim_and_setter import HeldTouch, SetterTouch, SkimCut
 from app.jog.tilted_jog import TiltedJog
-from app.jog.tool_setting import TOOL, ToolSetting
+from app.jog.tool_setting import TOOL, TOUCH_X, TOUCH_Z, ToolSetting
 from app.offsets.mill_touch import MillTouch
 from core.executor.commands import JogStop
 from core.executor.snapshot import ACTIVE, Snapshot, State

@@ -12,10 +12,10 @@ from PySide6.QtGui import QWheelEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.translation import tr
-from app.jog.jog_cross_view import JogCross, draw_middle
+from app.jog.held_jog import CONTINUOUS, rapid_word, speed_words, step_words, turn_words
+from app.jog.held_keys_view import JogCross, draw_middle
 from app.jog.jog_homing import AxisState
 from app.jog.jog_model import JogModel
-from app.jog.jog_speeds import CONTINUOUS, rapid_word, speed_words, step_words, turn_words
 from app.offsets.offset_values import Mode
 from app.screen.look import CENTRE, Look, Painter
 from app.screen.panel import Control, Shown, pressed

@@ -15,9 +15,8 @@ from app.jog.hand_functions_view import HandPanel, HandStrip, strip_keys
 from app.jog.held_keys_view import CHORDS, HeldKeysPage
 from app.jog.jog_model import JogModel
 from app.jog.jog_pad_view import JogPad
-from app.jog.jog_touch_off import TOUCH_X, TOUCH_Z
-from app.jog.mill_jog_view import MillJogPanel
-from app.jog.tool_setting_view import ToolPanel
+from app.jog.tool_setting import TOUCH_X, TOUCH_Z
+from app.jog.tool_setting_view import MillJogPanel, ToolPanel
 from app.screen import page_table
 from app.screen.entry_panel import EntryPanel, EntryWords, KeyPad
 from app.screen.page_base import Host, KeyActions

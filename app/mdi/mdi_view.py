@@ -21,7 +21,7 @@ from app.path.path_aspects import tip_of
 from app.path.path_view import PathView
 from app.screen import page_table
 from app.screen.code_choices_view import CodeChoices
-from app.screen.letter_keys import LINES, LetterPad
+from app.screen.entry_panel import LINES, LetterPad
 from app.screen.look import RIGHT, Look, Painter
 from app.screen.page_base import Host, KeyActions, ModelPage
 from app.screen.panel import Panel, Press, Shown

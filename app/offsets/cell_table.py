@@ -12,7 +12,7 @@ from app.desk.pages.sheet import edited, refused
 from app.desk.status.machine_status import Tone
 from app.desk.status.prompt_line import UNDER_WAY
 from app.desk.translation import tr
-from app.offsets.offset_history import LETTERS, refusal
+from app.offsets.offset_changes import LETTERS, refusal
 from app.offsets.offset_table import OffsetTable
 from app.offsets.offset_values import UNKNOWN, cell_text, out_of_range, signed_zero_offset
 from core.executor.snapshot import Snapshot, State

@@ -14,13 +14,12 @@ from app.offsets.cell_table import CellTable
 from app.offsets.mill_tools import MillTools
 from app.offsets.offset_values import cell_text
 from app.offsets.offsets_view import OffsetPage
-from app.offsets.presets import Presets
-from app.offsets.zero_offsets import ZeroOffsets
+from app.offsets.zero_offsets import Presets, ZeroOffsets
 from app.screen import page_table
 from app.screen.look import CENTRE, RIGHT, Look, Painter
 from app.screen.page_base import Host, KeyActions
 from app.screen.panel import Shown
-from app.screen.row_panel import RowPanel
+from app.screen.sheet_panel import RowPanel
 from app.screen.window_layout import FINGER
 from core.executor.snapshot import Snapshot
 from core.production.tool_life import ToolLife

@@ -8,8 +8,7 @@ from app.desk.arithmetic import value_of
 from app.desk.status.machine_status import Tone
 from app.desk.translation import tr
 from app.offsets.cell_table import CellTable
-from app.offsets.mill_lives import MillLives
-from app.offsets.mill_touch import MillTouch
+from app.offsets.mill_touch import MillLives, MillTouch
 from core.executor.snapshot import Snapshot
 from core.message import Message
 from core.production.tool_life import LifeState

@@ -1,18 +1,19 @@
-"""Touching off on a mill: where the tip is, and how high the spindle's nose, from the machine's own chain."""
+"""Tools in a mill: touching off by the machine's own chain, and tool life in the tool table."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 from app.desk.desk import Desk
 from app.desk.translation import tr
-from app.offsets.mill_offsets import MillOffsets, with_mill
+from app.offsets.offsets_in_force import MillOffsets, with_mill
 from core.executor.snapshot import Snapshot, State
 from core.geometry.rotary_axes import DatumPreset, Kinematics
 from core.geometry.rotation_frames import Vector
 from core.interpreter.job_setup import Setup
 from core.message import Message
+from core.production.tool_life import ToolLife
 
 _HERE: Vector = (0.0, 0.0, 0.0)
 _UPRIGHT = 1e-6  # of a unit vector: a tool that leans less stands upright
@@ -102,3 +103,25 @@ def _unknown(snapshot: Snapshot) -> str:
         if not homed:
             return tr(Message("{axis} IS NOT HOMED. HOME IT FIRST", axis=axis))
     return ""
+
+
+def _none() -> Mapping[int, ToolLife]:
+    return {}
+
+
+@dataclass(slots=True)
+class MillLives:
+    """``lives`` by tool, the same object while nothing changes; ``set_used`` a tool's cutting seconds, 0 of a
+    fresh tool."""
+
+    lives: Callable[[], Mapping[int, ToolLife]] = _none
+    set_used: Callable[[int, float], None] = lambda _number, _seconds: None
+
+    def close(self) -> None:
+        """Nothing of it runs."""
+
+    @classmethod
+    def of(cls, desk: Desk) -> MillLives:
+        """Those of this desk; a desk that counts nothing has none."""
+        found = desk.attached(cls)
+        return found if found is not None else cls()

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from app.desk.access import Access
-from app.offsets.offset_acts import act_of
+from app.offsets.change_rules import act_of
 from app.offsets.offsets_in_force import PRESET, preset_of
 from core.access.access_table import Act
 from core.message import Message

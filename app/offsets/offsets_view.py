@@ -22,13 +22,11 @@ from app.offsets.part_effect import part_table
 from app.path.path_pane_view import ZOOM_STEP
 from app.path.path_view import PathView
 from app.screen import page_table
-from app.screen.entry_panel import EntryPanel, EntryWords, KeyPad
-from app.screen.letter_keys import LetterPad
+from app.screen.entry_panel import EntryPanel, EntryWords, KeyPad, LetterPad
 from app.screen.look import Look, Painter
 from app.screen.page_base import Host, KeyActions, ModelPage
 from app.screen.panel import Panel, Shown
-from app.screen.row_panel import RowPanel
-from app.screen.sheet_panel import SheetPanel
+from app.screen.sheet_panel import RowPanel, SheetPanel
 from app.screen.window_layout import FINGER
 from core.executor.snapshot import Snapshot
 

@@ -13,7 +13,7 @@ from app.desk.desk import Desk
 from app.desk.pages.sheet import refused
 from app.desk.status.formats import length
 from app.desk.translation import tr
-from app.offsets.offset_history import counts_from
+from app.offsets.offset_changes import counts_from
 from app.offsets.offset_table import OffsetTable, Proposed
 from app.offsets.offset_values import Mode, added, in_words, out_of_range, to_mm
 from core.executor.snapshot import Snapshot

@@ -5,15 +5,14 @@ from __future__ import annotations
 from app.desk.arithmetic import EntryError
 from app.desk.desk import Desk
 from app.desk.translation import tr
-from app.offsets.offset_acts import CORRECTIONS
-from app.offsets.offset_history import counts_from
-from app.offsets.offset_table import Proposed
+from app.offsets.change_rules import CORRECTIONS
+from app.offsets.offset_changes import counts_from
+from app.offsets.offset_table import Proposed, ToolEntry, ToolFields
 from app.offsets.offset_values import (
     not_set,
     shown_value,
     value_typed,
 )
-from app.offsets.tool_fields import ToolEntry, ToolFields
 from core.executor.snapshot import Snapshot
 from core.message import Message
 from core.store.store_rows import OFFSETS, Kind, with_fields

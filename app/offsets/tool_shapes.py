@@ -6,8 +6,8 @@ from app.desk.arithmetic import EntryError
 from app.desk.desk import Desk
 from app.desk.stored_shapes import row_mistakes, shape_of
 from app.desk.translation import tr
+from app.offsets.offset_table import ToolEntry, ToolFields
 from app.offsets.offset_values import TOOL_FIELDS, choice_word, shown_value, value_typed, word
-from app.offsets.tool_fields import ToolEntry, ToolFields
 from core.executor.snapshot import Snapshot
 from core.message import Message
 from core.part.shape_rules import FIELDS_OF, ShapeMistake

@@ -17,8 +17,7 @@ from app.part.part_tables import table
 from app.path.part_player import player_of
 from app.path.path_view import PathView
 from app.screen import page_table
-from app.screen.entry_panel import KeyPad
-from app.screen.letter_keys import LetterPad
+from app.screen.entry_panel import KeyPad, LetterPad
 from app.screen.page_base import Host, KeyActions
 from app.screen.sheet_panel import ListPage, SheetPanel
 from core.executor.snapshot import Snapshot

@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QPainter, QPolygonF
 
-from app.path.face_and_side import face_point
 from app.path.measuring import farthest, point_at
 from app.path.path_aspects import OF_PART, Aspect, Tip, View, polyline_of, views_of
 from app.path.path_layers_view import Ink, Layers, polygon, stroke_run
-from app.path.path_picture import Picture
+from app.path.path_picture import Picture, face_point
 from app.path.path_projection import Projection, boxed, fitted, runs, travelled
 from app.path.polyline import Bounds, Polyline
 from app.screen.look import Look

@@ -164,8 +164,7 @@ class PathView(Panel):
 
     def _make(self, aspect: Aspect, polyline: Polyline, before: Polyline | None) -> Pane:
         if aspect in OF_PART and self.player is not None:
-            from app.path.part_pane_view import PartPane
-            from app.path.solid_pane_view import SolidPane
+            from app.path.part_pane_view import PartPane, SolidPane
 
             made = PartPane if aspect is Aspect.SECTION else SolidPane
             return made(self.look, aspect, polyline, self.player)

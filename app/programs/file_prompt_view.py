@@ -14,7 +14,7 @@ from app.desk.status.prompt_line import ASK_FILE, CHOOSE_FILE, NOT_FOUND
 from app.desk.translation import tr
 from app.screen.entry_panel import dress_line
 from app.screen.look import CENTRE, RIGHT, Look, Painter, put
-from app.screen.row_panel import RowPanel
+from app.screen.sheet_panel import RowPanel
 from core.message import Message
 
 ROW = 6.6  # units: a fingertip

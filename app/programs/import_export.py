@@ -19,8 +19,7 @@ from app.desk.persistence import Persistence
 from app.desk.programs.program_folder import Takes, is_program
 from app.desk.translation import tr
 from app.programs.copy_rename_delete import BUSY, checked_name, same_name_in
-from app.programs.folder_chooser import FolderChooser, chooser_sheet
-from app.programs.removable_media import Medium, why_not
+from app.programs.removable_media import FolderChooser, Medium, chooser_sheet, why_not
 from app.programs.whole_file import FileError, present, settle, write_out, write_whole
 from core.access.access_table import Act
 from core.input_file import TooLargeError, input_bytes

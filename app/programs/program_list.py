@@ -18,8 +18,15 @@ from app.desk.status.prompt_line import UNDER_WAY
 from app.desk.translation import tr
 from app.programs.copy_rename_delete import COPY, NONE, RENAME, CopyRenameDelete
 from app.programs.import_export import ImportExport
-from app.programs.preview import Preview
-from app.programs.program_rows import ORDERS, Program, list_programs, minute_of, minute_of_file, sorted_by
+from app.programs.program_rows import (
+    ORDERS,
+    Preview,
+    Program,
+    list_programs,
+    minute_of,
+    minute_of_file,
+    sorted_by,
+)
 from core.message import Message, join_messages
 
 DRAWING = "{name} IS A DRAWING. F3: MAKE A PROGRAM FROM IT"

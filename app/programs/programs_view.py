@@ -18,11 +18,10 @@ from app.desk.status.machine_status import MachineStatus
 from app.editor.editor import Editor
 from app.path.path_view import PathView
 from app.programs.copy_rename_delete import NONE
-from app.programs.preview import Thumbnail
 from app.programs.program_list import ProgramList, details_of
-from app.programs.program_rows import Program
+from app.programs.program_rows import Program, Thumbnail
 from app.screen import page_table
-from app.screen.letter_keys import NAMES_WIDE, LetterPad
+from app.screen.entry_panel import NAMES_WIDE, LetterPad
 from app.screen.look import Painter
 from app.screen.page_base import Host, KeyActions
 from app.screen.panel import Panel, Shown

@@ -10,8 +10,7 @@ from PySide6.QtGui import QColor, QPainter
 from PySide6.QtWidgets import QWidget
 
 from app.desk.translation import tr
-from app.scope.curve_columns import Points
-from app.scope.scope_curves import Curve, Sight
+from app.scope.scope_curves import Curve, Points, Sight
 from app.scope.signals import Quantity
 from app.scope.time_window import Cursors
 from app.screen.chart import Chart, Plot, curve_colour, line_pen, set_curve

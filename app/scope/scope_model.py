@@ -17,9 +17,8 @@ from app.desk.desk import Desk
 from app.desk.translation import tr
 from app.scope.record_shelf import INSTANT, Kept, RecordShelf, instant_of
 from app.scope.scope_curves import LiveCurves, LiveSamples, Range, RecordCurves, Sight, Wanted
-from app.scope.scope_trigger import Trigger, When
 from app.scope.signals import Quantity, Signal, first_chosen, signals_of
-from app.scope.time_window import PAN, Cursors, Window
+from app.scope.time_window import PAN, Cursors, Trigger, When, Window
 from core.access.access_table import Act
 from core.executor.snapshot import Snapshot
 from core.message import Message

@@ -14,9 +14,8 @@ from app.desk.status import formats
 from app.scope.scope_curves import Sight
 from app.scope.scope_model import Scope
 from app.scope.signals import Signal
-from app.screen.look import CENTRE, RIGHT, Look, Painter
+from app.screen.look import CENTRE, CURVES, RIGHT, Look, Painter
 from app.screen.panel import Panel, Shown
-from app.screen.theme import CURVES
 from app.screen.window_layout import FINGER
 from core.message import Message
 

@@ -10,8 +10,8 @@ from app.desk.pages.sheet import STEPS, Entry, Key, Row, Sheet, refused
 from app.desk.status import formats
 from app.desk.translation import tr
 from app.scope.scope_model import NO_SAMPLES, Scope, Side
-from app.scope.scope_trigger import When
 from app.scope.signals import Signal
+from app.scope.time_window import When
 
 _RELEASE, _SIGNAL, _LEVEL, _PLACE = range(4)  # rows of the trigger
 

@@ -18,8 +18,7 @@ from PySide6.QtWidgets import QFrame, QGraphicsGridLayout, QGraphicsItem, QGraph
 
 from app.desk.status.formats import fixed
 from app.desk.translation import tr
-from app.screen.look import FAMILY, LEAST, Look
-from app.screen.theme import CURVES
+from app.screen.look import CURVES, FAMILY, LEAST, Look
 
 _TICK, _NAME = 1.6, 1.5  # units: height of the figures on an axis, of the name of a plot
 FloatArray = npt.NDArray[np.float64]

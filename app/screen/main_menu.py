@@ -14,11 +14,11 @@ from app.desk.pages.page_entry import editor_barred, mdi_barred
 from app.desk.programs.program_loading import Loaded
 from app.desk.status.machine_status import MachineStatus
 from app.screen import page_table
-from app.screen.keys import OF_MENU
 from app.screen.look import CENTRE, Look, Painter
 from app.screen.page_base import Host, KeyActions, Page
 from app.screen.page_table import menu_keys, menu_of
 from app.screen.panel import Panel, Shown
+from app.screen.window.keys import OF_MENU
 from app.screen.window_layout import FINGER
 from core.executor.snapshot import Snapshot
 

@@ -9,8 +9,8 @@ spindle, lamps, dock, prompt and function keys belong to the ``Frame``. To plug 
 ``labels()``  the same, where they change with what the page is doing.
 ``barred()``  the function keys that would be refused now: they are drawn dim, and say why when pressed.
 ``STARTS``    whether cycles are started while it is shown; only the Automatic page's palms start anything.
-``key_actions()``  what its keys do, by the names of ``app.screen.keys``. They go before the frame's own
-              keys; H, E, D, R and the pots work on every page without a caret, F1 on all pages.
+``key_actions()``  what its keys do, by the names of ``app.screen.window.keys``. They go before those of the
+              frame; H, E, D, R and the pots work on every page without a caret, F1 on all pages.
 ``key_down``  sees every key that goes down (also a repeating one) before all else; True takes it.
 ``pressed()`` is told before any other key or finger acts: what is held on the page ends then.
 ``key_up``    sees every key that comes up; ``let_go()``: no release will arrive any more, let go of all.
@@ -40,19 +40,30 @@ spindle, lamps, dock, prompt and function keys belong to the ``Frame``. To plug 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import ClassVar, Protocol
+from typing import ClassVar, NamedTuple, Protocol
 
 from PySide6.QtGui import QKeyEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.desk import Desk
+from app.desk.pages.editor_panel import PanelModel
 from app.desk.programs.program_loading import Loaded
 from app.desk.status.machine_status import MachineStatus
 from app.screen.look import Look
-from app.screen.machine_labels import label_on
 from core.executor.snapshot import Snapshot
+
+_LABELS: Mapping[str, Mapping[str, str]] = {
+    "klartext": {"SECCMP": "PRESETS", "ZERO": "PRESETS"},
+    "sinumerik": {"SECCMP": "ZERO"},
+}
+
+
+def label_on(language: str, label: str) -> str:
+    """The label of a key on a machine of this language."""
+    return _LABELS.get(language, {}).get(label, label)
+
 
 KeyActions = Mapping[str, Callable[[], object]]  # by the name of the key; what they answer is not used
 
@@ -203,3 +214,39 @@ class ModelPage(Page):
     def escape(self) -> bool:
         """One step back."""
         return self.model.escape()
+
+
+class HeadKey(NamedTuple):
+    """A place over the text that opens the panel: its text, and the name of the key that does the same."""
+
+    label: str
+    name: str
+
+
+class EditorPanel(QWidget):
+    """Nothing; a feature registers its subclass as ``Extra.editor_panel``.
+
+    ``KEYS`` are the names of the keys that open it, from ``app.screen.window.keys``.
+    """
+
+    KEYS: Sequence[str] = ()
+    model: PanelModel
+
+    def __init__(self, host: Host, page: Page) -> None:  # noqa: ARG002
+        super().__init__(page)
+        self.model = PanelModel()
+        self.hide()
+
+    def head_keys(self, name: str) -> Sequence[HeadKey]:  # noqa: ARG002
+        """Return the places over the text of a program of this name, from the right to the left."""
+        return ()
+
+    def open_at(self, key: str, name: str, text: str, line: int) -> str:  # noqa: ARG002
+        """Open the panel for this text; the cursor stands on ``line``, from 1. Return why not, else nothing.
+
+        ``key`` is the name of the key that was pressed; empty: a program is to be made of a file.
+        """
+        return ""
+
+    def refresh(self) -> None:
+        """Show what the model says now; called once a frame."""

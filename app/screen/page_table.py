@@ -1,14 +1,20 @@
-"""The pages of the main window, one entry a page: name, view, model; key, label and use in the main menu."""
+"""The pages of the main window, one entry a page, and how they are loaded ahead of their first opening."""
 
 from __future__ import annotations
 
+import gc
+from collections.abc import Callable, Iterator
+from functools import partial
 from importlib import import_module
 from typing import Any
 
 from PySide6.QtWidgets import QWidget
 
 from app.compose.extra import extras, insert_after
+from app.desk.background_work import Latest
+from app.desk.desk import Desk
 from app.desk.page_description import LATHES, MILLS, PageEntry
+from app.desk.programs.program_loading import Phase
 from app.screen.page_base import Host, Page
 
 MENU, AUTOMATIC, EDITOR, MDI, JOG = "MAIN MENU", "AUTOMATIC", "EDITOR", "MDI", "JOG"
@@ -25,9 +31,9 @@ _PATH = (
     "app.path.path_marks_view.Button",
     "app.path.measuring_view.Measure",
     "app.path.part_pane_view.PartPane",
-    "app.path.solid_pane_view.SolidPane",
+    "app.path.part_pane_view.SolidPane",
     "app.path.part_bar_view.PartBar",
-    "app.path.part_section.metal_of",
+    "app.path.path_projection.metal_of",
 )
 _PANELS = tuple(extra.editor_panel for extra in extras().values() if extra.editor_panel)
 
@@ -139,7 +145,7 @@ _OWN_PAGES = (
         "axis and spindle plots: following error, speed, load",
         later=("app.scope.scope_chart_view.ScopeChart",),
     ),
-    PageEntry(SHAPE, "app.offsets.tool_shapes_view.ToolShapePage"),
+    PageEntry(SHAPE, "app.offsets.tool_offsets_view.ToolShapePage"),
     PageEntry(MENU, "app.screen.main_menu.MenuPage"),
     PageEntry(
         SEARCHTO, "app.searchto.searchto_view.SearchtoPage", "app.searchto.searchto_model.SearchtoModel"
@@ -228,3 +234,49 @@ def _model(entry: PageEntry, host: Host) -> object:
     if model is None:
         raise RuntimeError(f"the desk was put together without {entry.model}")
     return model
+
+
+APART = 0.05  # s at least from one slice to the next: a frame between them has nothing of it
+_LOADING = frozenset({Phase.READING, Phase.PROVING, Phase.DRAWING, Phase.PART})
+
+
+class PagesAhead:
+    """``step`` once a frame; attached to the desk, it ends with it."""
+
+    def __init__(self, desk: Desk, page_of: Callable[[str], Page]) -> None:
+        self._desk, self._page_of = desk, page_of
+        self._worker = Latest("editing-pages")
+        self._slices = self._all()
+        self._next = desk.clock() + APART
+        self.done = False
+
+    def step(self) -> None:
+        """One slice more, where there is one and the desk has time for it."""
+        now = self._desk.clock()
+        if self.done or now < self._next or self._desk.session.now.phase in _LOADING:
+            return
+        self._next = now + APART
+        self._worker.poll()
+        if not self._worker.busy and next(self._slices, True):
+            self.done = True
+            gc.freeze()  # modules: collections, which stop every thread, need not look at them again
+
+    def close(self) -> None:
+        """With the desk."""
+        self.done = True
+        self._worker.close()
+
+    def _all(self) -> Iterator[bool]:
+        """False for every slice: a page loaded, a part of its charts made."""
+        for entry in pages_of(self._desk.language):
+            found: list[None] = []
+            self._worker.queue(partial(load, entry), found.append, lambda _why: None)
+            yield False
+            if found and entry.later and self._has_model(entry):
+                page = self._page_of(entry.name)
+                yield False
+                while page.ahead():
+                    yield False
+
+    def _has_model(self, entry: PageEntry) -> bool:
+        return not entry.model or self._desk.attached(class_of(entry.model)) is not None

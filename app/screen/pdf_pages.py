@@ -29,7 +29,7 @@ from PySide6.QtGui import (
 from PySide6.QtSvg import QSvgRenderer
 from PySide6.QtWidgets import QApplication
 
-from app.report.page_style import DRAWINGS, PAPER
+from app.report.html_tables import DRAWINGS, PAPER
 from app.report.pdf_file import Paper
 from app.screen.look import FAMILY, load_fonts
 from core.file_placing import bytes_to_disk

@@ -14,9 +14,8 @@ from PySide6.QtWidgets import QApplication
 from app.desk.desk import Desk
 from app.desk.programs.first_program import begin_with
 from app.screen import accessible
-from app.screen.look import Look, dress, load_fonts
-from app.screen.main_window import MainWindow
-from app.screen.theme import PALETTES
+from app.screen.look import PALETTES, Look, dress, load_fonts
+from app.screen.window.main_window import MainWindow
 from core.message import Message
 
 BuildDesk = Callable[[], Desk]

@@ -11,8 +11,7 @@ from app.desk.background_work import Watch
 from app.desk.pages.page_entry import searchto_barred
 from app.desk.programs.program_loading import Loaded, ProgramLoader, Proved
 from app.desk.translation import tr
-from app.searchto.searchto_cursor import LineCursor
-from app.searchto.searchto_finder import Answer, LineFinder
+from app.searchto.searchto_finder import Answer, LineCursor, LineFinder
 from app.searchto.searchto_plan import Plan, WayOut, now_of, plan_of, way_out_of
 from core.executor.commands import Command, Prepare
 from core.executor.job import Job, make_job

@@ -1,16 +1,17 @@
-"""The setup sheet of a program: tools by station, offsets, stock, chuck, stops, time a part."""
+"""The setup sheet of a program on lathe or mill: tools, offsets, stock, chuck, stops, time a part."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
+from app.desk.status.readouts import rotary_angle
 from app.desk.translation import tr
 from app.report.run_record import RunRecord, Stop, ToolTime
-from app.special.mill_setup import MillSetup, mill_setup
-from app.special.mill_setup import offset_words as mill_offset_words
+from core.geometry.rotary_axes import DatumPreset
 from core.interpreter.dialects import ReadProgram
-from core.interpreter.job_setup import SecondaryOffset, Setup, ToolOffset, ZeroOffset
+from core.interpreter.job_setup import MillTool, SecondaryOffset, Setup, ToolOffset, ZeroOffset
+from core.interpreter.working_plane import Corners
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Dialect
 from core.machine.machine_model import Machine
@@ -21,6 +22,64 @@ from core.part.turned_part import Piece
 from core.proving.part_proof import prove_with_part
 from core.proving.program_tools import PartSetting
 from core.proving.prove_program import Progress
+
+Length = Callable[[float], str]
+
+
+@dataclass(frozen=True, slots=True)
+class MillSetup:
+    """``blank``: corners of BLK FORM, mm. ``names`` and ``tools`` are those of the tool table."""
+
+    blank: Corners | None
+    preset: int
+    datum: DatumPreset | None  # the row of the preset; None of 0, which is the machine file's
+    names: Mapping[int, str]
+    tools: Mapping[int, MillTool]
+
+    def stock_words(self, length: Length) -> str:
+        """Length, width and height of the blank."""
+        if self.blank is None:
+            return tr("stock not specified because the program has no BLK FORM")
+        low, high = self.blank
+        return Message("BLK FORM  {b}", b=" × ".join((length(b - a) for a, b in zip(low, high, strict=True))))
+
+    def preset_words(self, length: Length) -> str:
+        """Which preset is in force, and where it lies, from home."""
+        if self.datum is None:
+            return f"{self.preset}   {tr('zero point from the machine file')}"
+        places = (f"{name} {length(at)}" for name, at in zip("XYZ", self.datum.origin, strict=True))
+        turned = (f"{name} {rotary_angle(at)}°" for name, at in self.datum.zeros if at)
+        rotation = (
+            (Message("ROT {rotation}°", rotation=rotary_angle(self.datum.rotation)),)
+            if self.datum.rotation
+            else ()
+        )
+        return f"{self.preset}   " + "   ".join((*places, *turned, *rotation))
+
+    def tool_words(self, number: int) -> str:
+        """Its name, point angle and teeth in the tool table."""
+        row = self.tools.get(number, MillTool())
+        words = (
+            self.names.get(number, ""),
+            f"{tr('POINT ANGLE')} {row.point:g}°" if row.point else "",
+            f"{row.teeth} {tr('teeth')}" if row.teeth else "",
+        )
+        return ", ".join(filter(None, words)) or tr("no tool name in the tool table")
+
+
+def mill_setup(setup: Setup, blank: Corners | None) -> MillSetup | None:
+    """Of a job on a mill; None on a lathe."""
+    if setup.kinematics is None:
+        return None
+    datum = setup.presets.get(setup.preset) if setup.preset else None
+    names = {number: name for name, number in setup.tool_names.items()}
+    return MillSetup(blank, setup.preset, datum, names, setup.mill_tools)
+
+
+def offset_words(offset: ToolOffset, length: Length) -> str:
+    """L and R as they count: with DL and DR."""
+    return f"L {length(offset.z)}   R {length(offset.nose_radius)}"
+
 
 _MM_PER_INCH = 25.4
 
@@ -146,7 +205,7 @@ class SetupSheet:
         if tool.offset is None:
             return tr("NOT SET")
         if self.mill is not None:
-            return mill_offset_words(tool.offset, self.length)
+            return offset_words(tool.offset, self.length)
         x, z, r = (self.length(mm) for mm in (tool.offset.x, tool.offset.z, tool.offset.nose_radius))
         return tr(Message("X (radius) {x}   Z {z}   R {radius}", x=x, z=z, radius=r))
 

@@ -13,13 +13,11 @@ from app.desk.pages.sheet import Key
 from app.desk.programs.program_loading import Loaded
 from app.desk.status.machine_status import MachineStatus
 from app.screen import page_table
-from app.screen.entry_panel import KeyPad
-from app.screen.letter_keys import LetterPad
+from app.screen.entry_panel import KeyPad, LetterPad
 from app.screen.look import CENTRE, Look, Painter
 from app.screen.page_base import Host, KeyActions
 from app.screen.panel import Shown
-from app.screen.row_panel import RowPanel
-from app.screen.sheet_panel import ListPage, SheetPanel
+from app.screen.sheet_panel import ListPage, RowPanel, SheetPanel
 from app.screen.window_layout import FINGER
 from app.special.special_functions import SpecialFunctions
 from core.executor.snapshot import Snapshot

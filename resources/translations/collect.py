@@ -89,15 +89,14 @@ APART = frozenset(
             "sharing/version_record.py",
             "share_command.py",
             "place_answer.py",
-            "pin_question.py",
         ),
-        *("sharing_table.py", "sharing_check.py", "share_json_keys.py"),
-        *("mtconnect/shop_floor.py", "mtconnect_command.py", "mtconnect_check.py", "pendant_wire.py"),
+        *("sharing_table.py", "sharing_check.py"),
+        *("mtconnect/shop_floor.py", "mtconnect_command.py", "pendant_wire.py"),
         *("office_desk.py", "office_check.py", "page_server.py", "shop_network_tables.py"),
-        *("profile_command.py", "profile_json_keys.py", "shapes_json_keys.py"),
+        "profile_command.py",
         *("shapes_command.py", "shape_steps.py"),
-        *("screen/pdf_pages.py", "lines/sinumerik_lines.py", "lines/bar_lines.py"),
-        *("lines/live_lines.py", "lines/sinumerik_live_lines.py"),
+        *("screen/pdf_pages.py", "lines/sinumerik_lines.py"),
+        "lines/live_lines.py",
         *(
             "sinumerik/cycle_names.py",
             "word_table.py",
@@ -216,7 +215,7 @@ _NO_TEXT = re.compile(
     r"|^F\d+$|^:memory:$|^[A-Z]{1,3}$|^XYZABC$|^Callable|^finger|^\(?\?|.*[{;]\s*$|^%[YHd]|.*QLineEdit"
     r"|(?!.*\{\w*\}$).*\}\s*$"  # a bracket that ends no hole
     r"|^(Page|Zoom|Pan|Shift) \w+$|^QWERTY|.*\\|^[A-Z]{2}\d"
-    r"|^[\w ,.-]* --json$"  # a command in the reference of outputs
+    r"|^[\w ,.-]* --json$|^One object\b|^[\w.*\[\]]+ \| "  # commands and keys in the reference of outputs
     r"|^<\w+ |^[^ ]*=\{[^ ]*; |^\s*WHERE .*= \?.*$|^KeptPass|^'?mill tool'?$|^CYCLE (DEF|CALL)$"
 )
 _WORDS = re.compile(r"[^\W\d_]{2,}.*\s+.*[^\W\d_]{2,}|[^\W\d_]{2,}\s*[:.?…]$")

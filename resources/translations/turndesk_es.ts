@@ -6980,6 +6980,11 @@
     </message>
     <message>
       <location filename="app/editor/document.py" />
+      <source>unsaved draft</source>
+      <translation>borrador sin guardar</translation>
+    </message>
+    <message>
+      <location filename="app/editor/document.py" />
       <source>{name} WOULD BE A HIDDEN FILE. START WITH A LETTER OR DIGIT</source>
       <translation>{name} SERÍA UN ARCHIVO OCULTO. EMPIECE CON LETRA O NÚMERO</translation>
     </message>
@@ -6992,11 +6997,6 @@
       <location filename="app/editor/document.py" />
       <source>{path} has over {most_lines} lines, too many for this editor; split the file in another editor</source>
       <translation>{path} tiene más de {most_lines} líneas, demasiadas para este editor; divida el archivo en otro editor</translation>
-    </message>
-    <message>
-      <location filename="app/editor/drafts.py" />
-      <source>unsaved draft</source>
-      <translation>borrador sin guardar</translation>
     </message>
     <message>
       <location filename="app/editor/edited_path_view.py" />
@@ -7169,6 +7169,21 @@
       <translation>{} CAMBIÓ EN EL DISCO. F6: SOBRESCRIBIR   ESC: SEGUIR EDITANDO</translation>
     </message>
     <message>
+      <location filename="app/editor/editor_parts_view.py" />
+      <source>KEYBOARD</source>
+      <translation>TECLADO</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_parts_view.py" />
+      <source>LINE {line} OF {count}  ·  COL {column}</source>
+      <translation>LÍNEA {line} DE {count}  ·  COL {column}</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_parts_view.py" />
+      <source>go to</source>
+      <translation>ir a</translation>
+    </message>
+    <message>
       <location filename="app/editor/editor_view.py" />
       <source>ABORT</source>
       <translation>CANCELAR</translation>
@@ -7225,11 +7240,6 @@
     </message>
     <message>
       <location filename="app/editor/editor_view.py" />
-      <source>LINE {line} OF {count}  ·  COL {column}</source>
-      <translation>LÍNEA {line} DE {count}  ·  COL {column}</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_view.py" />
       <source>LINE {line}: {value} {hint}</source>
       <translation>LÍNEA {line}: {value} {hint}</translation>
     </message>
@@ -7279,31 +7289,6 @@
       <translation>DESHACER</translation>
     </message>
     <message>
-      <location filename="app/editor/editor_view.py" />
-      <source>go to</source>
-      <translation>ir a</translation>
-    </message>
-    <message>
-      <location filename="app/editor/find_replace.py" />
-      <source>NOT FOUND</source>
-      <translation>NO SE ENCONTRÓ</translation>
-    </message>
-    <message>
-      <location filename="app/editor/find_replace.py" />
-      <source>{count} FOUND</source>
-      <translation>{count} ENCONTRADOS</translation>
-    </message>
-    <message>
-      <location filename="app/editor/find_replace.py" />
-      <source>{value}, INCLUDING PARTS OF WORDS</source>
-      <translation>{value}, INCLUIDAS PARTES DE PALABRAS</translation>
-    </message>
-    <message>
-      <location filename="app/editor/find_replace.py" />
-      <source>{value}; {more} MORE ARE PARTS OF LONGER WORDS</source>
-      <translation>{value}; {more} MÁS SON PARTES DE PALABRAS MÁS LARGAS</translation>
-    </message>
-    <message>
       <location filename="app/editor/findings_view.py" />
       <source>ERROR</source>
       <translation>ERROR</translation>
@@ -7324,11 +7309,6 @@
       <translation>AVISO</translation>
     </message>
     <message>
-      <location filename="app/editor/heading_view.py" />
-      <source>KEYBOARD</source>
-      <translation>TECLADO</translation>
-    </message>
-    <message>
       <location filename="app/editor/live_proof.py" />
       <source>PROVING FAILED: {why}</source>
       <translation>FALLÓ LA COMPROBACIÓN: {why}</translation>
@@ -7342,6 +7322,11 @@
       <location filename="app/editor/question_view.py" />
       <source>NEXT</source>
       <translation>SIGUE</translation>
+    </message>
+    <message>
+      <location filename="app/editor/question_view.py" />
+      <source>NOT FOUND</source>
+      <translation>NO SE ENCONTRÓ</translation>
     </message>
     <message>
       <location filename="app/editor/question_view.py" />
@@ -7365,8 +7350,23 @@
     </message>
     <message>
       <location filename="app/editor/question_view.py" />
+      <source>{count} FOUND</source>
+      <translation>{count} ENCONTRADOS</translation>
+    </message>
+    <message>
+      <location filename="app/editor/question_view.py" />
       <source>{places_count} REPLACED</source>
       <translation>{places_count} CAMBIADOS</translation>
+    </message>
+    <message>
+      <location filename="app/editor/question_view.py" />
+      <source>{value}, INCLUDING PARTS OF WORDS</source>
+      <translation>{value}, INCLUIDAS PARTES DE PALABRAS</translation>
+    </message>
+    <message>
+      <location filename="app/editor/question_view.py" />
+      <source>{value}; {more} MORE ARE PARTS OF LONGER WORDS</source>
+      <translation>{value}; {more} MÁS SON PARTES DE PALABRAS MÁS LARGAS</translation>
     </message>
     <message>
       <location filename="app/editor/text_view.py" />
@@ -7599,41 +7599,6 @@
       <translation>{row} eliminado</translation>
     </message>
     <message>
-      <location filename="app/extras/access/access_reset.py" />
-      <source>NO ACCESS LEVELS TO RESET</source>
-      <translation>NO HAY NIVELES DE ACCESO QUE BORRAR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/access/access_reset.py" />
-      <source>PIN RESET IN {time}</source>
-      <translation>BORRADO DE PIN EN {time}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/access/access_reset.py" />
-      <source>PRESS E-STOP FIRST. LEAVE IT PRESSED 10 MIN TO RESET ACCESS LEVELS</source>
-      <translation>PULSE ANTES EL PARO DE EMERGENCIA. DÉJELO PULSADO 10 MIN PARA BORRAR LOS NIVELES DE ACCESO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/access/access_reset.py" />
-      <source>SERVICE RESET CANCELED: ACCESS LEVELS UNCHANGED</source>
-      <translation>BORRADO DE SERVICIO CANCELADO: NIVELES DE ACCESO SIN CAMBIOS</translation>
-    </message>
-    <message>
-      <location filename="app/extras/access/access_reset.py" />
-      <source>service reset canceled</source>
-      <translation>borrado de servicio cancelado</translation>
-    </message>
-    <message>
-      <location filename="app/extras/access/access_reset.py" />
-      <source>service reset done: all users and PINs removed, access levels off</source>
-      <translation>borrado de servicio hecho: usuarios y PIN eliminados, niveles de acceso desactivados</translation>
-    </message>
-    <message>
-      <location filename="app/extras/access/access_reset.py" />
-      <source>service reset started: the E-stop must stay pressed for 10 min</source>
-      <translation>borrado de servicio iniciado: el paro de emergencia debe seguir pulsado 10 min</translation>
-    </message>
-    <message>
       <location filename="app/extras/access/extra.py" />
       <source>LAMPS AND SOUND</source>
       <translation>LÁMPARAS Y SONIDO</translation>
@@ -7647,6 +7612,26 @@
       <location filename="app/extras/access/sign_in.py" />
       <source>CHECKING THE PIN OF {name}</source>
       <translation>COMPROBANDO EL PIN DE {name}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/sign_in.py" />
+      <source>NO ACCESS LEVELS TO RESET</source>
+      <translation>NO HAY NIVELES DE ACCESO QUE BORRAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/sign_in.py" />
+      <source>PIN RESET IN {time}</source>
+      <translation>BORRADO DE PIN EN {time}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/sign_in.py" />
+      <source>PRESS E-STOP FIRST. LEAVE IT PRESSED 10 MIN TO RESET ACCESS LEVELS</source>
+      <translation>PULSE ANTES EL PARO DE EMERGENCIA. DÉJELO PULSADO 10 MIN PARA BORRAR LOS NIVELES DE ACCESO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/sign_in.py" />
+      <source>SERVICE RESET CANCELED: ACCESS LEVELS UNCHANGED</source>
+      <translation>BORRADO DE SERVICIO CANCELADO: NIVELES DE ACCESO SIN CAMBIOS</translation>
     </message>
     <message>
       <location filename="app/extras/access/sign_in.py" />
@@ -7667,6 +7652,21 @@
       <location filename="app/extras/access/sign_in.py" />
       <source>automatic sign-out after {minutes} min without input</source>
       <translation>cierre de sesión automático tras {minutes} min sin actividad</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/sign_in.py" />
+      <source>service reset canceled</source>
+      <translation>borrado de servicio cancelado</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/sign_in.py" />
+      <source>service reset done: all users and PINs removed, access levels off</source>
+      <translation>borrado de servicio hecho: usuarios y PIN eliminados, niveles de acceso desactivados</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/sign_in.py" />
+      <source>service reset started: the E-stop must stay pressed for 10 min</source>
+      <translation>borrado de servicio iniciado: el paro de emergencia debe seguir pulsado 10 min</translation>
     </message>
     <message>
       <location filename="app/extras/access/sign_in.py" />
@@ -8279,31 +8279,6 @@
       <translation>{target} → {target2} rpm</translation>
     </message>
     <message>
-      <location filename="app/extras/drawings/added_drawing.py" />
-      <source>CALCULATING THE CONTOUR. PRESS F6 TO CANCEL</source>
-      <translation>CALCULANDO EL CONTORNO. PULSE F6 PARA CANCELAR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/drawings/added_drawing.py" />
-      <source>LEFT/RIGHT: CHANGE   TAP DRAWING: PICK CONTOUR OR AXIS</source>
-      <translation>IZQUIERDA/DERECHA: CAMBIAR   TOCAR DIBUJO: CONTORNO O EJE</translation>
-    </message>
-    <message>
-      <location filename="app/extras/drawings/added_drawing.py" />
-      <source>READ</source>
-      <translation>LEÍDAS</translation>
-    </message>
-    <message>
-      <location filename="app/extras/drawings/added_drawing.py" />
-      <source>READING THE DRAWING: {seconds} s. PRESS F6 TO CANCEL</source>
-      <translation>LEYENDO EL DIBUJO: {seconds} s. PULSE F6 PARA CANCELAR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/drawings/added_drawing.py" />
-      <source>THE DRAWING CANNOT BE PROCESSED: {why}</source>
-      <translation>NO SE PUEDE PROCESAR EL DIBUJO: {why}</translation>
-    </message>
-    <message>
       <location filename="app/extras/drawings/drawing_form.py" />
       <source>AXIS</source>
       <translation>EJE</translation>
@@ -8312,6 +8287,11 @@
       <location filename="app/extras/drawings/drawing_form.py" />
       <source>BLADE</source>
       <translation>BLADE</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>CALCULATING THE CONTOUR. PRESS F6 TO CANCEL</source>
+      <translation>CALCULANDO EL CONTORNO. PULSE F6 PARA CANCELAR</translation>
     </message>
     <message>
       <location filename="app/extras/drawings/drawing_form.py" />
@@ -8370,6 +8350,11 @@
     </message>
     <message>
       <location filename="app/extras/drawings/drawing_form.py" />
+      <source>LEFT/RIGHT: CHANGE   TAP DRAWING: PICK CONTOUR OR AXIS</source>
+      <translation>IZQUIERDA/DERECHA: CAMBIAR   TOCAR DIBUJO: CONTORNO O EJE</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
       <source>MATERIAL</source>
       <translation>MATERIAL</translation>
     </message>
@@ -8382,6 +8367,16 @@
       <location filename="app/extras/drawings/drawing_form.py" />
       <source>No drawings in the program folder: copy a DXF or SVG file into it with F6, then F8.</source>
       <translation>No hay dibujos en la carpeta de programas: copie en ella un archivo DXF o SVG con F6 y luego F8.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>READ</source>
+      <translation>LEÍDAS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>READING THE DRAWING: {seconds} s. PRESS F6 TO CANCEL</source>
+      <translation>LEYENDO EL DIBUJO: {seconds} s. PULSE F6 PARA CANCELAR</translation>
     </message>
     <message>
       <location filename="app/extras/drawings/drawing_form.py" />
@@ -8417,6 +8412,11 @@
       <location filename="app/extras/drawings/drawing_form.py" />
       <source>STOCK ON THE FACE</source>
       <translation>MATERIAL EN LA CARA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>THE DRAWING CANNOT BE PROCESSED: {why}</source>
+      <translation>NO SE PUEDE PROCESAR EL DIBUJO: {why}</translation>
     </message>
     <message>
       <location filename="app/extras/drawings/drawing_form.py" />
@@ -8514,54 +8514,9 @@
       <translation>trabajo siguiente, número de piezas, lo necesario para la preparación</translation>
     </message>
     <message>
-      <location filename="app/extras/jobs/job_setup.py" />
-      <source>no offset set: touch off the tool</source>
-      <translation>sin corrector: tome referencia de la herramienta</translation>
-    </message>
-    <message>
-      <location filename="app/extras/jobs/job_setup.py" />
-      <source>remaining tool life covers {left} of {parts} parts</source>
-      <translation>la vida restante de la herramienta alcanza para {left} de {parts} piezas</translation>
-    </message>
-    <message>
-      <location filename="app/extras/jobs/job_setup.py" />
-      <source>since the last run ({when}), the tool tip has changed from R {was}, {was_tip}, to R {radius}, {tip}</source>
-      <translation>desde la última corrida ({when}), la punta cambió de R {was}, {was_tip}, a R {radius}, {tip}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/jobs/job_setup.py" />
-      <source>tip quadrant {quadrant}</source>
-      <translation>cuadrante de punta {quadrant}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/jobs/job_setup.py" />
-      <source>tool life used up, {words}: change the insert</source>
-      <translation>vida de la herramienta agotada, {words}: cambie la plaquita</translation>
-    </message>
-    <message>
       <location filename="app/extras/jobs/jobs_desk.py" />
       <source>{name} IS NOT IN THE PROGRAM LIST. F1, THEN F6: CHECK LIST</source>
       <translation>{name} NO ESTÁ EN LA LISTA DE PROGRAMAS. F1, LUEGO F6: REVISE LA LISTA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/jobs/jobs_function.py" />
-      <source>ENTER: OPEN JOBS   ESC: BACK TO THE LIST</source>
-      <translation>ENTER: ABRIR TRABAJOS   ESC: VOLVER A LA LISTA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/jobs/jobs_function.py" />
-      <source>IN PROGRESS</source>
-      <translation>EN CURSO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/jobs/jobs_function.py" />
-      <source>Press Enter to open the JOBS page. Shift+F6 opens it from any page, and J opens it from the main menu.</source>
-      <translation>Pulse Enter para abrir la página TRABAJOS. Mayús+F6 la abre desde cualquier página, y J desde el menú principal.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/jobs/jobs_function.py" />
-      <source>WAITING</source>
-      <translation>ESPERANDO</translation>
     </message>
     <message>
       <location filename="app/extras/jobs/jobs_model.py" />
@@ -8592,6 +8547,11 @@
       <location filename="app/extras/jobs/jobs_model.py" />
       <source>HOW MANY PARTS OF {program}?</source>
       <translation>¿CUÁNTAS PIEZAS DE {program}?</translation>
+    </message>
+    <message>
+      <location filename="app/extras/jobs/jobs_model.py" />
+      <source>IN PROGRESS</source>
+      <translation>EN CURSO</translation>
     </message>
     <message>
       <location filename="app/extras/jobs/jobs_model.py" />
@@ -8710,6 +8670,11 @@
     </message>
     <message>
       <location filename="app/extras/jobs/jobs_watch.py" />
+      <source>ENTER: OPEN JOBS   ESC: BACK TO THE LIST</source>
+      <translation>ENTER: ABRIR TRABAJOS   ESC: VOLVER A LA LISTA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/jobs/jobs_watch.py" />
       <source>JOB DONE: {count} OF {expected} PARTS OF {program}.</source>
       <translation>TRABAJO HECHO: {count} DE {expected} PIEZAS DE {program}.</translation>
     </message>
@@ -8725,13 +8690,48 @@
     </message>
     <message>
       <location filename="app/extras/jobs/jobs_watch.py" />
+      <source>Press Enter to open the JOBS page. Shift+F6 opens it from any page, and J opens it from the main menu.</source>
+      <translation>Pulse Enter para abrir la página TRABAJOS. Mayús+F6 la abre desde cualquier página, y J desde el menú principal.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/jobs/jobs_watch.py" />
       <source>THE PROGRAM HAS ERRORS</source>
       <translation>EL PROGRAMA TIENE ERRORES</translation>
     </message>
     <message>
       <location filename="app/extras/jobs/jobs_watch.py" />
+      <source>WAITING</source>
+      <translation>ESPERANDO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/jobs/jobs_watch.py" />
       <source>job {program} started</source>
       <translation>trabajo {program} empezado</translation>
+    </message>
+    <message>
+      <location filename="app/extras/jobs/jobs_watch.py" />
+      <source>no offset set: touch off the tool</source>
+      <translation>sin corrector: tome referencia de la herramienta</translation>
+    </message>
+    <message>
+      <location filename="app/extras/jobs/jobs_watch.py" />
+      <source>remaining tool life covers {left} of {parts} parts</source>
+      <translation>la vida restante de la herramienta alcanza para {left} de {parts} piezas</translation>
+    </message>
+    <message>
+      <location filename="app/extras/jobs/jobs_watch.py" />
+      <source>since the last run ({when}), the tool tip has changed from R {was}, {was_tip}, to R {radius}, {tip}</source>
+      <translation>desde la última corrida ({when}), la punta cambió de R {was}, {was_tip}, a R {radius}, {tip}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/jobs/jobs_watch.py" />
+      <source>tip quadrant {quadrant}</source>
+      <translation>cuadrante de punta {quadrant}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/jobs/jobs_watch.py" />
+      <source>tool life used up, {words}: change the insert</source>
+      <translation>vida de la herramienta agotada, {words}: cambie la plaquita</translation>
     </message>
     <message>
       <location filename="app/extras/jobs/jobs_watch.py" />
@@ -8742,11 +8742,6 @@
       <location filename="app/extras/mtconnect/extra.py" />
       <source>MTCONNECT</source>
       <translation>MTCONNECT</translation>
-    </message>
-    <message>
-      <location filename="app/extras/office/agent_desk.py" />
-      <source>the MTConnect agent reports that the machine is unavailable</source>
-      <translation>el agente MTConnect indica que la máquina no está disponible</translation>
     </message>
     <message>
       <location filename="app/extras/office/announcements.py" />
@@ -8779,11 +8774,6 @@
       <translation>el broker MQTT {host}:{port}</translation>
     </message>
     <message>
-      <location filename="app/extras/office/network_causes.py" />
-      <source>the server certificate cannot be verified: {verify_message}</source>
-      <translation>el certificado del servidor no se puede verificar: {verify_message}</translation>
-    </message>
-    <message>
       <location filename="app/extras/office/other_desks.py" />
       <source>access token rejected</source>
       <translation>token de acceso rechazado</translation>
@@ -8792,6 +8782,11 @@
       <location filename="app/extras/office/other_desks.py" />
       <source>no response for {age} s</source>
       <translation>sin respuesta desde hace {age} s</translation>
+    </message>
+    <message>
+      <location filename="app/extras/office/other_desks.py" />
+      <source>the MTConnect agent reports that the machine is unavailable</source>
+      <translation>el agente MTConnect indica que la máquina no está disponible</translation>
     </message>
     <message>
       <location filename="app/extras/office/other_desks.py" />
@@ -8844,6 +8839,11 @@
       <translation>Tiempo restante</translation>
     </message>
     <message>
+      <location filename="app/extras/office/timed_http.py" />
+      <source>the server certificate cannot be verified: {verify_message}</source>
+      <translation>el certificado del servidor no se puede verificar: {verify_message}</translation>
+    </message>
+    <message>
       <location filename="app/extras/office/web_hook.py" />
       <source>, redirected to {to}; set [announce] hook to that address</source>
       <translation>, redirigido a {to}; ponga esa dirección en [announce] hook</translation>
@@ -8859,79 +8859,209 @@
       <translation>CONEXIÓN CON EL MANDO COLGANTE</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/charts_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>ARROWS: SELECT FEATURE. DASHED: CONTROL LIMITS, DOTTED: TOLERANCE, CIRCLED: RULE VIOLATIONS</source>
       <translation>FLECHAS: ELEGIR CARACTERÍSTICA. A TRAZOS: LÍMITES DE CONTROL, PUNTOS: TOLERANCIA, CÍRCULOS: REGLAS INCUMPLIDAS</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/charts_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
+      <source>ARROWS: SELECT TREND   ESC: BACK TO LIST</source>
+      <translation>FLECHAS: ELEGIR TENDENCIA   ESC: VOLVER A LA LISTA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/charts_and_trends.py" />
+      <source>AVAILABILITY</source>
+      <translation>DISPONIBILIDAD</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>AVERAGE</source>
       <translation>PROMEDIO</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/charts_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>CONTROL CHARTS</source>
       <translation>GRÁFICAS DE CONTROL</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/charts_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>CONTROL CHARTS  ·  {program}</source>
       <translation>GRÁFICAS DE CONTROL  ·  {program}</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/charts_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
+      <source>CYCLE TIME</source>
+      <translation>TIEMPO DE CICLO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/charts_and_trends.py" />
+      <source>CYCLE TIME, s</source>
+      <translation>TIEMPO DE CICLO, s</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>DRIFT</source>
       <translation>DERIVA</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/charts_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>FEATURE NOT MEASURED YET</source>
       <translation>CARACTERÍSTICA AÚN SIN MEDIR</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/charts_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
+      <source>IN CYCLE</source>
+      <translation>EN CICLO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>INDIVIDUALS</source>
       <translation>VALORES INDIVIDUALES</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/charts_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>MEAN {mode}</source>
       <translation>MEDIA {mode}</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/charts_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
+      <source>MINUTES BY REASON, WITH CUMULATIVE PERCENTAGE</source>
+      <translation>MINUTOS POR MOTIVO, CON PORCENTAJE ACUMULADO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/charts_and_trends.py" />
+      <source>MINUTES OF THE SHIFT</source>
+      <translation>MINUTOS DEL TURNO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>MOVING RANGE</source>
       <translation>RANGO MÓVIL</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/charts_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
+      <source>NOT IN CYCLE</source>
+      <translation>FUERA DE CICLO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>RANGE</source>
       <translation>RANGO</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/charts_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>READINGS</source>
       <translation>LECTURAS</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/charts_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
+      <source>SHIFT HOURS, FOR EXAMPLE 6-14?</source>
+      <translation>¿HORAS DEL TURNO, POR EJEMPLO 6-14?</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/charts_and_trends.py" />
+      <source>SPINDLE LOAD</source>
+      <translation>CARGA DEL HUSILLO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/charts_and_trends.py" />
+      <source>SPINDLE LOAD, %</source>
+      <translation>CARGA DEL HUSILLO, %</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/charts_and_trends.py" />
+      <source>STOPS</source>
+      <translation>PAROS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/charts_and_trends.py" />
+      <source>TRENDS</source>
+      <translation>TENDENCIAS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/charts_and_trends.py" />
+      <source>TRENDS  ·  {program}</source>
+      <translation>TENDENCIAS  ·  {program}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/charts_and_trends.py" />
+      <source>cycle times, stops, availability</source>
+      <translation>tiempos de ciclo, paros, disponibilidad</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/charts_and_trends.py" />
+      <source>enter the start and end hour of the shift, such as 6-14</source>
+      <translation>escriba la hora de inicio y la de fin del turno, como 6-14</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/charts_and_trends.py" />
+      <source>last cycle {last}, shortest {best}, mean {mean} of {count} parts</source>
+      <translation>último ciclo {last}, menor {best}, media {mean} de {count} piezas</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/charts_and_trends.py" />
+      <source>last load {last} %, highest load {maximum} %</source>
+      <translation>última carga {last} %, carga mayor {maximum} %</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>limits, Cpk, drift</source>
       <translation>límites, Cpk, deriva</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/charts_section.py" />
+      <location filename="app/extras/quality/charts_and_trends.py" />
       <source>no drift; Cpk is at least {minimum} (95 % confidence)</source>
       <translation>sin deriva; Cpk es al menos {minimum} (confianza del 95 %)</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/correction_effect.py" />
-      <source>PARTS WITH OLD AND NEW OFFSETS CANNOT BE COMPARED: {why}</source>
-      <translation>NO SE PUEDEN COMPARAR LAS PIEZAS CON CORRECTORES VIEJOS Y NUEVOS: {why}</translation>
+      <location filename="app/extras/quality/charts_and_trends.py" />
+      <source>no drive on this machine reports its load</source>
+      <translation>ningún accionamiento de esta máquina informa su carga</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/correction_effect.py" />
-      <source>{name}: {change} FROM NEXT PART</source>
-      <translation>{name}: {change} DESDE LA PRÓXIMA PIEZA</translation>
+      <location filename="app/extras/quality/charts_and_trends.py" />
+      <source>no part made yet</source>
+      <translation>aún no se ha hecho ninguna pieza</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/charts_and_trends.py" />
+      <source>no stops yet</source>
+      <translation>aún sin paros</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/charts_and_trends.py" />
+      <source>no wear correction yet</source>
+      <translation>aún sin correcciones de desgaste</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/charts_and_trends.py" />
+      <source>parts</source>
+      <translation>piezas</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/charts_and_trends.py" />
+      <source>shift hours: {first} to {last}</source>
+      <translation>horas del turno: {first} a {last}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/charts_and_trends.py" />
+      <source>{count} corrections; last correction: {offset} by X {x} Z {z} after part {part}</source>
+      <translation>{count} correcciones; última corrección: {offset} en X {x} Z {z} tras la pieza {part}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/charts_and_trends.py" />
+      <source>{count} stops, on average {mean} apart; longest total: {reason}, {time}</source>
+      <translation>{count} paros, {mean} entre ellos de media; mayor total: {reason}, {time}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/charts_and_trends.py" />
+      <source>{first}–{last}: the shift has not started</source>
+      <translation>{first}–{last}: el turno no ha empezado</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/charts_and_trends.py" />
+      <source>{first}–{last}: {share} %, in cycle for {run} of {planned}</source>
+      <translation>{first}–{last}: {share} %, en ciclo {run} de {planned}</translation>
     </message>
     <message>
       <location filename="app/extras/quality/extra.py" />
@@ -9124,26 +9254,6 @@
       <translation>{value} no es un número entero</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/gauge_line.py" />
-      <source>NO GAUGE IN THE MACHINE FILE. ADD [gauge] port = …</source>
-      <translation>NO HAY CALIBRADOR EN EL ARCHIVO DE MÁQUINA. AÑADA [gauge] port = …</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/gauge_line.py" />
-      <source>No gauge is configured: enter its serial port under [gauge] in the machine file.</source>
-      <translation>Ningún calibrador configurado: indique su puerto serie en [gauge] del archivo de máquina.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/gauge_line.py" />
-      <source>the gauge is not connected or is switched off</source>
-      <translation>el calibrador no está conectado o está apagado</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/gauge_line.py" />
-      <source>the gauge sent unreadable data</source>
-      <translation>el calibrador envió datos ilegibles</translation>
-    </message>
-    <message>
       <location filename="app/extras/quality/gauge_wire.py" />
       <source>GAUGE: {why}. F5: LISTEN AGAIN</source>
       <translation>CALIBRADOR: {why}. F5: ESCUCHAR OTRA VEZ</translation>
@@ -9160,6 +9270,16 @@
     </message>
     <message>
       <location filename="app/extras/quality/gauge_wire.py" />
+      <source>NO GAUGE IN THE MACHINE FILE. ADD [gauge] port = …</source>
+      <translation>NO HAY CALIBRADOR EN EL ARCHIVO DE MÁQUINA. AÑADA [gauge] port = …</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/gauge_wire.py" />
+      <source>No gauge is configured: enter its serial port under [gauge] in the machine file.</source>
+      <translation>Ningún calibrador configurado: indique su puerto serie en [gauge] del archivo de máquina.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/gauge_wire.py" />
       <source>No reading from the gauge for {minutes} min. Check its switch and cable.</source>
       <translation>Sin lecturas del calibrador desde hace {minutes} min. Revise su interruptor y su cable.</translation>
     </message>
@@ -9169,24 +9289,34 @@
       <translation>Calibrador sin escuchar. Pulse F5 para empezar.</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/parts_function.py" />
-      <source>ENTER: OPEN MEASURED PARTS   ESC: BACK TO LIST</source>
-      <translation>ENTER: ABRIR PIEZAS MEDIDAS   ESC: VOLVER A LA LISTA</translation>
+      <location filename="app/extras/quality/gauge_wire.py" />
+      <source>the gauge is not connected or is switched off</source>
+      <translation>el calibrador no está conectado o está apagado</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/parts_function.py" />
-      <source>MEASUREMENT DUE</source>
-      <translation>MEDICIÓN PENDIENTE</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/parts_function.py" />
-      <source>Press Enter to open the page, or press W in the main menu.</source>
-      <translation>Pulse Enter para abrir la página, o W en el menú principal.</translation>
+      <location filename="app/extras/quality/gauge_wire.py" />
+      <source>the gauge sent unreadable data</source>
+      <translation>el calibrador envió datos ilegibles</translation>
     </message>
     <message>
       <location filename="app/extras/quality/plots_view.py" />
       <source>NOTHING TO DRAW YET</source>
       <translation>AÚN NO HAY NADA QUE DIBUJAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/quality_desk.py" />
+      <source>ENTER: OPEN MEASURED PARTS   ESC: BACK TO LIST</source>
+      <translation>ENTER: ABRIR PIEZAS MEDIDAS   ESC: VOLVER A LA LISTA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/quality_desk.py" />
+      <source>MEASUREMENT DUE</source>
+      <translation>MEDICIÓN PENDIENTE</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/quality_desk.py" />
+      <source>Press Enter to open the page, or press W in the main menu.</source>
+      <translation>Pulse Enter para abrir la página, o W en el menú principal.</translation>
     </message>
     <message>
       <location filename="app/extras/quality/readings_section.py" />
@@ -9629,154 +9759,24 @@
       <translation>{unit} mm</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>ARROWS: SELECT TREND   ESC: BACK TO LIST</source>
-      <translation>FLECHAS: ELEGIR TENDENCIA   ESC: VOLVER A LA LISTA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>AVAILABILITY</source>
-      <translation>DISPONIBILIDAD</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>CYCLE TIME</source>
-      <translation>TIEMPO DE CICLO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>CYCLE TIME, s</source>
-      <translation>TIEMPO DE CICLO, s</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>IN CYCLE</source>
-      <translation>EN CICLO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>MINUTES BY REASON, WITH CUMULATIVE PERCENTAGE</source>
-      <translation>MINUTOS POR MOTIVO, CON PORCENTAJE ACUMULADO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>MINUTES OF THE SHIFT</source>
-      <translation>MINUTOS DEL TURNO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>NOT IN CYCLE</source>
-      <translation>FUERA DE CICLO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>SHIFT HOURS, FOR EXAMPLE 6-14?</source>
-      <translation>¿HORAS DEL TURNO, POR EJEMPLO 6-14?</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>SPINDLE LOAD</source>
-      <translation>CARGA DEL HUSILLO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>SPINDLE LOAD, %</source>
-      <translation>CARGA DEL HUSILLO, %</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>STOPS</source>
-      <translation>PAROS</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>TRENDS</source>
-      <translation>TENDENCIAS</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>TRENDS  ·  {program}</source>
-      <translation>TENDENCIAS  ·  {program}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>cycle times, stops, availability</source>
-      <translation>tiempos de ciclo, paros, disponibilidad</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>enter the start and end hour of the shift, such as 6-14</source>
-      <translation>escriba la hora de inicio y la de fin del turno, como 6-14</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>last cycle {last}, shortest {best}, mean {mean} of {count} parts</source>
-      <translation>último ciclo {last}, menor {best}, media {mean} de {count} piezas</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>last load {last} %, highest load {maximum} %</source>
-      <translation>última carga {last} %, carga mayor {maximum} %</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>no drive on this machine reports its load</source>
-      <translation>ningún accionamiento de esta máquina informa su carga</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>no part made yet</source>
-      <translation>aún no se ha hecho ninguna pieza</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>no stops yet</source>
-      <translation>aún sin paros</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>no wear correction yet</source>
-      <translation>aún sin correcciones de desgaste</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>parts</source>
-      <translation>piezas</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>shift hours: {first} to {last}</source>
-      <translation>horas del turno: {first} a {last}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>{count} corrections; last correction: {offset} by X {x} Z {z} after part {part}</source>
-      <translation>{count} correcciones; última corrección: {offset} en X {x} Z {z} tras la pieza {part}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>{count} stops, on average {mean} apart; longest total: {reason}, {time}</source>
-      <translation>{count} paros, {mean} entre ellos de media; mayor total: {reason}, {time}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>{first}–{last}: the shift has not started</source>
-      <translation>{first}–{last}: el turno no ha empezado</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>{first}–{last}: {share} %, in cycle for {run} of {planned}</source>
-      <translation>{first}–{last}: {share} %, en ciclo {run} de {planned}</translation>
-    </message>
-    <message>
       <location filename="app/extras/quality/wear_correction.py" />
       <source>NO OFFSETS SET FOR T{number}</source>
       <translation>T{number} NO TIENE CORRECTORES DEFINIDOS</translation>
     </message>
     <message>
       <location filename="app/extras/quality/wear_correction.py" />
+      <source>PARTS WITH OLD AND NEW OFFSETS CANNOT BE COMPARED: {why}</source>
+      <translation>NO SE PUEDEN COMPARAR LAS PIEZAS CON CORRECTORES VIEJOS Y NUEVOS: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/wear_correction.py" />
       <source>{name} measured: the mean of {count} readings is {mean}, offset change {change}</source>
       <translation>{name} medido: la media de {count} lecturas es {mean}, cambio del corrector {change}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/wear_correction.py" />
+      <source>{name}: {change} FROM NEXT PART</source>
+      <translation>{name}: {change} DESDE LA PRÓXIMA PIEZA</translation>
     </message>
     <message>
       <location filename="app/extras/quality/wear_correction.py" />
@@ -9790,13 +9790,13 @@
     </message>
     <message>
       <location filename="app/extras/shapes/shape_form.py" />
-      <source>These values do not make a valid shape: check the last value that you entered.</source>
-      <translation>Estos valores no dan una forma válida: revise el último valor que introdujo.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/shapes/shape_words.py" />
       <source>SERIES</source>
       <translation>SERIE</translation>
+    </message>
+    <message>
+      <location filename="app/extras/shapes/shape_form.py" />
+      <source>These values do not make a valid shape: check the last value that you entered.</source>
+      <translation>Estos valores no dan una forma válida: revise el último valor que introdujo.</translation>
     </message>
     <message>
       <location filename="app/extras/shapes/shapes_model.py" />
@@ -9919,16 +9919,6 @@
       <translation>programas de otros controles TurnDesk; las versiones nuevas se copian si se pide</translation>
     </message>
     <message>
-      <location filename="app/extras/sharing/program_files.py" />
-      <source>the file is larger than {most_bytes} MB</source>
-      <translation>el archivo es mayor de {most_bytes} MB</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/program_files.py" />
-      <source>the name of another program on this control differs from the name of this program only in upper and lower case: rename one of the programs</source>
-      <translation>el nombre de otro programa de este control difiere del nombre de este programa solo en mayúsculas y minúsculas: cambie el nombre de uno de los programas</translation>
-    </message>
-    <message>
       <location filename="app/extras/sharing/sharing.py" />
       <source>copied from {machine}</source>
       <translation>copiado de {machine}</translation>
@@ -9942,6 +9932,16 @@
       <location filename="app/extras/sharing/sharing.py" />
       <source>shared by {machine}</source>
       <translation>compartido por {machine}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing.py" />
+      <source>the file is larger than {most_bytes} MB</source>
+      <translation>el archivo es mayor de {most_bytes} MB</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing.py" />
+      <source>the name of another program on this control differs from the name of this program only in upper and lower case: rename one of the programs</source>
+      <translation>el nombre de otro programa de este control difiere del nombre de este programa solo en mayúsculas y minúsculas: cambie el nombre de uno de los programas</translation>
     </message>
     <message>
       <location filename="app/extras/sharing/sharing.py" />
@@ -10330,6 +10330,11 @@
     </message>
     <message>
       <location filename="app/jog/jog_handwheel.py" />
+      <source>ENABLING SWITCH NOT PRESSED. HOLD IT AND PRESS JOG BUTTON</source>
+      <translation>INTERRUPTOR DE VALIDACIÓN SIN PULSAR. MANTÉNGALO Y PULSE EL BOTÓN</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_handwheel.py" />
       <source>HANDWHEEL IS OFF: {why}</source>
       <translation>VOLANTE DESCONECTADO: {why}</translation>
     </message>
@@ -10337,6 +10342,11 @@
       <location filename="app/jog/jog_handwheel.py" />
       <source>SCREEN FROZE. HANDWHEEL IS OFF</source>
       <translation>LA PANTALLA SE CONGELÓ. VOLANTE DESCONECTADO</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_handwheel.py" />
+      <source>SCREEN FROZE. RELEASE THE BUTTON, THEN PRESS AGAIN</source>
+      <translation>LA PANTALLA SE CONGELÓ. SUELTE EL BOTÓN Y PÚLSELO OTRA VEZ</translation>
     </message>
     <message>
       <location filename="app/jog/jog_handwheel.py" />
@@ -10594,51 +10604,6 @@
       <translation>°/MIN</translation>
     </message>
     <message>
-      <location filename="app/jog/jog_touch_off.py" />
-      <source>, this tool only</source>
-      <translation>, solo esta herramienta</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_touch_off.py" />
-      <source>TOUCH OFF ONLY WITH THE MACHINE STOPPED AND READY</source>
-      <translation>TOQUE SOLO CON LA MÁQUINA PARADA Y LISTA</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_touch_off.py" />
-      <source>skim cut Z</source>
-      <translation>pasada de medida Z</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_touch_off.py" />
-      <source>skim cut Ø</source>
-      <translation>pasada de medida Ø</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_touch_off.py" />
-      <source>the {axis} offset would be outside the allowed range</source>
-      <translation>el corrector {axis} quedaría fuera del rango permitido</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_touch_off.py" />
-      <source>touch-off Z</source>
-      <translation>toque Z</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_touch_off.py" />
-      <source>touch-off of a new tool</source>
-      <translation>toque de una herramienta nueva</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_touch_off.py" />
-      <source>touch-off Ø</source>
-      <translation>toque Ø</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_touch_off.py" />
-      <source>{axis} IS NOT HOMED AND ITS POSITION IS UNKNOWN. HOME IT FIRST</source>
-      <translation>{axis} NO TIENE REFERENCIA Y SU POSICIÓN NO SE CONOCE. REFERÉNCIELO ANTES</translation>
-    </message>
-    <message>
       <location filename="app/jog/jog_view.py" />
       <source>Enter: accept   Esc: cancel</source>
       <translation>Enter: aceptar   Esc: cancelar</translation>
@@ -10659,187 +10624,122 @@
       <translation>SOLO ESTA</translation>
     </message>
     <message>
-      <location filename="app/jog/mill_jog_view.py" />
-      <source>3D-ROT {state}</source>
-      <translation>3D-ROT {state}</translation>
-    </message>
-    <message>
-      <location filename="app/jog/mill_jog_view.py" />
-      <source>JOG KEY DIRECTION IN MACHINE COORDINATES X Y Z</source>
-      <translation>DIRECCIÓN DE LA TECLA DE JOG EN COORDENADAS DE MÁQUINA X Y Z</translation>
-    </message>
-    <message>
-      <location filename="app/jog/mill_jog_view.py" />
-      <source>PRESET {number}</source>
-      <translation>PRESET {number}</translation>
-    </message>
-    <message>
-      <location filename="app/jog/mill_jog_view.py" />
-      <source>TIP POSITION</source>
-      <translation>POSICIÓN DE LA PUNTA</translation>
-    </message>
-    <message>
-      <location filename="app/jog/mill_jog_view.py" />
-      <source>TOOL, PRESET, TILTED PLANE  ·  MM</source>
-      <translation>HERRAMIENTA, PRESET, PLANO INCLINADO  ·  MM</translation>
-    </message>
-    <message>
-      <location filename="app/jog/mill_jog_view.py" />
-      <source>X {x}   Y {y}   Z {z}   ROT {rotation}</source>
-      <translation>X {x}   Y {y}   Z {z}   ROT {rotation}</translation>
-    </message>
-    <message>
-      <location filename="app/jog/mill_jog_view.py" />
-      <source>no tool active; run TOOL CALL in MDI</source>
-      <translation>ninguna herramienta activa; ejecute TOOL CALL en MDI</translation>
-    </message>
-    <message>
-      <location filename="app/jog/mill_jog_view.py" />
-      <source>not tilted</source>
-      <translation>sin inclinar</translation>
-    </message>
-    <message>
-      <location filename="app/jog/mill_jog_view.py" />
-      <source>position unknown until a program line has run</source>
-      <translation>posición desconocida hasta ejecutar una línea de programa</translation>
-    </message>
-    <message>
-      <location filename="app/jog/mill_jog_view.py" />
-      <source>rotary axes are not at the angles of the tilted plane</source>
-      <translation>los ejes rotativos no están en los ángulos del plano inclinado</translation>
-    </message>
-    <message>
-      <location filename="app/jog/mill_jog_view.py" />
-      <source>zero point from the machine file</source>
-      <translation>punto cero del archivo de máquina</translation>
-    </message>
-    <message>
-      <location filename="app/jog/pendant_jog.py" />
-      <source>ENABLING SWITCH NOT PRESSED. HOLD IT AND PRESS JOG BUTTON</source>
-      <translation>INTERRUPTOR DE VALIDACIÓN SIN PULSAR. MANTÉNGALO Y PULSE EL BOTÓN</translation>
-    </message>
-    <message>
-      <location filename="app/jog/pendant_jog.py" />
-      <source>SCREEN FROZE. RELEASE THE BUTTON, THEN PRESS AGAIN</source>
-      <translation>LA PANTALLA SE CONGELÓ. SUELTE EL BOTÓN Y PÚLSELO OTRA VEZ</translation>
-    </message>
-    <message>
-      <location filename="app/jog/setter_touch.py" />
-      <source>CONTACT MADE. BACKING OFF</source>
-      <translation>HAY CONTACTO. RETROCEDIENDO</translation>
-    </message>
-    <message>
-      <location filename="app/jog/setter_touch.py" />
-      <source>MEASURING WITH A SLOW TOUCH</source>
-      <translation>MIDIENDO CON UN TOQUE LENTO</translation>
-    </message>
-    <message>
-      <location filename="app/jog/setter_touch.py" />
-      <source>NO CONTACT. RETURNING</source>
-      <translation>SIN CONTACTO. VOLVIENDO</translation>
-    </message>
-    <message>
-      <location filename="app/jog/setter_touch.py" />
-      <source>NO RAPID DURING TOUCH-OFF. PRESS WITHOUT SHIFT</source>
-      <translation>SIN RÁPIDO DURANTE EL TOQUE. PULSE SIN MAYÚS</translation>
-    </message>
-    <message>
-      <location filename="app/jog/setter_touch.py" />
-      <source>NO TOOL SELECTED. PRESS T AND TYPE ITS NUMBER</source>
-      <translation>NINGUNA HERRAMIENTA ELEGIDA. PULSE T Y ESCRIBA SU NÚMERO</translation>
-    </message>
-    <message>
-      <location filename="app/jog/setter_touch.py" />
-      <source>SEARCHING FOR THE TOOL SETTER. RELEASE THE KEY TO STOP</source>
-      <translation>BUSCANDO EL PALPADOR. SUELTE LA TECLA PARA DETENER</translation>
-    </message>
-    <message>
-      <location filename="app/jog/setter_touch.py" />
-      <source>THIS MACHINE HAS NO TOOL SETTER</source>
-      <translation>ESTA MÁQUINA NO TIENE PALPADOR DE HERRAMIENTAS</translation>
-    </message>
-    <message>
-      <location filename="app/jog/setter_touch.py" />
-      <source>TOOL SETTER, T{number}: HOLD {keys} UNTIL THE AXIS RETRACTS. ESC: CANCEL</source>
-      <translation>PALPADOR, T{number}: MANTENGA {keys} HASTA QUE EL EJE SE RETIRE. ESC: CANCELAR</translation>
-    </message>
-    <message>
-      <location filename="app/jog/setter_touch.py" />
-      <source>TOUCH OFF T{number} ONLY IN DIRECTION {ways}</source>
-      <translation>TOQUE T{number} SOLO EN LA DIRECCIÓN {ways}</translation>
-    </message>
-    <message>
-      <location filename="app/jog/setter_touch.py" />
-      <source>TOUCH-OFF FAILED: {why}</source>
-      <translation>EL TOQUE FALLÓ: {why}</translation>
-    </message>
-    <message>
-      <location filename="app/jog/setter_touch.py" />
-      <source>T{number}: TIP DIRECTION NOT SET. PRESS Q AND TYPE 1…9</source>
-      <translation>T{number}: DIRECCIÓN DE PUNTA SIN DEFINIR. PULSE Q Y ESCRIBA 1…9</translation>
-    </message>
-    <message>
-      <location filename="app/jog/setter_touch.py" />
-      <source>measured at the tool setter, direction {direction}, ±{error}</source>
-      <translation>medido en el palpador, dirección {direction}, ±{error}</translation>
-    </message>
-    <message>
-      <location filename="app/jog/skim_cut.py" />
+      <location filename="app/jog/skim_and_setter.py" />
       <source>AXES ARE STILL MOVING. WAIT UNTIL THEY STOP</source>
       <translation>LOS EJES TODAVÍA SE MUEVEN. ESPERE A QUE PAREN</translation>
     </message>
     <message>
-      <location filename="app/jog/skim_cut.py" />
+      <location filename="app/jog/skim_and_setter.py" />
+      <source>CONTACT MADE. BACKING OFF</source>
+      <translation>HAY CONTACTO. RETROCEDIENDO</translation>
+    </message>
+    <message>
+      <location filename="app/jog/skim_and_setter.py" />
       <source>CUT FAR ENOUGH IN {other} TO MEASURE, THEN PRESS ENTER</source>
       <translation>CORTE EN {other} LO BASTANTE PARA MEDIR Y PULSE ENTER</translation>
     </message>
     <message>
-      <location filename="app/jog/skim_cut.py" />
+      <location filename="app/jog/skim_and_setter.py" />
       <source>JOG {axis} TO THE DEPTH OF CUT, THEN FEED IN {other}. ESC: CANCEL</source>
       <translation>LLEVE {axis} A LA PROFUNDIDAD DE CORTE, LUEGO AVANCE EN {other}. ESC: CANCELAR</translation>
     </message>
     <message>
-      <location filename="app/jog/skim_cut.py" />
+      <location filename="app/jog/skim_and_setter.py" />
       <source>MACHINE STOPPED. SKIM CUT CANCELED. NOTHING CHANGED</source>
       <translation>LA MÁQUINA SE PARÓ. PASADA DE MEDIDA CANCELADA. SIN CAMBIOS</translation>
     </message>
     <message>
-      <location filename="app/jog/skim_cut.py" />
+      <location filename="app/jog/skim_and_setter.py" />
+      <source>MEASURING WITH A SLOW TOUCH</source>
+      <translation>MIDIENDO CON UN TOQUE LENTO</translation>
+    </message>
+    <message>
+      <location filename="app/jog/skim_and_setter.py" />
+      <source>NO CONTACT. RETURNING</source>
+      <translation>SIN CONTACTO. VOLVIENDO</translation>
+    </message>
+    <message>
+      <location filename="app/jog/skim_and_setter.py" />
       <source>NO CUT YET, SPINDLE STOPPED. PRESS B TO START IT</source>
       <translation>AÚN NO HAY PASADA, HUSILLO PARADO. PULSE B PARA ARRANCARLO</translation>
     </message>
     <message>
-      <location filename="app/jog/skim_cut.py" />
+      <location filename="app/jog/skim_and_setter.py" />
       <source>NO CUT YET: {axis} MOVED LAST. FEED {other} WITHOUT MOVING {axis}</source>
       <translation>SIN PASADA AÚN: LO ÚLTIMO FUE {axis}. AVANCE {other} SIN MOVER {axis}</translation>
     </message>
     <message>
-      <location filename="app/jog/skim_cut.py" />
+      <location filename="app/jog/skim_and_setter.py" />
+      <source>NO RAPID DURING TOUCH-OFF. PRESS WITHOUT SHIFT</source>
+      <translation>SIN RÁPIDO DURANTE EL TOQUE. PULSE SIN MAYÚS</translation>
+    </message>
+    <message>
+      <location filename="app/jog/skim_and_setter.py" />
+      <source>NO TOOL SELECTED. PRESS T AND TYPE ITS NUMBER</source>
+      <translation>NINGUNA HERRAMIENTA ELEGIDA. PULSE T Y ESCRIBA SU NÚMERO</translation>
+    </message>
+    <message>
+      <location filename="app/jog/skim_and_setter.py" />
       <source>RETRACT {other} ONLY. DO NOT MOVE {axis}. THEN 0: STOP SPINDLE</source>
       <translation>RETIRE SOLO EN {other}. NO MUEVA {axis}. LUEGO 0: PARAR HUSILLO</translation>
     </message>
     <message>
-      <location filename="app/jog/skim_cut.py" />
+      <location filename="app/jog/skim_and_setter.py" />
+      <source>SEARCHING FOR THE TOOL SETTER. RELEASE THE KEY TO STOP</source>
+      <translation>BUSCANDO EL PALPADOR. SUELTE LA TECLA PARA DETENER</translation>
+    </message>
+    <message>
+      <location filename="app/jog/skim_and_setter.py" />
       <source>SKIM CUT CANCELED, NOTHING CHANGED</source>
       <translation>PASADA DE MEDIDA CANCELADA, SIN CAMBIOS</translation>
     </message>
     <message>
-      <location filename="app/jog/skim_cut.py" />
+      <location filename="app/jog/skim_and_setter.py" />
       <source>SKIM CUT. X: DIAMETER   Z: FACE   ESC: CANCEL</source>
       <translation>PASADA DE MEDIDA. X: DIÁMETRO   Z: CARA   ESC: CANCELAR</translation>
     </message>
     <message>
-      <location filename="app/jog/skim_cut.py" />
+      <location filename="app/jog/skim_and_setter.py" />
       <source>START THE SPINDLE (B), THEN JOG INTO THE CUT. ESC: CANCEL</source>
       <translation>ARRANQUE EL HUSILLO (B), LUEGO VAYA AL CORTE A MANO. ESC: CANCELAR</translation>
     </message>
     <message>
-      <location filename="app/jog/skim_cut.py" />
+      <location filename="app/jog/skim_and_setter.py" />
+      <source>THIS MACHINE HAS NO TOOL SETTER</source>
+      <translation>ESTA MÁQUINA NO TIENE PALPADOR DE HERRAMIENTAS</translation>
+    </message>
+    <message>
+      <location filename="app/jog/skim_and_setter.py" />
+      <source>TOOL SETTER, T{number}: HOLD {keys} UNTIL THE AXIS RETRACTS. ESC: CANCEL</source>
+      <translation>PALPADOR, T{number}: MANTENGA {keys} HASTA QUE EL EJE SE RETIRE. ESC: CANCELAR</translation>
+    </message>
+    <message>
+      <location filename="app/jog/skim_and_setter.py" />
+      <source>TOUCH OFF T{number} ONLY IN DIRECTION {ways}</source>
+      <translation>TOQUE T{number} SOLO EN LA DIRECCIÓN {ways}</translation>
+    </message>
+    <message>
+      <location filename="app/jog/skim_and_setter.py" />
+      <source>TOUCH-OFF FAILED: {why}</source>
+      <translation>EL TOQUE FALLÓ: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/jog/skim_and_setter.py" />
+      <source>T{number}: TIP DIRECTION NOT SET. PRESS Q AND TYPE 1…9</source>
+      <translation>T{number}: DIRECCIÓN DE PUNTA SIN DEFINIR. PULSE Q Y ESCRIBA 1…9</translation>
+    </message>
+    <message>
+      <location filename="app/jog/skim_and_setter.py" />
+      <source>measured at the tool setter, direction {direction}, ±{error}</source>
+      <translation>medido en el palpador, dirección {direction}, ±{error}</translation>
+    </message>
+    <message>
+      <location filename="app/jog/skim_and_setter.py" />
       <source>{axis} IS NOT HOMED. SKIM CUT CANCELED, NOTHING CHANGED</source>
       <translation>{axis} NO TIENE REFERENCIA. PASADA DE MEDIDA CANCELADA, SIN CAMBIOS</translation>
     </message>
     <message>
-      <location filename="app/jog/skim_cut.py" />
+      <location filename="app/jog/skim_and_setter.py" />
       <source>{axis} MOVED {away} AFTER THE CUT. NOT SAVED. CUT AGAIN OR PRESS ESC</source>
       <translation>{axis} SE MOVIÓ {away} TRAS LA PASADA. NO SE GUARDÓ. CORTE DE NUEVO O PULSE ESC</translation>
     </message>
@@ -10865,6 +10765,11 @@
     </message>
     <message>
       <location filename="app/jog/tool_setting.py" />
+      <source>, this tool only</source>
+      <translation>, solo esta herramienta</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting.py" />
       <source>AXIS MOVED AFTER TOUCH-OFF. PRESS ESC, THEN TOUCH OFF AGAIN</source>
       <translation>EL EJE SE MOVIÓ TRAS EL TOQUE. PULSE ESC Y TOQUE OTRA VEZ</translation>
     </message>
@@ -10887,6 +10792,11 @@
       <location filename="app/jog/tool_setting.py" />
       <source>TOOL NUMBER?</source>
       <translation>¿NÚMERO DE HERRAMIENTA?</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting.py" />
+      <source>TOUCH OFF ONLY WITH THE MACHINE STOPPED AND READY</source>
+      <translation>TOQUE SOLO CON LA MÁQUINA PARADA Y LISTA</translation>
     </message>
     <message>
       <location filename="app/jog/tool_setting.py" />
@@ -10925,6 +10835,41 @@
     </message>
     <message>
       <location filename="app/jog/tool_setting.py" />
+      <source>skim cut Z</source>
+      <translation>pasada de medida Z</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting.py" />
+      <source>skim cut Ø</source>
+      <translation>pasada de medida Ø</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting.py" />
+      <source>the {axis} offset would be outside the allowed range</source>
+      <translation>el corrector {axis} quedaría fuera del rango permitido</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting.py" />
+      <source>touch-off Z</source>
+      <translation>toque Z</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting.py" />
+      <source>touch-off of a new tool</source>
+      <translation>toque de una herramienta nueva</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting.py" />
+      <source>touch-off Ø</source>
+      <translation>toque Ø</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting.py" />
+      <source>{axis} IS NOT HOMED AND ITS POSITION IS UNKNOWN. HOME IT FIRST</source>
+      <translation>{axis} NO TIENE REFERENCIA Y SU POSICIÓN NO SE CONOCE. REFERÉNCIELO ANTES</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting.py" />
       <source>{tool} MEASURED DIAMETER?</source>
       <translation>¿DIÁMETRO MEDIDO DE {tool}?</translation>
     </message>
@@ -10935,8 +10880,28 @@
     </message>
     <message>
       <location filename="app/jog/tool_setting_view.py" />
+      <source>3D-ROT {state}</source>
+      <translation>3D-ROT {state}</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting_view.py" />
+      <source>JOG KEY DIRECTION IN MACHINE COORDINATES X Y Z</source>
+      <translation>DIRECCIÓN DE LA TECLA DE JOG EN COORDENADAS DE MÁQUINA X Y Z</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting_view.py" />
+      <source>PRESET {number}</source>
+      <translation>PRESET {number}</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting_view.py" />
       <source>THIS TOOL</source>
       <translation>ESTA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting_view.py" />
+      <source>TIP POSITION</source>
+      <translation>POSICIÓN DE LA PUNTA</translation>
     </message>
     <message>
       <location filename="app/jog/tool_setting_view.py" />
@@ -10955,6 +10920,11 @@
     </message>
     <message>
       <location filename="app/jog/tool_setting_view.py" />
+      <source>TOOL, PRESET, TILTED PLANE  ·  MM</source>
+      <translation>HERRAMIENTA, PRESET, PLANO INCLINADO  ·  MM</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting_view.py" />
       <source>TOUCH OFF X</source>
       <translation>TOCAR X</translation>
     </message>
@@ -10965,8 +10935,38 @@
     </message>
     <message>
       <location filename="app/jog/tool_setting_view.py" />
+      <source>X {x}   Y {y}   Z {z}   ROT {rotation}</source>
+      <translation>X {x}   Y {y}   Z {z}   ROT {rotation}</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting_view.py" />
+      <source>no tool active; run TOOL CALL in MDI</source>
+      <translation>ninguna herramienta activa; ejecute TOOL CALL en MDI</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting_view.py" />
       <source>none</source>
       <translation>ninguna</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting_view.py" />
+      <source>not tilted</source>
+      <translation>sin inclinar</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting_view.py" />
+      <source>position unknown until a program line has run</source>
+      <translation>posición desconocida hasta ejecutar una línea de programa</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting_view.py" />
+      <source>rotary axes are not at the angles of the tilted plane</source>
+      <translation>los ejes rotativos no están en los ángulos del plano inclinado</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting_view.py" />
+      <source>zero point from the machine file</source>
+      <translation>punto cero del archivo de máquina</translation>
     </message>
     <message>
       <location filename="app/mdi/mdi_model.py" />
@@ -11194,6 +11194,136 @@
       <translation>preset activo: {before} → {number}</translation>
     </message>
     <message>
+      <location filename="app/offsets/offset_changes.py" />
+      <source>; APPLIES FROM NEXT CYCLE START</source>
+      <translation>; VALE DESDE EL PRÓXIMO ARRANQUE DE CICLO</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_changes.py" />
+      <source>; APPLIES FROM NEXT PART</source>
+      <translation>; VALE DESDE LA PRÓXIMA PIEZA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_changes.py" />
+      <source>CUTS ON THE OPPOSITE SIDE OF THE PART</source>
+      <translation>CORTA EN EL LADO OPUESTO DE LA PIEZA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_changes.py" />
+      <source>LARGE CHANGE</source>
+      <translation>CAMBIO GRANDE</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_changes.py" />
+      <source>MASTER {before} → NONE: NO OTHER TOOLS WILL BE ADJUSTED. Y: CHANGE   N: KEEP</source>
+      <translation>MAESTRA {before} → NINGUNA: NO SE AJUSTARÁ NINGUNA OTRA HERRAMIENTA. Y: CAMBIAR   N: CONSERVAR</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_changes.py" />
+      <source>MASTER {before} → {tool}. TOOLS ADJUSTED WITH THE MASTER: {others}. TOUCH-OFF CHANGES OVER {limit} {unit} MUST BE CONFIRMED. Y: CHANGE   N: KEEP</source>
+      <translation>MAESTRA {before} → {tool}. HERRAMIENTAS QUE SE AJUSTAN CON LA MAESTRA: {others}. LOS CAMBIOS POR TOQUE DE MÁS DE {limit} {unit} SE DEBEN CONFIRMAR. Y: CAMBIAR   N: CONSERVAR</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_changes.py" />
+      <source>NO CHANGE TO UNDO IN {row}</source>
+      <translation>NO HAY CAMBIOS QUE DESHACER EN {row}</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_changes.py" />
+      <source>OFFSET CHANGES APPLY FROM NEXT PART, AFTER THEY ARE PROVED</source>
+      <translation>LOS CAMBIOS DE CORRECTOR VALEN DESDE LA PRÓXIMA PIEZA, UNA VEZ COMPROBADOS</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_changes.py" />
+      <source>OFFSETS CHANGED BEFORE YOU ANSWERED. ENTER THE VALUE AGAIN</source>
+      <translation>LOS CORRECTORES CAMBIARON ANTES DE SU RESPUESTA. INTRODUZCA EL VALOR OTRA VEZ</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_changes.py" />
+      <source>OTHER TOOLS ARE ADJUSTED WITH THIS TOOL</source>
+      <translation>OTRAS HERRAMIENTAS SE AJUSTAN CON ESTA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_changes.py" />
+      <source>OUTSIDE AXIS TRAVEL</source>
+      <translation>FUERA DEL RECORRIDO DEL EJE</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_changes.py" />
+      <source>PROGRAM RUNNING. CHANGE ONLY WEAR OR SECONDARY OFFSETS (F9)</source>
+      <translation>PROGRAMA EN MARCHA. CAMBIE SOLO DESGASTE O CORRECTORES SECUNDARIOS (F9)</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_changes.py" />
+      <source>SAVED</source>
+      <translation>GUARDADO</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_changes.py" />
+      <source>THIS TABLE</source>
+      <translation>ESTA TABLA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_changes.py" />
+      <source>UNDO {row}: {change}, AND ALSO {others}? Y: UNDO   N: KEEP</source>
+      <translation>¿DESHACER {row}: {change}, Y TAMBIÉN {others}? Y: DESHACER   N: CONSERVAR</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_changes.py" />
+      <source>UNDO {row}: {change}? Y: UNDO   N: KEEP</source>
+      <translation>¿DESHACER {row}: {change}? Y: DESHACER   N: CONSERVAR</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_changes.py" />
+      <source>WEAR APPLIES FROM NEXT CYCLE START</source>
+      <translation>EL DESGASTE VALE DESDE EL PRÓXIMO ARRANQUE DE CICLO</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_changes.py" />
+      <source>no master</source>
+      <translation>sin maestra</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_changes.py" />
+      <source>set as master</source>
+      <translation>fijada como maestra</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_changes.py" />
+      <source>{changes}. ALSO ADJUSTED: {others}. Y: CHANGE   N: KEEP</source>
+      <translation>{changes}. TAMBIÉN SE AJUSTAN: {others}. Y: CAMBIAR   N: CONSERVAR</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_changes.py" />
+      <source>{changes}. Y: CHANGE   N: KEEP OLD VALUE</source>
+      <translation>{changes}. Y: CAMBIAR   N: CONSERVAR EL VALOR ANTERIOR</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_changes.py" />
+      <source>{count} MORE</source>
+      <translation>{count} MÁS</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_changes.py" />
+      <source>{count} OFFSETS</source>
+      <translation>{count} CORRECTORES</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_changes.py" />
+      <source>{count} offsets changed. {keys}: show the changes</source>
+      <translation>cambiaron {count} correctores. {keys}: ver los cambios</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_changes.py" />
+      <source>{names} SAVED</source>
+      <translation>{names}: GUARDADO</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_changes.py" />
+      <source>{names} UNDONE</source>
+      <translation>{names} DESHECHO</translation>
+    </message>
+    <message>
       <location filename="app/offsets/offset_effect.py" />
       <source>1 PART FEATURE WILL CHANGE. F6: SHOW TABLE</source>
       <translation>CAMBIARÁ 1 MEDIDA DE LA PIEZA. F6: VER TABLA</translation>
@@ -11269,139 +11399,29 @@
       <translation>CAMBIARÁN {count} MEDIDAS DE LA PIEZA. F6: VER TABLA</translation>
     </message>
     <message>
-      <location filename="app/offsets/offset_history.py" />
-      <source>; APPLIES FROM NEXT CYCLE START</source>
-      <translation>; VALE DESDE EL PRÓXIMO ARRANQUE DE CICLO</translation>
+      <location filename="app/offsets/offset_table.py" />
+      <source>ENTER: SET   ESC: CANCEL</source>
+      <translation>ENTER: FIJAR   ESC: CANCELAR</translation>
     </message>
     <message>
-      <location filename="app/offsets/offset_history.py" />
-      <source>; APPLIES FROM NEXT PART</source>
-      <translation>; VALE DESDE LA PRÓXIMA PIEZA</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_history.py" />
-      <source>OFFSET CHANGES APPLY FROM NEXT PART, AFTER THEY ARE PROVED</source>
-      <translation>LOS CAMBIOS DE CORRECTOR VALEN DESDE LA PRÓXIMA PIEZA, UNA VEZ COMPROBADOS</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_history.py" />
-      <source>PROGRAM RUNNING. CHANGE ONLY WEAR OR SECONDARY OFFSETS (F9)</source>
-      <translation>PROGRAMA EN MARCHA. CAMBIE SOLO DESGASTE O CORRECTORES SECUNDARIOS (F9)</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_history.py" />
-      <source>SAVED</source>
-      <translation>GUARDADO</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_history.py" />
-      <source>WEAR APPLIES FROM NEXT CYCLE START</source>
-      <translation>EL DESGASTE VALE DESDE EL PRÓXIMO ARRANQUE DE CICLO</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_history.py" />
-      <source>{count} OFFSETS</source>
-      <translation>{count} CORRECTORES</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_history.py" />
-      <source>{count} offsets changed. {keys}: show the changes</source>
-      <translation>cambiaron {count} correctores. {keys}: ver los cambios</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_history.py" />
-      <source>{names} SAVED</source>
-      <translation>{names}: GUARDADO</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_history.py" />
-      <source>{names} UNDONE</source>
-      <translation>{names} DESHECHO</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_questions.py" />
-      <source>CUTS ON THE OPPOSITE SIDE OF THE PART</source>
-      <translation>CORTA EN EL LADO OPUESTO DE LA PIEZA</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_questions.py" />
-      <source>LARGE CHANGE</source>
-      <translation>CAMBIO GRANDE</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_questions.py" />
-      <source>MASTER {before} → NONE: NO OTHER TOOLS WILL BE ADJUSTED. Y: CHANGE   N: KEEP</source>
-      <translation>MAESTRA {before} → NINGUNA: NO SE AJUSTARÁ NINGUNA OTRA HERRAMIENTA. Y: CAMBIAR   N: CONSERVAR</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_questions.py" />
-      <source>MASTER {before} → {tool}. TOOLS ADJUSTED WITH THE MASTER: {others}. TOUCH-OFF CHANGES OVER {limit} {unit} MUST BE CONFIRMED. Y: CHANGE   N: KEEP</source>
-      <translation>MAESTRA {before} → {tool}. HERRAMIENTAS QUE SE AJUSTAN CON LA MAESTRA: {others}. LOS CAMBIOS POR TOQUE DE MÁS DE {limit} {unit} SE DEBEN CONFIRMAR. Y: CAMBIAR   N: CONSERVAR</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_questions.py" />
-      <source>NO CHANGE TO UNDO IN {row}</source>
-      <translation>NO HAY CAMBIOS QUE DESHACER EN {row}</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_questions.py" />
-      <source>OFFSETS CHANGED BEFORE YOU ANSWERED. ENTER THE VALUE AGAIN</source>
-      <translation>LOS CORRECTORES CAMBIARON ANTES DE SU RESPUESTA. INTRODUZCA EL VALOR OTRA VEZ</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_questions.py" />
-      <source>OTHER TOOLS ARE ADJUSTED WITH THIS TOOL</source>
-      <translation>OTRAS HERRAMIENTAS SE AJUSTAN CON ESTA</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_questions.py" />
-      <source>OUTSIDE AXIS TRAVEL</source>
-      <translation>FUERA DEL RECORRIDO DEL EJE</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_questions.py" />
-      <source>THIS TABLE</source>
-      <translation>ESTA TABLA</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_questions.py" />
-      <source>UNDO {row}: {change}, AND ALSO {others}? Y: UNDO   N: KEEP</source>
-      <translation>¿DESHACER {row}: {change}, Y TAMBIÉN {others}? Y: DESHACER   N: CONSERVAR</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_questions.py" />
-      <source>UNDO {row}: {change}? Y: UNDO   N: KEEP</source>
-      <translation>¿DESHACER {row}: {change}? Y: DESHACER   N: CONSERVAR</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_questions.py" />
-      <source>no master</source>
-      <translation>sin maestra</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_questions.py" />
-      <source>set as master</source>
-      <translation>fijada como maestra</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_questions.py" />
-      <source>{changes}. ALSO ADJUSTED: {others}. Y: CHANGE   N: KEEP</source>
-      <translation>{changes}. TAMBIÉN SE AJUSTAN: {others}. Y: CAMBIAR   N: CONSERVAR</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_questions.py" />
-      <source>{changes}. Y: CHANGE   N: KEEP OLD VALUE</source>
-      <translation>{changes}. Y: CAMBIAR   N: CONSERVAR EL VALOR ANTERIOR</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_questions.py" />
-      <source>{count} MORE</source>
-      <translation>{count} MÁS</translation>
+      <location filename="app/offsets/offset_table.py" />
+      <source>NOW ENTER {axis}. T{number} IS SET WHEN BOTH X AND Z ARE ENTERED</source>
+      <translation>ESCRIBA AHORA {axis}. T{number} QUEDA DEFINIDA CON X Y Z INTRODUCIDAS</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_table.py" />
       <source>PAGE UP, PAGE DOWN: SCROLL   F5 OR ESC: CLOSE HISTORY</source>
       <translation>RE PÁG, AV PÁG: DESPLAZAR   F5 O ESC: CERRAR HISTORIAL</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_table.py" />
+      <source>T{number} IS NOT SET. TYPE X AND Z, OR TOUCH OFF ON THE JOG PAGE</source>
+      <translation>T{number} ESTÁ SIN DEFINIR. ESCRIBA X Y Z, O TÓQUELA EN LA PÁGINA MANUAL</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_table.py" />
+      <source>manual entry</source>
+      <translation>entrada manual</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_values.py" />
@@ -11684,71 +11704,6 @@
       <translation>HOMBRO</translation>
     </message>
     <message>
-      <location filename="app/offsets/presets.py" />
-      <source>0 (from the machine file)</source>
-      <translation>0 (del archivo de máquina)</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/presets.py" />
-      <source>F2: set the current axis position to the typed value</source>
-      <translation>F2: fijar la posición actual del eje al valor escrito</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/presets.py" />
-      <source>F2: set the current tip position to the typed value</source>
-      <translation>F2: fijar la posición actual de la punta al valor escrito</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/presets.py" />
-      <source>F3: activate preset</source>
-      <translation>F3: activar preset</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/presets.py" />
-      <source>POINT 1 STORED. TOUCH SAME EDGE AT ANOTHER POINT, PRESS F2</source>
-      <translation>PUNTO 1 GUARDADO. TOQUE LA MISMA ARISTA EN OTRO PUNTO Y PULSE F2</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/presets.py" />
-      <source>POINTS LESS THAN 1 MM APART. TOUCH FARTHER ALONG THE EDGE</source>
-      <translation>PUNTOS A MENOS DE 1 MM. TOQUE MÁS LEJOS EN LA ARISTA</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/presets.py" />
-      <source>PRESET {number} IS NOT SET. TOUCH IT OFF OR TYPE ITS VALUES</source>
-      <translation>EL PRESET {number} ESTÁ SIN DEFINIR. PÁLPELO O ESCRIBA SUS VALORES</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/presets.py" />
-      <source>PRESETS  ·  WORKPIECE ZERO IN MACHINE COORDINATES, MM AND DEGREES</source>
-      <translation>PRESETS  ·  CERO DE LA PIEZA EN COORDENADAS DE MÁQUINA, MM Y GRADOS</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/presets.py" />
-      <source>Press F2 at two points on an edge to set ROT so that the edge has the typed angle</source>
-      <translation>Pulse F2 en dos puntos de una arista para fijar ROT de modo que la arista tenga el ángulo escrito</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/presets.py" />
-      <source>SELECT X, Y, Z, A ROTARY AXIS OR ROT. F2: TOUCH OFF</source>
-      <translation>ELIJA X, Y, Z, UN EJE ROTATIVO O ROT. F2: PALPAR</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/presets.py" />
-      <source>active preset: {preset}</source>
-      <translation>preset activo: {preset}</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/presets.py" />
-      <source>edge angle set to {value}</source>
-      <translation>ángulo de arista fijado a {value}</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/presets.py" />
-      <source>position set to {value}</source>
-      <translation>posición fijada a {value}</translation>
-    </message>
-    <message>
       <location filename="app/offsets/secondary_offsets.py" />
       <source>C CLEARS ALL OFFSETS ONLY AT THE PROMPT Offset Number? PRESS ESC FIRST</source>
       <translation>C BORRA TODOS LOS CORRECTORES SOLO EN LA PREGUNTA ¿Número de corrector? PULSE ANTES ESC</translation>
@@ -11844,26 +11799,6 @@
       <translation>CEROS</translation>
     </message>
     <message>
-      <location filename="app/offsets/tool_fields.py" />
-      <source>ENTER: SET   ESC: CANCEL</source>
-      <translation>ENTER: FIJAR   ESC: CANCELAR</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/tool_fields.py" />
-      <source>NOW ENTER {axis}. T{number} IS SET WHEN BOTH X AND Z ARE ENTERED</source>
-      <translation>ESCRIBA AHORA {axis}. T{number} QUEDA DEFINIDA CON X Y Z INTRODUCIDAS</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/tool_fields.py" />
-      <source>T{number} IS NOT SET. TYPE X AND Z, OR TOUCH OFF ON THE JOG PAGE</source>
-      <translation>T{number} ESTÁ SIN DEFINIR. ESCRIBA X Y Z, O TÓQUELA EN LA PÁGINA MANUAL</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/tool_fields.py" />
-      <source>manual entry</source>
-      <translation>entrada manual</translation>
-    </message>
-    <message>
       <location filename="app/offsets/tool_offsets.py" />
       <source>F2: add typed value   F3: X and Z relative to master   F8: shape   D: other edge   Esc: exit</source>
       <translation>F2: sumar valor escrito   F3: X y Z relativas a la maestra   F8: forma   D: otro filo   Esc: salir</translation>
@@ -11925,13 +11860,38 @@
     </message>
     <message>
       <location filename="app/offsets/tool_offsets_view.py" />
+      <source>ASSUMED: {names}</source>
+      <translation>SUPUESTO: {names}</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_offsets_view.py" />
+      <source>IMPOSSIBLE TOOL SHAPE</source>
+      <translation>FORMA DE HERRAMIENTA IMPOSIBLE</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_offsets_view.py" />
+      <source>NONE</source>
+      <translation>NINGUNO</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_offsets_view.py" />
       <source>SHAPE</source>
       <translation>FORMA</translation>
     </message>
     <message>
       <location filename="app/offsets/tool_offsets_view.py" />
+      <source>SHAPE OF T{number}</source>
+      <translation>FORMA DE T{number}</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_offsets_view.py" />
       <source>TOOL OFFSETS</source>
       <translation>CORRECTORES DE HERRAMIENTA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_offsets_view.py" />
+      <source>TOOL SHAPE NOT DEFINED: ONLY THE TOOL NOSE IS CHECKED</source>
+      <translation>FORMA DE LA HERRAMIENTA SIN DEFINIR: SOLO SE COMPRUEBA LA PUNTA</translation>
     </message>
     <message>
       <location filename="app/offsets/tool_offsets_view.py" />
@@ -11984,29 +11944,9 @@
       <translation>sin forma</translation>
     </message>
     <message>
-      <location filename="app/offsets/tool_shapes_view.py" />
-      <source>ASSUMED: {names}</source>
-      <translation>SUPUESTO: {names}</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/tool_shapes_view.py" />
-      <source>IMPOSSIBLE TOOL SHAPE</source>
-      <translation>FORMA DE HERRAMIENTA IMPOSIBLE</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/tool_shapes_view.py" />
-      <source>NONE</source>
-      <translation>NINGUNO</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/tool_shapes_view.py" />
-      <source>SHAPE OF T{number}</source>
-      <translation>FORMA DE T{number}</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/tool_shapes_view.py" />
-      <source>TOOL SHAPE NOT DEFINED: ONLY THE TOOL NOSE IS CHECKED</source>
-      <translation>FORMA DE LA HERRAMIENTA SIN DEFINIR: SOLO SE COMPRUEBA LA PUNTA</translation>
+      <location filename="app/offsets/zero_offsets.py" />
+      <source>0 (from the machine file)</source>
+      <translation>0 (del archivo de máquina)</translation>
     </message>
     <message>
       <location filename="app/offsets/zero_offsets.py" />
@@ -12015,8 +11955,43 @@
     </message>
     <message>
       <location filename="app/offsets/zero_offsets.py" />
+      <source>F2: set the current axis position to the typed value</source>
+      <translation>F2: fijar la posición actual del eje al valor escrito</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/zero_offsets.py" />
       <source>F2: set the current position to the typed value        C: clear G54 to G59        Esc: exit</source>
       <translation>F2: fijar la posición actual al valor escrito        C: borrar G54 a G59        Esc: salir</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/zero_offsets.py" />
+      <source>F2: set the current tip position to the typed value</source>
+      <translation>F2: fijar la posición actual de la punta al valor escrito</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/zero_offsets.py" />
+      <source>F3: activate preset</source>
+      <translation>F3: activar preset</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/zero_offsets.py" />
+      <source>POINT 1 STORED. TOUCH SAME EDGE AT ANOTHER POINT, PRESS F2</source>
+      <translation>PUNTO 1 GUARDADO. TOQUE LA MISMA ARISTA EN OTRO PUNTO Y PULSE F2</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/zero_offsets.py" />
+      <source>POINTS LESS THAN 1 MM APART. TOUCH FARTHER ALONG THE EDGE</source>
+      <translation>PUNTOS A MENOS DE 1 MM. TOQUE MÁS LEJOS EN LA ARISTA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/zero_offsets.py" />
+      <source>PRESET {number} IS NOT SET. TOUCH IT OFF OR TYPE ITS VALUES</source>
+      <translation>EL PRESET {number} ESTÁ SIN DEFINIR. PÁLPELO O ESCRIBA SUS VALORES</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/zero_offsets.py" />
+      <source>PRESETS  ·  WORKPIECE ZERO IN MACHINE COORDINATES, MM AND DEGREES</source>
+      <translation>PRESETS  ·  CERO DE LA PIEZA EN COORDENADAS DE MÁQUINA, MM Y GRADOS</translation>
     </message>
     <message>
       <location filename="app/offsets/zero_offsets.py" />
@@ -12027,6 +12002,16 @@
       <location filename="app/offsets/zero_offsets.py" />
       <source>PROGRAM RUNNING. CHANGE G54 TO G59 ONLY BETWEEN CYCLES</source>
       <translation>PROGRAMA EN MARCHA. CAMBIE G54 A G59 SOLO ENTRE CICLOS</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/zero_offsets.py" />
+      <source>Press F2 at two points on an edge to set ROT so that the edge has the typed angle</source>
+      <translation>Pulse F2 en dos puntos de una arista para fijar ROT de modo que la arista tenga el ángulo escrito</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/zero_offsets.py" />
+      <source>SELECT X, Y, Z, A ROTARY AXIS OR ROT. F2: TOUCH OFF</source>
+      <translation>ELIJA X, Y, Z, UN EJE ROTATIVO O ROT. F2: PALPAR</translation>
     </message>
     <message>
       <location filename="app/offsets/zero_offsets.py" />
@@ -12050,8 +12035,23 @@
     </message>
     <message>
       <location filename="app/offsets/zero_offsets.py" />
+      <source>active preset: {preset}</source>
+      <translation>preset activo: {preset}</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/zero_offsets.py" />
       <source>all zero offsets cleared with the C key</source>
       <translation>todos los decalajes de origen borrados con la tecla C</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/zero_offsets.py" />
+      <source>edge angle set to {value}</source>
+      <translation>ángulo de arista fijado a {value}</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/zero_offsets.py" />
+      <source>position set to {value}</source>
+      <translation>posición fijada a {value}</translation>
     </message>
     <message>
       <location filename="app/part/part_sheet.py" />
@@ -12659,36 +12659,6 @@
       <translation>{count} programas</translation>
     </message>
     <message>
-      <location filename="app/programs/folder_chooser.py" />
-      <source>FOLDER</source>
-      <translation>CARPETA</translation>
-    </message>
-    <message>
-      <location filename="app/programs/folder_chooser.py" />
-      <source>LOCATIONS</source>
-      <translation>UBICACIONES</translation>
-    </message>
-    <message>
-      <location filename="app/programs/folder_chooser.py" />
-      <source>NAME</source>
-      <translation>NOMBRE</translation>
-    </message>
-    <message>
-      <location filename="app/programs/folder_chooser.py" />
-      <source>READ-ONLY</source>
-      <translation>SOLO LECTURA</translation>
-    </message>
-    <message>
-      <location filename="app/programs/folder_chooser.py" />
-      <source>SIZE</source>
-      <translation>TAMAÑO</translation>
-    </message>
-    <message>
-      <location filename="app/programs/folder_chooser.py" />
-      <source>THIS CONTROL</source>
-      <translation>ESTE CONTROL</translation>
-    </message>
-    <message>
       <location filename="app/programs/import_export.py" />
       <source>COPIED AND VERIFIED: {count}. YOU CAN REMOVE THE USB STICK</source>
       <translation>COPIADOS Y VERIFICADOS: {count}. YA PUEDE RETIRAR LA MEMORIA USB</translation>
@@ -12799,11 +12769,6 @@
       <translation>{target} NO SE REEMPLAZÓ. NO SE PUEDE GUARDAR SU VERSIÓN ANTERIOR: {error}</translation>
     </message>
     <message>
-      <location filename="app/programs/preview.py" />
-      <source>TOO LARGE FOR A PREVIEW</source>
-      <translation>DEMASIADO GRANDE PARA LA VISTA PREVIA</translation>
-    </message>
-    <message>
       <location filename="app/programs/program_list.py" />
       <source>BEST</source>
       <translation>MEJOR</translation>
@@ -12837,6 +12802,11 @@
       <location filename="app/programs/program_list.py" />
       <source>LAST RUN</source>
       <translation>ÚLTIMA CORRIDA</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_list.py" />
+      <source>NAME</source>
+      <translation>NOMBRE</translation>
     </message>
     <message>
       <location filename="app/programs/program_list.py" />
@@ -12877,6 +12847,11 @@
       <location filename="app/programs/program_list.py" />
       <source>RENAME</source>
       <translation>NOMBRAR</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_list.py" />
+      <source>SIZE</source>
+      <translation>TAMAÑO</translation>
     </message>
     <message>
       <location filename="app/programs/program_list.py" />
@@ -12934,6 +12909,11 @@
       <translation>FECHA</translation>
     </message>
     <message>
+      <location filename="app/programs/program_rows.py" />
+      <source>TOO LARGE FOR A PREVIEW</source>
+      <translation>DEMASIADO GRANDE PARA LA VISTA PREVIA</translation>
+    </message>
+    <message>
       <location filename="app/programs/programs_view.py" />
       <source>DETAILS</source>
       <translation>DETALLES</translation>
@@ -12947,6 +12927,26 @@
       <location filename="app/programs/programs_view.py" />
       <source>PREVIEW</source>
       <translation>VISTA PREVIA</translation>
+    </message>
+    <message>
+      <location filename="app/programs/removable_media.py" />
+      <source>FOLDER</source>
+      <translation>CARPETA</translation>
+    </message>
+    <message>
+      <location filename="app/programs/removable_media.py" />
+      <source>LOCATIONS</source>
+      <translation>UBICACIONES</translation>
+    </message>
+    <message>
+      <location filename="app/programs/removable_media.py" />
+      <source>READ-ONLY</source>
+      <translation>SOLO LECTURA</translation>
+    </message>
+    <message>
+      <location filename="app/programs/removable_media.py" />
+      <source>THIS CONTROL</source>
+      <translation>ESTE CONTROL</translation>
     </message>
     <message>
       <location filename="app/programs/removable_media.py" />
@@ -12997,6 +12997,31 @@
       <location filename="app/programs/run_history.py" />
       <source>NOT COUNTED</source>
       <translation>NO CONTADO</translation>
+    </message>
+    <message>
+      <location filename="app/programs/run_history.py" />
+      <source>TARGET REACHED: {count} OF {target} PARTS</source>
+      <translation>META ALCANZADA: {count} DE {target} PIEZAS</translation>
+    </message>
+    <message>
+      <location filename="app/programs/run_history.py" />
+      <source>THIS PART REACHES THE TARGET. CYCLE REPEAT IS NOW OFF</source>
+      <translation>CON ESTA PIEZA SE ALCANZA LA META. REPETIR CICLO QUEDA APAGADO</translation>
+    </message>
+    <message>
+      <location filename="app/programs/run_history.py" />
+      <source>part count of {program}: {before} → 0</source>
+      <translation>cuenta de piezas de {program}: {before} → 0</translation>
+    </message>
+    <message>
+      <location filename="app/programs/run_history.py" />
+      <source>part count of {program}: {count} → {count2}</source>
+      <translation>cuenta de piezas de {program}: {count} → {count2}</translation>
+    </message>
+    <message>
+      <location filename="app/programs/run_history.py" />
+      <source>part target of {program}: {before} → {target}</source>
+      <translation>meta de piezas de {program}: {before} → {target}</translation>
     </message>
     <message>
       <location filename="app/programs/run_history.py" />
@@ -13252,36 +13277,6 @@
       <location filename="app/scope/scope_sheets.py" />
       <source>enter the number of the program line as a whole number, 1 or more</source>
       <translation>escriba el número de la línea del programa como número entero, 1 o más</translation>
-    </message>
-    <message>
-      <location filename="app/scope/scope_trigger.py" />
-      <source>A PROGRAM LINE STARTS</source>
-      <translation>EMPIEZA UNA LÍNEA DEL PROGRAMA</translation>
-    </message>
-    <message>
-      <location filename="app/scope/scope_trigger.py" />
-      <source>ALARM OR E-STOP</source>
-      <translation>ALARMA O PARO DE EMERGENCIA</translation>
-    </message>
-    <message>
-      <location filename="app/scope/scope_trigger.py" />
-      <source>OFF: CURVES KEEP UPDATING</source>
-      <translation>APAGADO: LAS CURVAS SE SIGUEN ACTUALIZANDO</translation>
-    </message>
-    <message>
-      <location filename="app/scope/scope_trigger.py" />
-      <source>SIGNAL EXCEEDS ± LEVEL</source>
-      <translation>LA SEÑAL SUPERA ± NIVEL</translation>
-    </message>
-    <message>
-      <location filename="app/scope/scope_trigger.py" />
-      <source>SIGNAL FALLS BELOW LEVEL</source>
-      <translation>LA SEÑAL BAJA DEL NIVEL</translation>
-    </message>
-    <message>
-      <location filename="app/scope/scope_trigger.py" />
-      <source>SIGNAL RISES ABOVE LEVEL</source>
-      <translation>LA SEÑAL SUPERA EL NIVEL</translation>
     </message>
     <message>
       <location filename="app/scope/scope_view.py" />
@@ -13579,34 +13574,34 @@
       <translation>ventana de {ms} ms</translation>
     </message>
     <message>
-      <location filename="app/screen/alarm_panels.py" />
-      <source>ALARMS AND STOPS  ·  ESC: CLOSE  ·  CTRL+ARROWS: SELECT  ·  SHIFT+F10: SHOW SCOPE RECORD</source>
-      <translation>ALARMAS Y PAROS  ·  ESC: CERRAR  ·  CTRL+FLECHAS: SELECCIONAR  ·  MAYÚS+F10: REGISTRO DEL OSCILOSCOPIO</translation>
+      <location filename="app/scope/time_window.py" />
+      <source>A PROGRAM LINE STARTS</source>
+      <translation>EMPIEZA UNA LÍNEA DEL PROGRAMA</translation>
     </message>
     <message>
-      <location filename="app/screen/alarm_panels.py" />
-      <source>CAUSES, MOST LIKELY FIRST</source>
-      <translation>CAUSAS, LA MÁS PROBABLE PRIMERO</translation>
+      <location filename="app/scope/time_window.py" />
+      <source>ALARM OR E-STOP</source>
+      <translation>ALARMA O PARO DE EMERGENCIA</translation>
     </message>
     <message>
-      <location filename="app/screen/alarm_panels.py" />
-      <source>No alarms or stops yet.</source>
-      <translation>Todavía no hay alarmas ni paros.</translation>
+      <location filename="app/scope/time_window.py" />
+      <source>OFF: CURVES KEEP UPDATING</source>
+      <translation>APAGADO: LAS CURVAS SE SIGUEN ACTUALIZANDO</translation>
     </message>
     <message>
-      <location filename="app/screen/alarm_panels.py" />
-      <source>OTHER ALARMS: {number}</source>
-      <translation>OTRAS ALARMAS: {number}</translation>
+      <location filename="app/scope/time_window.py" />
+      <source>SIGNAL EXCEEDS ± LEVEL</source>
+      <translation>LA SEÑAL SUPERA ± NIVEL</translation>
     </message>
     <message>
-      <location filename="app/screen/alarm_panels.py" />
-      <source>WHAT TO DO</source>
-      <translation>QUÉ HACER</translation>
+      <location filename="app/scope/time_window.py" />
+      <source>SIGNAL FALLS BELOW LEVEL</source>
+      <translation>LA SEÑAL BAJA DEL NIVEL</translation>
     </message>
     <message>
-      <location filename="app/screen/alarm_panels.py" />
-      <source>line {line}</source>
-      <translation>línea {line}</translation>
+      <location filename="app/scope/time_window.py" />
+      <source>SIGNAL RISES ABOVE LEVEL</source>
+      <translation>LA SEÑAL SUPERA EL NIVEL</translation>
     </message>
     <message>
       <location filename="app/screen/entry_panel.py" />
@@ -13624,49 +13619,19 @@
       <translation>TECLADO NUMÉRICO</translation>
     </message>
     <message>
-      <location filename="app/screen/language.py" />
-      <source>catalog turndesk_{language}.qm not found in {folder}</source>
-      <translation>no se encontró el catálogo turndesk_{language}.qm en {folder}</translation>
-    </message>
-    <message>
-      <location filename="app/screen/letter_keys.py" />
+      <location filename="app/screen/entry_panel.py" />
       <source>SPACE</source>
       <translation>ESPACIO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/look.py" />
+      <source>catalog turndesk_{language}.qm not found in {folder}</source>
+      <translation>no se encontró el catálogo turndesk_{language}.qm en {folder}</translation>
     </message>
     <message>
       <location filename="app/screen/main_menu.py" />
       <source>PRESS A FUNCTION KEY OR TAP A PAGE. ESC: AUTOMATIC</source>
       <translation>PULSE UNA TECLA DE FUNCIÓN O TOQUE UNA PÁGINA. ESC: AUTOMÁTICO</translation>
-    </message>
-    <message>
-      <location filename="app/screen/main_window.py" />
-      <source>KIOSK MODE: SHUT DOWN THE COMPUTER TO CLOSE TURNDESK</source>
-      <translation>MODO QUIOSCO: PARA CERRAR TURNDESK, APAGUE LA COMPUTADORA</translation>
-    </message>
-    <message>
-      <location filename="app/screen/main_window.py" />
-      <source>PROGRAM RUNNING. STOP IT AND PRESS R FIRST</source>
-      <translation>PROGRAMA EN MARCHA. PÁRELO Y PULSE R PRIMERO</translation>
-    </message>
-    <message>
-      <location filename="app/screen/main_window.py" />
-      <source>SCREEN FROZE {seconds} S. KEYS IGNORED. WAIT 1 S, PRESS AGAIN</source>
-      <translation>PANTALLA CONGELADA {seconds} S. TECLAS IGNORADAS. ESPERE 1 S Y PULSE DE NUEVO</translation>
-    </message>
-    <message>
-      <location filename="app/screen/main_window.py" />
-      <source>{key} CANNOT BE ENTERED IN THIS FIELD</source>
-      <translation>{key} NO SE PUEDE ESCRIBIR EN ESTE CAMPO</translation>
-    </message>
-    <message>
-      <location filename="app/screen/main_window.py" />
-      <source>{key} HAS NO FUNCTION ON THIS PAGE</source>
-      <translation>{key} NO TIENE FUNCIÓN EN ESTA PÁGINA</translation>
-    </message>
-    <message>
-      <location filename="app/screen/main_window.py" />
-      <source>{key} WORKS ON THE AUTOMATIC PAGE: PRESS F1, THEN F2</source>
-      <translation>{key} SIRVE EN LA PÁGINA AUTOMÁTICO: PULSE F1 Y LUEGO F2</translation>
     </message>
     <message>
       <location filename="app/screen/page_table.py" />
@@ -13819,192 +13784,252 @@
       <translation>{title}  ·  INICIO: LÍNEA ACTUAL</translation>
     </message>
     <message>
-      <location filename="app/screen/readout_panels.py" />
-      <source>ACTUAL</source>
-      <translation>REAL</translation>
-    </message>
-    <message>
-      <location filename="app/screen/readout_panels.py" />
-      <source>AND {alarms_count} MORE</source>
-      <translation>Y {alarms_count} MÁS</translation>
-    </message>
-    <message>
-      <location filename="app/screen/readout_panels.py" />
-      <source>FEED {override}</source>
-      <translation>AVANCE {override}</translation>
-    </message>
-    <message>
-      <location filename="app/screen/readout_panels.py" />
-      <source>LAST KNOWN</source>
-      <translation>ÚLTIMO CONOCIDO</translation>
-    </message>
-    <message>
-      <location filename="app/screen/readout_panels.py" />
-      <source>PRESS E-STOP</source>
-      <translation>PULSE PARO DE EMERGENCIA</translation>
-    </message>
-    <message>
-      <location filename="app/screen/readout_panels.py" />
-      <source>SPINDLE MAY BE TURNING</source>
-      <translation>PUEDE ESTAR GIRANDO</translation>
-    </message>
-    <message>
-      <location filename="app/screen/readout_panels.py" />
-      <source>SPINDLE {override}</source>
-      <translation>HUSILLO {override}</translation>
-    </message>
-    <message>
-      <location filename="app/screen/readout_panels.py" />
-      <source>STOP {number}: {first}</source>
-      <translation>PARO {number}: {first}</translation>
-    </message>
-    <message>
-      <location filename="app/screen/readout_panels.py" />
-      <source>SWITCH: OFF</source>
-      <translation>INTERR. OFF</translation>
-    </message>
-    <message>
-      <location filename="app/screen/row_panel.py" />
-      <source>NEXT ROWS</source>
-      <translation>FILAS SIGUIENTES</translation>
-    </message>
-    <message>
-      <location filename="app/screen/row_panel.py" />
-      <source>PREVIOUS ROWS</source>
-      <translation>FILAS ANTERIORES</translation>
-    </message>
-    <message>
       <location filename="app/screen/run_screen.py" />
       <source>SCREEN FAULT (MACHINE OK): {name}: {error}</source>
       <translation>FALLA DE LA PANTALLA (MÁQUINA OK): {name}: {error}</translation>
     </message>
     <message>
-      <location filename="app/screen/station_dock.py" />
+      <location filename="app/screen/sheet_panel.py" />
+      <source>NEXT ROWS</source>
+      <translation>FILAS SIGUIENTES</translation>
+    </message>
+    <message>
+      <location filename="app/screen/sheet_panel.py" />
+      <source>PREVIOUS ROWS</source>
+      <translation>FILAS ANTERIORES</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/alarm_panels.py" />
+      <source>ALARMS AND STOPS  ·  ESC: CLOSE  ·  CTRL+ARROWS: SELECT  ·  SHIFT+F10: SHOW SCOPE RECORD</source>
+      <translation>ALARMAS Y PAROS  ·  ESC: CERRAR  ·  CTRL+FLECHAS: SELECCIONAR  ·  MAYÚS+F10: REGISTRO DEL OSCILOSCOPIO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/alarm_panels.py" />
+      <source>CAUSES, MOST LIKELY FIRST</source>
+      <translation>CAUSAS, LA MÁS PROBABLE PRIMERO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/alarm_panels.py" />
+      <source>No alarms or stops yet.</source>
+      <translation>Todavía no hay alarmas ni paros.</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/alarm_panels.py" />
+      <source>OTHER ALARMS: {number}</source>
+      <translation>OTRAS ALARMAS: {number}</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/alarm_panels.py" />
+      <source>WHAT TO DO</source>
+      <translation>QUÉ HACER</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/alarm_panels.py" />
+      <source>line {line}</source>
+      <translation>línea {line}</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/main_window.py" />
+      <source>KIOSK MODE: SHUT DOWN THE COMPUTER TO CLOSE TURNDESK</source>
+      <translation>MODO QUIOSCO: PARA CERRAR TURNDESK, APAGUE LA COMPUTADORA</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/main_window.py" />
+      <source>PROGRAM RUNNING. STOP IT AND PRESS R FIRST</source>
+      <translation>PROGRAMA EN MARCHA. PÁRELO Y PULSE R PRIMERO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/main_window.py" />
+      <source>SCREEN FROZE {seconds} S. KEYS IGNORED. WAIT 1 S, PRESS AGAIN</source>
+      <translation>PANTALLA CONGELADA {seconds} S. TECLAS IGNORADAS. ESPERE 1 S Y PULSE DE NUEVO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/main_window.py" />
+      <source>{key} CANNOT BE ENTERED IN THIS FIELD</source>
+      <translation>{key} NO SE PUEDE ESCRIBIR EN ESTE CAMPO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/main_window.py" />
+      <source>{key} HAS NO FUNCTION ON THIS PAGE</source>
+      <translation>{key} NO TIENE FUNCIÓN EN ESTA PÁGINA</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/main_window.py" />
+      <source>{key} WORKS ON THE AUTOMATIC PAGE: PRESS F1, THEN F2</source>
+      <translation>{key} SIRVE EN LA PÁGINA AUTOMÁTICO: PULSE F1 Y LUEGO F2</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/readout_panels.py" />
+      <source>ACTUAL</source>
+      <translation>REAL</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/readout_panels.py" />
+      <source>AND {alarms_count} MORE</source>
+      <translation>Y {alarms_count} MÁS</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/readout_panels.py" />
+      <source>FEED {override}</source>
+      <translation>AVANCE {override}</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/readout_panels.py" />
+      <source>LAST KNOWN</source>
+      <translation>ÚLTIMO CONOCIDO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/readout_panels.py" />
+      <source>PRESS E-STOP</source>
+      <translation>PULSE PARO DE EMERGENCIA</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/readout_panels.py" />
+      <source>SPINDLE MAY BE TURNING</source>
+      <translation>PUEDE ESTAR GIRANDO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/readout_panels.py" />
+      <source>SPINDLE {override}</source>
+      <translation>HUSILLO {override}</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/readout_panels.py" />
+      <source>STOP {number}: {first}</source>
+      <translation>PARO {number}: {first}</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/readout_panels.py" />
+      <source>SWITCH: OFF</source>
+      <translation>INTERR. OFF</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/station_dock.py" />
       <source>CYCLE START</source>
       <translation>ARRANQUE DE CICLO</translation>
     </message>
     <message>
-      <location filename="app/screen/station_dock.py" />
+      <location filename="app/screen/window/station_dock.py" />
       <source>CYCLE START: BOTH BUTTONS</source>
       <translation>ARRANQUE CICLO: AMBOS</translation>
     </message>
     <message>
-      <location filename="app/screen/station_dock.py" />
+      <location filename="app/screen/window/station_dock.py" />
       <source>CYCLE START: TAP F11, F12</source>
       <translation>ARRANQUE: UNO Y OTRO</translation>
     </message>
     <message>
-      <location filename="app/screen/station_dock.py" />
+      <location filename="app/screen/window/station_dock.py" />
       <source>FEED RATE</source>
       <translation>AVANCE</translation>
     </message>
     <message>
-      <location filename="app/screen/station_dock.py" />
+      <location filename="app/screen/window/station_dock.py" />
       <source>OPERATOR STATION</source>
       <translation>ESTACIÓN DEL OPERADOR</translation>
     </message>
     <message>
-      <location filename="app/screen/station_dock.py" />
+      <location filename="app/screen/window/station_dock.py" />
       <source>OUT</source>
       <translation>Y SUELTE</translation>
     </message>
     <message>
-      <location filename="app/screen/station_dock.py" />
+      <location filename="app/screen/window/station_dock.py" />
       <source>PAUSE</source>
       <translation>PAUSA</translation>
     </message>
     <message>
-      <location filename="app/screen/station_dock.py" />
+      <location filename="app/screen/window/station_dock.py" />
       <source>PRESSED</source>
       <translation>PULSADO</translation>
     </message>
     <message>
-      <location filename="app/screen/station_dock.py" />
+      <location filename="app/screen/window/station_dock.py" />
       <source>SCR LOCK</source>
       <translation>BLOQ DES</translation>
     </message>
     <message>
-      <location filename="app/screen/station_dock.py" />
+      <location filename="app/screen/window/station_dock.py" />
       <source>SPINDLE SPEED</source>
       <translation>VEL. HUSILLO</translation>
     </message>
     <message>
-      <location filename="app/screen/station_dock.py" />
+      <location filename="app/screen/window/station_dock.py" />
       <source>SPINDLE SWITCH</source>
       <translation>INTERRUPTOR HUSILLO</translation>
     </message>
     <message>
-      <location filename="app/screen/station_dock.py" />
+      <location filename="app/screen/window/station_dock.py" />
       <source>STOP</source>
       <translation>PARO</translation>
     </message>
     <message>
-      <location filename="app/screen/station_dock.py" />
+      <location filename="app/screen/window/station_dock.py" />
       <source>TWIST</source>
       <translation>GIRE</translation>
     </message>
     <message>
-      <location filename="app/screen/window_bars.py" />
+      <location filename="app/screen/window/window_bars.py" />
       <source>FUNCTION KEYS</source>
       <translation>TECLAS DE FUNCIÓN</translation>
     </message>
     <message>
-      <location filename="app/screen/window_bars.py" />
+      <location filename="app/screen/window/window_bars.py" />
       <source>LAMPS</source>
       <translation>LÁMPARAS</translation>
     </message>
     <message>
-      <location filename="app/screen/window_bars.py" />
+      <location filename="app/screen/window/window_bars.py" />
       <source>STARTING</source>
       <translation>ARRANCANDO</translation>
     </message>
     <message>
-      <location filename="app/screen/window_frame.py" />
+      <location filename="app/screen/window/window_frame.py" />
       <source>CYCLE</source>
       <translation>CICLO</translation>
     </message>
     <message>
-      <location filename="app/screen/window_frame.py" />
+      <location filename="app/screen/window/window_frame.py" />
       <source>FROM LINE 1</source>
       <translation>LÍNEA 1</translation>
     </message>
     <message>
-      <location filename="app/screen/window_frame.py" />
+      <location filename="app/screen/window/window_frame.py" />
       <source>LAST</source>
       <translation>ÚLTIMO</translation>
     </message>
     <message>
-      <location filename="app/screen/window_frame.py" />
+      <location filename="app/screen/window/window_frame.py" />
       <source>LEFT</source>
       <translation>FALTA</translation>
     </message>
     <message>
-      <location filename="app/screen/window_frame.py" />
+      <location filename="app/screen/window/window_frame.py" />
       <source>NO SCOPE RECORD: ONLY ALARMS AND E-STOPS ARE RECORDED</source>
       <translation>SIN REGISTRO: SÓLO SE REGISTRAN ALARMAS Y PAROS DE EMERGENCIA</translation>
     </message>
     <message>
-      <location filename="app/screen/window_frame.py" />
+      <location filename="app/screen/window/window_frame.py" />
       <source>NOT SAVED</source>
       <translation>SIN GUARDAR</translation>
     </message>
     <message>
-      <location filename="app/screen/window_frame.py" />
+      <location filename="app/screen/window/window_frame.py" />
       <source>NOT SAVED YET: {what}. DO NOT EXIT TURNDESK NOW</source>
       <translation>AÚN SIN GUARDAR: {what}. NO SALGA DE TURNDESK AHORA</translation>
     </message>
     <message>
-      <location filename="app/screen/window_frame.py" />
+      <location filename="app/screen/window/window_frame.py" />
       <source>PARTS  ·  TIME</source>
       <translation>PIEZAS  ·  TIEMPO</translation>
     </message>
     <message>
-      <location filename="app/screen/window_frame.py" />
+      <location filename="app/screen/window/window_frame.py" />
       <source>TOOL  ·  OFFSET</source>
       <translation>HERRAMIENTA  ·  CORRECTOR</translation>
     </message>
     <message>
-      <location filename="app/screen/window_frame.py" />
+      <location filename="app/screen/window/window_frame.py" />
       <source>{start} TO CONTINUE</source>
       <translation>{start} PARA CONTINUAR</translation>
     </message>
@@ -14484,64 +14509,174 @@
       <translation>{size} KB</translation>
     </message>
     <message>
-      <location filename="app/special/drive_status.py" />
-      <source>ALLOWED</source>
-      <translation>PERMITIDO</translation>
+      <location filename="app/special/counters.py" />
+      <source>ACTIVE JOB HAS ITS OWN COUNT. CHANGE IT IN JOBS (SHIFT+F6)</source>
+      <translation>EL TRABAJO ACTIVO TIENE SU CUENTA. CÁMBIELA EN TRABAJOS (MAYÚS+F6)</translation>
     </message>
     <message>
-      <location filename="app/special/drive_status.py" />
-      <source>DEMAND</source>
-      <translation>CONSIGNA</translation>
+      <location filename="app/special/counters.py" />
+      <source>CHOOSE A PROGRAM FIRST: EVERY PROGRAM HAS ITS OWN COUNT</source>
+      <translation>ELIJA PRIMERO UN PROGRAMA: CADA PROGRAMA TIENE SU PROPIA CUENTA</translation>
     </message>
     <message>
-      <location filename="app/special/drive_status.py" />
-      <source>DRIVE STATUS</source>
-      <translation>ESTADO DE SERVOS</translation>
+      <location filename="app/special/counters.py" />
+      <source>Cycle Repeat turns off during the cycle that reaches the part target. Enter 0 for no part target.</source>
+      <translation>Repetir ciclo se apaga durante el ciclo que alcanza la meta de piezas. Escriba 0 para no tener meta de piezas.</translation>
     </message>
     <message>
-      <location filename="app/special/drive_status.py" />
-      <source>DRIVE STATUS  ·  {unit}  ·  {method}</source>
-      <translation>ESTADO DE SERVOS  ·  {unit}  ·  {method}</translation>
+      <location filename="app/special/counters.py" />
+      <source>MINUTES</source>
+      <translation>MINUTOS</translation>
     </message>
     <message>
-      <location filename="app/special/drive_status.py" />
-      <source>F7: ALARMS WITH CAUSE AND REMEDY   ESC: BACK TO THE LIST</source>
-      <translation>F7: ALARMAS CON CAUSA Y REMEDIO   ESC: VOLVER A LA LISTA</translation>
+      <location filename="app/special/counters.py" />
+      <source>NEW INSERT IN T{number}? OLD INSERT USED: {words}. Y: YES   N: NO</source>
+      <translation>¿PLAQUITA NUEVA EN T{number}? USO DE LA VIEJA: {words}. Y: SÍ   N: NO</translation>
     </message>
     <message>
-      <location filename="app/special/drive_status.py" />
-      <source>FAULT</source>
-      <translation>FALLA</translation>
+      <location filename="app/special/counters.py" />
+      <source>NO TARGET</source>
+      <translation>SIN META</translation>
     </message>
     <message>
-      <location filename="app/special/drive_status.py" />
-      <source>Largest following error since startup: {largest}</source>
-      <translation>Mayor error de seguimiento desde el arranque: {largest}</translation>
+      <location filename="app/special/counters.py" />
+      <source>NO TOOL HAS OFFSETS YET</source>
+      <translation>AÚN NO HAY HERRAMIENTAS CON CORRECTOR</translation>
     </message>
     <message>
-      <location filename="app/special/drive_status.py" />
-      <source>POSITIONS FROM HOME, X AS A RADIUS</source>
-      <translation>POSICIONES DESDE LA REFERENCIA, X EN RADIO</translation>
+      <location filename="app/special/counters.py" />
+      <source>Only time at feed counts toward the tool-life minutes. Enter 0 for no limit. STOP: no new part starts once the tool life is used up.</source>
+      <translation>Solo el tiempo en avance cuenta para los minutos de vida. Escriba 0 para no tener límite. PARO: no empieza otra pieza al agotarse la vida de la herramienta.</translation>
     </message>
     <message>
-      <location filename="app/special/drive_status.py" />
-      <source>POWER</source>
-      <translation>POTENCIA</translation>
+      <location filename="app/special/counters.py" />
+      <source>PART TARGET</source>
+      <translation>META DE PIEZAS</translation>
     </message>
     <message>
-      <location filename="app/special/drive_status.py" />
-      <source>The setpoint queue ran low {underruns} times</source>
-      <translation>La cola de consignas quedó corta {underruns} veces</translation>
+      <location filename="app/special/counters.py" />
+      <source>PARTS COUNTER</source>
+      <translation>CONTADOR DE PIEZAS</translation>
     </message>
     <message>
-      <location filename="app/special/drive_status.py" />
-      <source>power, home, following error, faults</source>
-      <translation>potencia, referencia, error, fallas</translation>
+      <location filename="app/special/counters.py" />
+      <source>PARTS MADE</source>
+      <translation>PIEZAS HECHAS</translation>
+    </message>
+    <message>
+      <location filename="app/special/counters.py" />
+      <source>PARTS TO GO</source>
+      <translation>PIEZAS POR HACER</translation>
+    </message>
+    <message>
+      <location filename="app/special/counters.py" />
+      <source>PRESS Y TO SET THE COUNT TO ZERO, N TO KEEP IT</source>
+      <translation>PULSE Y PARA PONER LA CUENTA EN CERO, N PARA CONSERVARLA</translation>
+    </message>
+    <message>
+      <location filename="app/special/counters.py" />
+      <source>REMAINING</source>
+      <translation>RESTANTE</translation>
+    </message>
+    <message>
+      <location filename="app/special/counters.py" />
+      <source>STOP AT HOW MANY PARTS?</source>
+      <translation>¿PARAR EN CUÁNTAS PIEZAS?</translation>
+    </message>
+    <message>
+      <location filename="app/special/counters.py" />
+      <source>TARGET TOO LOW: {count} PARTS ALREADY MADE. F4: RESET COUNT</source>
+      <translation>META DEMASIADO BAJA: YA SE HICIERON {count} PIEZAS. F4: PONER LA CUENTA EN CERO</translation>
+    </message>
+    <message>
+      <location filename="app/special/counters.py" />
+      <source>THE COUNT IS ALREADY ZERO</source>
+      <translation>LA CUENTA YA ESTÁ EN CERO</translation>
+    </message>
+    <message>
+      <location filename="app/special/counters.py" />
+      <source>TIME FOR REMAINING PARTS</source>
+      <translation>TIEMPO PARA LAS PIEZAS POR HACER</translation>
+    </message>
+    <message>
+      <location filename="app/special/counters.py" />
+      <source>TYPE THE LIFE LIMIT. F2: NEXT LIMIT   F4: NEW INSERT</source>
+      <translation>ESCRIBA EL LÍMITE DE VIDA. F2: OTRO LÍMITE   F4: PLAQUITA NUEVA</translation>
+    </message>
+    <message>
+      <location filename="app/special/counters.py" />
+      <source>TYPE THE NUMBER OF PARTS   ENTER: ACCEPT   ESC: BACK</source>
+      <translation>ESCRIBA EL NÚMERO DE PIEZAS   ENTER: ACEPTAR   ESC: VOLVER</translation>
+    </message>
+    <message>
+      <location filename="app/special/counters.py" />
+      <source>T{number} tool life: {limit_parts} parts, {minutes}, warn at {warn}</source>
+      <translation>vida de T{number}: {limit_parts} piezas, {minutes}, aviso al {warn}</translation>
+    </message>
+    <message>
+      <location filename="app/special/counters.py" />
+      <source>Use NO COUNT for dry runs; the cycle is then not counted as a part. A restart that skips lines is not counted either.</source>
+      <translation>Use SIN CONT en las marchas en vacío; el ciclo entonces no se cuenta como pieza. Tampoco se cuenta un rearranque que omite líneas.</translation>
+    </message>
+    <message>
+      <location filename="app/special/counters.py" />
+      <source>WARN</source>
+      <translation>AVISO</translation>
+    </message>
+    <message>
+      <location filename="app/special/counters.py" />
+      <source>WARN AT %</source>
+      <translation>AVISAR AL %</translation>
+    </message>
+    <message>
+      <location filename="app/special/counters.py" />
+      <source>insert life in parts and minutes</source>
+      <translation>vida de plaquita en piezas y minutos</translation>
+    </message>
+    <message>
+      <location filename="app/special/counters.py" />
+      <source>no stop at end of tool life</source>
+      <translation>sin paro al agotarse la vida de la herramienta</translation>
+    </message>
+    <message>
+      <location filename="app/special/counters.py" />
+      <source>parts made, target, times</source>
+      <translation>piezas hechas, meta, tiempos</translation>
+    </message>
+    <message>
+      <location filename="app/special/counters.py" />
+      <source>{count} (SET BY JOB)</source>
+      <translation>{count} (SEGÚN EL TRABAJO)</translation>
+    </message>
+    <message>
+      <location filename="app/special/counters.py" />
+      <source>{count} parts</source>
+      <translation>{count} piezas</translation>
+    </message>
+    <message>
+      <location filename="app/special/counters.py" />
+      <source>{limit_seconds} min</source>
+      <translation>{limit_seconds} min</translation>
+    </message>
+    <message>
+      <location filename="app/special/counters.py" />
+      <source>{value} is not a valid number of parts; enter a whole number from 0 to {maximum}</source>
+      <translation>{value} no es un número de piezas válido; escriba un entero de 0 a {maximum}</translation>
+    </message>
+    <message>
+      <location filename="app/special/counters.py" />
+      <source>{value} is not a valid number of parts; type a whole number</source>
+      <translation>{value} no es un número de piezas válido; escriba un entero</translation>
     </message>
     <message>
       <location filename="app/special/inputs_outputs.py" />
       <source>ALARM</source>
       <translation>ALARMA</translation>
+    </message>
+    <message>
+      <location filename="app/special/inputs_outputs.py" />
+      <source>ALLOWED</source>
+      <translation>PERMITIDO</translation>
     </message>
     <message>
       <location filename="app/special/inputs_outputs.py" />
@@ -14560,6 +14695,21 @@
     </message>
     <message>
       <location filename="app/special/inputs_outputs.py" />
+      <source>DEMAND</source>
+      <translation>CONSIGNA</translation>
+    </message>
+    <message>
+      <location filename="app/special/inputs_outputs.py" />
+      <source>DRIVE STATUS</source>
+      <translation>ESTADO DE SERVOS</translation>
+    </message>
+    <message>
+      <location filename="app/special/inputs_outputs.py" />
+      <source>DRIVE STATUS  ·  {unit}  ·  {method}</source>
+      <translation>ESTADO DE SERVOS  ·  {unit}  ·  {method}</translation>
+    </message>
+    <message>
+      <location filename="app/special/inputs_outputs.py" />
       <source>ENTER OR TAP: SWITCH SIMULATED INPUT   F4: NEXT LIST</source>
       <translation>ENTER O TOQUE: CONMUTAR ENTRADA SIMULADA   F4: LISTA SIGUIENTE</translation>
     </message>
@@ -14567,6 +14717,16 @@
       <location filename="app/special/inputs_outputs.py" />
       <source>F4: NEXT LIST   ESC: BACK TO THE LIST OF FUNCTIONS</source>
       <translation>F4: LISTA SIGUIENTE   ESC: VOLVER A LA LISTA DE FUNCIONES</translation>
+    </message>
+    <message>
+      <location filename="app/special/inputs_outputs.py" />
+      <source>F7: ALARMS WITH CAUSE AND REMEDY   ESC: BACK TO THE LIST</source>
+      <translation>F7: ALARMAS CON CAUSA Y REMEDIO   ESC: VOLVER A LA LISTA</translation>
+    </message>
+    <message>
+      <location filename="app/special/inputs_outputs.py" />
+      <source>FAULT</source>
+      <translation>FALLA</translation>
     </message>
     <message>
       <location filename="app/special/inputs_outputs.py" />
@@ -14585,6 +14745,11 @@
     </message>
     <message>
       <location filename="app/special/inputs_outputs.py" />
+      <source>Largest following error since startup: {largest}</source>
+      <translation>Mayor error de seguimiento desde el arranque: {largest}</translation>
+    </message>
+    <message>
+      <location filename="app/special/inputs_outputs.py" />
       <source>MACHINE LAMPS</source>
       <translation>LÁMPARAS DE LA MÁQUINA</translation>
     </message>
@@ -14592,6 +14757,16 @@
       <location filename="app/special/inputs_outputs.py" />
       <source>ONLY OUTPUTS CAN BE SWITCHED. F4: SHOW OUTPUTS</source>
       <translation>SÓLO SE PUEDEN CONMUTAR LAS SALIDAS. F4: MOSTRAR SALIDAS</translation>
+    </message>
+    <message>
+      <location filename="app/special/inputs_outputs.py" />
+      <source>POSITIONS FROM HOME, X AS A RADIUS</source>
+      <translation>POSICIONES DESDE LA REFERENCIA, X EN RADIO</translation>
+    </message>
+    <message>
+      <location filename="app/special/inputs_outputs.py" />
+      <source>POWER</source>
+      <translation>POTENCIA</translation>
     </message>
     <message>
       <location filename="app/special/inputs_outputs.py" />
@@ -14635,6 +14810,11 @@
     </message>
     <message>
       <location filename="app/special/inputs_outputs.py" />
+      <source>The setpoint queue ran low {underruns} times</source>
+      <translation>La cola de consignas quedó corta {underruns} veces</translation>
+    </message>
+    <message>
+      <location filename="app/special/inputs_outputs.py" />
       <source>live signals, manual outputs, lamps</source>
       <translation>señales en vivo, salidas a mano, lámparas</translation>
     </message>
@@ -14647,6 +14827,11 @@
       <location filename="app/special/inputs_outputs.py" />
       <source>output {name} switched on by hand</source>
       <translation>salida {name} encendida a mano</translation>
+    </message>
+    <message>
+      <location filename="app/special/inputs_outputs.py" />
+      <source>power, home, following error, faults</source>
+      <translation>potencia, referencia, error, fallas</translation>
     </message>
     <message>
       <location filename="app/special/inputs_outputs.py" />
@@ -14749,404 +14934,344 @@
       <translation>volumen del sonido: {before} → {volume} %, en silencio: {silent}</translation>
     </message>
     <message>
-      <location filename="app/special/logged_events.py" />
-      <source>EVENT LOG</source>
-      <translation>BITÁCORA</translation>
-    </message>
-    <message>
-      <location filename="app/special/logged_events.py" />
-      <source>EVENT LOG  ·  {filter}  ·  {value}</source>
-      <translation>BITÁCORA  ·  {filter}  ·  {value}</translation>
-    </message>
-    <message>
-      <location filename="app/special/logged_events.py" />
-      <source>F4: SEARCH   F5: FILTER   PAGE UP/DOWN: SCROLL   ESC: BACK</source>
-      <translation>F4: BUSCAR   F5: FILTRO   RE PÁG/AV PÁG: DESPLAZAR   ESC: VOLVER</translation>
-    </message>
-    <message>
-      <location filename="app/special/logged_events.py" />
-      <source>FILTER</source>
-      <translation>FILTRO</translation>
-    </message>
-    <message>
-      <location filename="app/special/logged_events.py" />
-      <source>OPERATOR</source>
-      <translation>OPERADOR</translation>
-    </message>
-    <message>
-      <location filename="app/special/logged_events.py" />
-      <source>RUNS</source>
-      <translation>CORRIDAS</translation>
-    </message>
-    <message>
-      <location filename="app/special/logged_events.py" />
-      <source>SEARCH FOR?</source>
-      <translation>¿BUSCAR?</translation>
-    </message>
-    <message>
-      <location filename="app/special/logged_events.py" />
-      <source>THE LAST {value} EVENTS</source>
-      <translation>LOS ÚLTIMOS {value} EVENTOS</translation>
-    </message>
-    <message>
-      <location filename="app/special/logged_events.py" />
-      <source>TYPE THE SEARCH TEXT   ENTER: ACCEPT   ESC: CLEAR</source>
-      <translation>ESCRIBA EL TEXTO DE BÚSQUEDA   ENTER: ACEPTAR   ESC: BORRAR</translation>
-    </message>
-    <message>
-      <location filename="app/special/logged_events.py" />
-      <source>event history with times and a search function</source>
-      <translation>historial de eventos con hora y búsqueda</translation>
-    </message>
-    <message>
-      <location filename="app/special/logged_events.py" />
-      <source>{count} EVENTS</source>
-      <translation>{count} EVENTOS</translation>
-    </message>
-    <message>
-      <location filename="app/special/machine_file_acceptance.py" />
+      <location filename="app/special/machine_records.py" />
       <source>ACCEPT</source>
       <translation>ACEPTAR</translation>
     </message>
     <message>
-      <location filename="app/special/machine_file_acceptance.py" />
+      <location filename="app/special/machine_records.py" />
       <source>ACCEPTED: THE DRIVES CAN BE SWITCHED ON</source>
       <translation>ACEPTADO: SE PUEDEN ENCENDER LOS SERVOS</translation>
     </message>
     <message>
-      <location filename="app/special/machine_file_acceptance.py" />
+      <location filename="app/special/machine_records.py" />
       <source>ARROWS: SCROLL THE CHANGES   F2: ACCEPT ALL   ESC: BACK</source>
       <translation>FLECHAS: RECORRER LOS CAMBIOS   F2: ACEPTAR TODOS   ESC: VOLVER</translation>
     </message>
     <message>
-      <location filename="app/special/machine_file_acceptance.py" />
+      <location filename="app/special/machine_records.py" />
+      <source>EVENT LOG</source>
+      <translation>BITÁCORA</translation>
+    </message>
+    <message>
+      <location filename="app/special/machine_records.py" />
+      <source>EVENT LOG  ·  {filter}  ·  {value}</source>
+      <translation>BITÁCORA  ·  {filter}  ·  {value}</translation>
+    </message>
+    <message>
+      <location filename="app/special/machine_records.py" />
+      <source>F4: SEARCH   F5: FILTER   PAGE UP/DOWN: SCROLL   ESC: BACK</source>
+      <translation>F4: BUSCAR   F5: FILTRO   RE PÁG/AV PÁG: DESPLAZAR   ESC: VOLVER</translation>
+    </message>
+    <message>
+      <location filename="app/special/machine_records.py" />
+      <source>FILTER</source>
+      <translation>FILTRO</translation>
+    </message>
+    <message>
+      <location filename="app/special/machine_records.py" />
       <source>MACHINE FILE</source>
       <translation>ARCHIVO DE MÁQUINA</translation>
     </message>
     <message>
-      <location filename="app/special/machine_file_acceptance.py" />
+      <location filename="app/special/machine_records.py" />
       <source>MACHINE FILE  ·  {source}</source>
       <translation>ARCHIVO DE MÁQUINA  ·  {source}</translation>
     </message>
     <message>
-      <location filename="app/special/machine_file_acceptance.py" />
+      <location filename="app/special/machine_records.py" />
       <source>No changes since the machine file was accepted.</source>
       <translation>Sin cambios desde que se aceptó el archivo de máquina.</translation>
     </message>
     <message>
-      <location filename="app/special/machine_file_acceptance.py" />
+      <location filename="app/special/machine_records.py" />
+      <source>OPERATOR</source>
+      <translation>OPERADOR</translation>
+    </message>
+    <message>
+      <location filename="app/special/machine_records.py" />
       <source>PRESS Y TO ACCEPT THE MACHINE FILE AS IT IS NOW, N TO CANCEL</source>
       <translation>PULSE Y PARA ACEPTAR EL ARCHIVO DE MÁQUINA COMO ESTÁ, N PARA CANCELAR</translation>
     </message>
     <message>
-      <location filename="app/special/machine_file_acceptance.py" />
+      <location filename="app/special/machine_records.py" />
       <source>Press F2 to accept; the drives stay off until then.</source>
       <translation>Pulse F2 para aceptar; hasta entonces los servos siguen apagados.</translation>
     </message>
     <message>
-      <location filename="app/special/machine_file_acceptance.py" />
+      <location filename="app/special/machine_records.py" />
+      <source>RUNS</source>
+      <translation>CORRIDAS</translation>
+    </message>
+    <message>
+      <location filename="app/special/machine_records.py" />
+      <source>SEARCH FOR?</source>
+      <translation>¿BUSCAR?</translation>
+    </message>
+    <message>
+      <location filename="app/special/machine_records.py" />
+      <source>THE LAST {value} EVENTS</source>
+      <translation>LOS ÚLTIMOS {value} EVENTOS</translation>
+    </message>
+    <message>
+      <location filename="app/special/machine_records.py" />
       <source>TURN DRIVES OFF BEFORE ACCEPTING THE CHANGED MACHINE FILE</source>
       <translation>APAGUE LOS SERVOS ANTES DE ACEPTAR EL ARCHIVO DE MÁQUINA</translation>
     </message>
     <message>
-      <location filename="app/special/machine_file_acceptance.py" />
+      <location filename="app/special/machine_records.py" />
+      <source>TYPE THE SEARCH TEXT   ENTER: ACCEPT   ESC: CLEAR</source>
+      <translation>ESCRIBA EL TEXTO DE BÚSQUEDA   ENTER: ACEPTAR   ESC: BORRAR</translation>
+    </message>
+    <message>
+      <location filename="app/special/machine_records.py" />
       <source>changes in the machine file since the file was last accepted</source>
       <translation>cambios en el archivo de máquina desde su última aceptación</translation>
     </message>
     <message>
-      <location filename="app/special/mill_setup.py" />
-      <source>BLK FORM  {b}</source>
-      <translation>BLK FORM  {b}</translation>
+      <location filename="app/special/machine_records.py" />
+      <source>event history with times and a search function</source>
+      <translation>historial de eventos con hora y búsqueda</translation>
     </message>
     <message>
-      <location filename="app/special/mill_setup.py" />
-      <source>ROT {rotation}°</source>
-      <translation>ROT {rotation}°</translation>
+      <location filename="app/special/machine_records.py" />
+      <source>{count} EVENTS</source>
+      <translation>{count} EVENTOS</translation>
     </message>
     <message>
-      <location filename="app/special/mill_setup.py" />
-      <source>no tool name in the tool table</source>
-      <translation>sin nombre de herramienta en la tabla</translation>
-    </message>
-    <message>
-      <location filename="app/special/mill_setup.py" />
-      <source>stock not specified because the program has no BLK FORM</source>
-      <translation>material en bruto sin especificar porque el programa no tiene BLK FORM</translation>
-    </message>
-    <message>
-      <location filename="app/special/mill_setup.py" />
-      <source>teeth</source>
-      <translation>dientes</translation>
-    </message>
-    <message>
-      <location filename="app/special/part_count.py" />
-      <source>TARGET REACHED: {count} OF {target} PARTS</source>
-      <translation>META ALCANZADA: {count} DE {target} PIEZAS</translation>
-    </message>
-    <message>
-      <location filename="app/special/part_count.py" />
-      <source>THIS PART REACHES THE TARGET. CYCLE REPEAT IS NOW OFF</source>
-      <translation>CON ESTA PIEZA SE ALCANZA LA META. REPETIR CICLO QUEDA APAGADO</translation>
-    </message>
-    <message>
-      <location filename="app/special/part_count.py" />
-      <source>part count of {program}: {before} → 0</source>
-      <translation>cuenta de piezas de {program}: {before} → 0</translation>
-    </message>
-    <message>
-      <location filename="app/special/part_count.py" />
-      <source>part count of {program}: {count} → {count2}</source>
-      <translation>cuenta de piezas de {program}: {count} → {count2}</translation>
-    </message>
-    <message>
-      <location filename="app/special/part_count.py" />
-      <source>part target of {program}: {before} → {target}</source>
-      <translation>meta de piezas de {program}: {before} → {target}</translation>
-    </message>
-    <message>
-      <location filename="app/special/parts_counter.py" />
-      <source>ACTIVE JOB HAS ITS OWN COUNT. CHANGE IT IN JOBS (SHIFT+F6)</source>
-      <translation>EL TRABAJO ACTIVO TIENE SU CUENTA. CÁMBIELA EN TRABAJOS (MAYÚS+F6)</translation>
-    </message>
-    <message>
-      <location filename="app/special/parts_counter.py" />
-      <source>CHOOSE A PROGRAM FIRST: EVERY PROGRAM HAS ITS OWN COUNT</source>
-      <translation>ELIJA PRIMERO UN PROGRAMA: CADA PROGRAMA TIENE SU PROPIA CUENTA</translation>
-    </message>
-    <message>
-      <location filename="app/special/parts_counter.py" />
-      <source>Cycle Repeat turns off during the cycle that reaches the part target. Enter 0 for no part target.</source>
-      <translation>Repetir ciclo se apaga durante el ciclo que alcanza la meta de piezas. Escriba 0 para no tener meta de piezas.</translation>
-    </message>
-    <message>
-      <location filename="app/special/parts_counter.py" />
-      <source>NO TARGET</source>
-      <translation>SIN META</translation>
-    </message>
-    <message>
-      <location filename="app/special/parts_counter.py" />
-      <source>PART TARGET</source>
-      <translation>META DE PIEZAS</translation>
-    </message>
-    <message>
-      <location filename="app/special/parts_counter.py" />
-      <source>PARTS COUNTER</source>
-      <translation>CONTADOR DE PIEZAS</translation>
-    </message>
-    <message>
-      <location filename="app/special/parts_counter.py" />
-      <source>PARTS MADE</source>
-      <translation>PIEZAS HECHAS</translation>
-    </message>
-    <message>
-      <location filename="app/special/parts_counter.py" />
-      <source>PARTS TO GO</source>
-      <translation>PIEZAS POR HACER</translation>
-    </message>
-    <message>
-      <location filename="app/special/parts_counter.py" />
-      <source>PRESS Y TO SET THE COUNT TO ZERO, N TO KEEP IT</source>
-      <translation>PULSE Y PARA PONER LA CUENTA EN CERO, N PARA CONSERVARLA</translation>
-    </message>
-    <message>
-      <location filename="app/special/parts_counter.py" />
-      <source>STOP AT HOW MANY PARTS?</source>
-      <translation>¿PARAR EN CUÁNTAS PIEZAS?</translation>
-    </message>
-    <message>
-      <location filename="app/special/parts_counter.py" />
-      <source>TARGET TOO LOW: {count} PARTS ALREADY MADE. F4: RESET COUNT</source>
-      <translation>META DEMASIADO BAJA: YA SE HICIERON {count} PIEZAS. F4: PONER LA CUENTA EN CERO</translation>
-    </message>
-    <message>
-      <location filename="app/special/parts_counter.py" />
-      <source>THE COUNT IS ALREADY ZERO</source>
-      <translation>LA CUENTA YA ESTÁ EN CERO</translation>
-    </message>
-    <message>
-      <location filename="app/special/parts_counter.py" />
-      <source>TIME FOR REMAINING PARTS</source>
-      <translation>TIEMPO PARA LAS PIEZAS POR HACER</translation>
-    </message>
-    <message>
-      <location filename="app/special/parts_counter.py" />
-      <source>TYPE THE NUMBER OF PARTS   ENTER: ACCEPT   ESC: BACK</source>
-      <translation>ESCRIBA EL NÚMERO DE PIEZAS   ENTER: ACEPTAR   ESC: VOLVER</translation>
-    </message>
-    <message>
-      <location filename="app/special/parts_counter.py" />
-      <source>Use NO COUNT for dry runs; the cycle is then not counted as a part. A restart that skips lines is not counted either.</source>
-      <translation>Use SIN CONT en las marchas en vacío; el ciclo entonces no se cuenta como pieza. Tampoco se cuenta un rearranque que omite líneas.</translation>
-    </message>
-    <message>
-      <location filename="app/special/parts_counter.py" />
-      <source>parts made, target, times</source>
-      <translation>piezas hechas, meta, tiempos</translation>
-    </message>
-    <message>
-      <location filename="app/special/parts_counter.py" />
-      <source>{count} (SET BY JOB)</source>
-      <translation>{count} (SEGÚN EL TRABAJO)</translation>
-    </message>
-    <message>
-      <location filename="app/special/parts_counter.py" />
-      <source>{value} is not a valid number of parts; enter a whole number from 0 to {maximum}</source>
-      <translation>{value} no es un número de piezas válido; escriba un entero de 0 a {maximum}</translation>
-    </message>
-    <message>
-      <location filename="app/special/preferences.py" />
-      <source>COLORS</source>
-      <translation>COLORES</translation>
-    </message>
-    <message>
-      <location filename="app/special/preferences.py" />
-      <source>DARK</source>
-      <translation>OSCURO</translation>
-    </message>
-    <message>
-      <location filename="app/special/preferences.py" />
-      <source>DISPLAY UNITS</source>
-      <translation>UNIDADES MOSTRADAS</translation>
-    </message>
-    <message>
-      <location filename="app/special/preferences.py" />
-      <source>Display units change only the values shown; entries are always in the control's unit.</source>
-      <translation>Las unidades mostradas cambian sólo los valores que se ven; lo que se escribe va siempre en la unidad del control.</translation>
-    </message>
-    <message>
-      <location filename="app/special/preferences.py" />
-      <source>ENGLISH</source>
-      <translation>ENGLISH</translation>
-    </message>
-    <message>
-      <location filename="app/special/preferences.py" />
-      <source>ENTER OR TAP: NEXT CHOICE   ESC: BACK TO THE LIST</source>
-      <translation>ENTER O TOQUE: OPCIÓN SIGUIENTE   ESC: VOLVER A LA LISTA</translation>
-    </message>
-    <message>
-      <location filename="app/special/preferences.py" />
-      <source>ESPAÑOL</source>
-      <translation>ESPAÑOL</translation>
-    </message>
-    <message>
-      <location filename="app/special/preferences.py" />
-      <source>FIRST JOB CARD</source>
-      <translation>TARJETA DEL PRIMER TRABAJO</translation>
-    </message>
-    <message>
-      <location filename="app/special/preferences.py" />
-      <source>FULL SCREEN</source>
-      <translation>PANTALLA COMPLETA</translation>
-    </message>
-    <message>
-      <location filename="app/special/preferences.py" />
-      <source>HIDDEN</source>
-      <translation>OCULTA</translation>
-    </message>
-    <message>
-      <location filename="app/special/preferences.py" />
-      <source>LANGUAGE</source>
-      <translation>IDIOMA</translation>
-    </message>
-    <message>
-      <location filename="app/special/preferences.py" />
-      <source>LIGHT</source>
-      <translation>CLARO</translation>
-    </message>
-    <message>
-      <location filename="app/special/preferences.py" />
-      <source>NOT AVAILABLE: THIS MACHINE HAS A REAL OPERATOR STATION</source>
-      <translation>NO DISPONIBLE: ESTA MÁQUINA TIENE ESTACIÓN DEL OPERADOR REAL</translation>
-    </message>
-    <message>
-      <location filename="app/special/preferences.py" />
-      <source>ON-SCREEN OPERATOR STATION</source>
-      <translation>ESTACIÓN DEL OPERADOR EN PANTALLA</translation>
-    </message>
-    <message>
-      <location filename="app/special/preferences.py" />
-      <source>ON-SCREEN PALM BUTTONS</source>
-      <translation>PULSADORES EN PANTALLA</translation>
-    </message>
-    <message>
-      <location filename="app/special/preferences.py" />
-      <source>PRESS BUTTONS IN SEQUENCE</source>
-      <translation>PULSAR UNO TRAS OTRO</translation>
-    </message>
-    <message>
-      <location filename="app/special/preferences.py" />
-      <source>PRESS BUTTONS TOGETHER</source>
-      <translation>PULSAR LOS DOS A LA VEZ</translation>
-    </message>
-    <message>
-      <location filename="app/special/preferences.py" />
-      <source>RELEASE THE E-STOP (U) BEFORE HIDING THE OPERATOR STATION</source>
-      <translation>SUELTE EL PARO DE EMERGENCIA (U) ANTES DE OCULTAR LA ESTACIÓN DEL OPERADOR</translation>
-    </message>
-    <message>
-      <location filename="app/special/preferences.py" />
-      <source>SCREEN</source>
-      <translation>PANTALLA</translation>
-    </message>
-    <message>
-      <location filename="app/special/preferences.py" />
-      <source>SHOWN</source>
-      <translation>VISIBLE</translation>
-    </message>
-    <message>
-      <location filename="app/special/preferences.py" />
-      <source>SIMULATION ONLY: LATCHED PALM BUTTONS COULD START A REAL SPINDLE</source>
-      <translation>SÓLO EN SIMULACIÓN: PULSADORES RETENIDOS PODRÍAN ARRANCAR UN HUSILLO REAL</translation>
-    </message>
-    <message>
-      <location filename="app/special/preferences.py" />
-      <source>The control is set to inches.</source>
-      <translation>El control está en pulgadas.</translation>
-    </message>
-    <message>
-      <location filename="app/special/preferences.py" />
-      <source>The control is set to millimeters.</source>
-      <translation>El control está en milímetros.</translation>
-    </message>
-    <message>
-      <location filename="app/special/preferences.py" />
-      <source>VALUE IN LARGE READOUT</source>
-      <translation>VALOR EN LA LECTURA GRANDE</translation>
-    </message>
-    <message>
-      <location filename="app/special/preferences.py" />
-      <source>WINDOW</source>
-      <translation>VENTANA</translation>
-    </message>
-    <message>
-      <location filename="app/special/preferences.py" />
-      <source>units, language, operator station, window</source>
-      <translation>unidades, idioma, estación del operador, ventana</translation>
-    </message>
-    <message>
-      <location filename="app/special/r_parameters.py" />
+      <location filename="app/special/operator_settings.py" />
       <source>A parameter without a value is treated as 0, and a warning is shown.</source>
       <translation>Un parámetro sin valor se trata como 0 y aparece un aviso.</translation>
     </message>
     <message>
-      <location filename="app/special/r_parameters.py" />
+      <location filename="app/special/operator_settings.py" />
+      <source>ACTIVE LIMIT</source>
+      <translation>TOPE ACTIVO</translation>
+    </message>
+    <message>
+      <location filename="app/special/operator_settings.py" />
+      <source>COLORS</source>
+      <translation>COLORES</translation>
+    </message>
+    <message>
+      <location filename="app/special/operator_settings.py" />
+      <source>COMMANDED SPEED</source>
+      <translation>VELOCIDAD ORDENADA</translation>
+    </message>
+    <message>
+      <location filename="app/special/operator_settings.py" />
+      <source>DARK</source>
+      <translation>OSCURO</translation>
+    </message>
+    <message>
+      <location filename="app/special/operator_settings.py" />
+      <source>DISPLAY UNITS</source>
+      <translation>UNIDADES MOSTRADAS</translation>
+    </message>
+    <message>
+      <location filename="app/special/operator_settings.py" />
+      <source>Display units change only the values shown; entries are always in the control's unit.</source>
+      <translation>Las unidades mostradas cambian sólo los valores que se ven; lo que se escribe va siempre en la unidad del control.</translation>
+    </message>
+    <message>
+      <location filename="app/special/operator_settings.py" />
+      <source>ENGLISH</source>
+      <translation>ENGLISH</translation>
+    </message>
+    <message>
+      <location filename="app/special/operator_settings.py" />
+      <source>ENTER OR TAP: NEXT CHOICE   ESC: BACK TO THE LIST</source>
+      <translation>ENTER O TOQUE: OPCIÓN SIGUIENTE   ESC: VOLVER A LA LISTA</translation>
+    </message>
+    <message>
+      <location filename="app/special/operator_settings.py" />
+      <source>ESPAÑOL</source>
+      <translation>ESPAÑOL</translation>
+    </message>
+    <message>
+      <location filename="app/special/operator_settings.py" />
       <source>Every SINUMERIK program starts with these values. Values that the program assigns apply until the program ends.</source>
       <translation>Todo programa SINUMERIK empieza con estos valores. Los valores que asigna el programa valen hasta que el programa termina.</translation>
     </message>
     <message>
-      <location filename="app/special/r_parameters.py" />
+      <location filename="app/special/operator_settings.py" />
+      <source>FIRST JOB CARD</source>
+      <translation>TARJETA DEL PRIMER TRABAJO</translation>
+    </message>
+    <message>
+      <location filename="app/special/operator_settings.py" />
+      <source>FULL SCREEN</source>
+      <translation>PANTALLA COMPLETA</translation>
+    </message>
+    <message>
+      <location filename="app/special/operator_settings.py" />
+      <source>HIDDEN</source>
+      <translation>OCULTA</translation>
+    </message>
+    <message>
+      <location filename="app/special/operator_settings.py" />
+      <source>If a program commands a higher speed, the spindle runs at the limit.</source>
+      <translation>Si un programa pide más velocidad, el husillo gira al tope.</translation>
+    </message>
+    <message>
+      <location filename="app/special/operator_settings.py" />
+      <source>LANGUAGE</source>
+      <translation>IDIOMA</translation>
+    </message>
+    <message>
+      <location filename="app/special/operator_settings.py" />
+      <source>LIGHT</source>
+      <translation>CLARO</translation>
+    </message>
+    <message>
+      <location filename="app/special/operator_settings.py" />
+      <source>MACHINE MAXIMUM</source>
+      <translation>MÁXIMO DE LA MÁQUINA</translation>
+    </message>
+    <message>
+      <location filename="app/special/operator_settings.py" />
+      <source>MAXIMUM SPINDLE SPEED</source>
+      <translation>VELOCIDAD MÁXIMA DEL HUSILLO</translation>
+    </message>
+    <message>
+      <location filename="app/special/operator_settings.py" />
+      <source>MAXIMUM SPINDLE SPEED?</source>
+      <translation>¿VELOCIDAD MÁXIMA DEL HUSILLO?</translation>
+    </message>
+    <message>
+      <location filename="app/special/operator_settings.py" />
+      <source>MEASURED SPEED</source>
+      <translation>VELOCIDAD MEDIDA</translation>
+    </message>
+    <message>
+      <location filename="app/special/operator_settings.py" />
+      <source>NO LIMIT</source>
+      <translation>SIN TOPE</translation>
+    </message>
+    <message>
+      <location filename="app/special/operator_settings.py" />
+      <source>NO SPINDLE SPEED LIMIT IS ACTIVE</source>
+      <translation>NO HAY TOPE DE VELOCIDAD DEL HUSILLO ACTIVO</translation>
+    </message>
+    <message>
+      <location filename="app/special/operator_settings.py" />
+      <source>NOT AVAILABLE: THIS MACHINE HAS A REAL OPERATOR STATION</source>
+      <translation>NO DISPONIBLE: ESTA MÁQUINA TIENE ESTACIÓN DEL OPERADOR REAL</translation>
+    </message>
+    <message>
+      <location filename="app/special/operator_settings.py" />
+      <source>ON-SCREEN OPERATOR STATION</source>
+      <translation>ESTACIÓN DEL OPERADOR EN PANTALLA</translation>
+    </message>
+    <message>
+      <location filename="app/special/operator_settings.py" />
+      <source>ON-SCREEN PALM BUTTONS</source>
+      <translation>PULSADORES EN PANTALLA</translation>
+    </message>
+    <message>
+      <location filename="app/special/operator_settings.py" />
+      <source>PRESS BUTTONS IN SEQUENCE</source>
+      <translation>PULSAR UNO TRAS OTRO</translation>
+    </message>
+    <message>
+      <location filename="app/special/operator_settings.py" />
+      <source>PRESS BUTTONS TOGETHER</source>
+      <translation>PULSAR LOS DOS A LA VEZ</translation>
+    </message>
+    <message>
+      <location filename="app/special/operator_settings.py" />
+      <source>PRESS Y TO REMOVE THE LIMIT, N TO KEEP IT</source>
+      <translation>PULSE Y PARA QUITAR EL TOPE, N PARA CONSERVARLO</translation>
+    </message>
+    <message>
+      <location filename="app/special/operator_settings.py" />
       <source>PROGRAM RUNNING. CHANGE R PARAMETERS BETWEEN CYCLES</source>
       <translation>PROGRAMA EN MARCHA. CAMBIE LOS PARÁMETROS R ENTRE CICLOS</translation>
     </message>
     <message>
-      <location filename="app/special/r_parameters.py" />
+      <location filename="app/special/operator_settings.py" />
       <source>R PARAMETERS RANGE FROM {low} TO {high}</source>
       <translation>LOS PARÁMETROS R VAN DE {low} A {high}</translation>
     </message>
     <message>
-      <location filename="app/special/r_parameters.py" />
+      <location filename="app/special/operator_settings.py" />
       <source>R0 to R299 of SINUMERIK programs</source>
       <translation>R0 a R299 de los programas SINUMERIK</translation>
+    </message>
+    <message>
+      <location filename="app/special/operator_settings.py" />
+      <source>RELEASE THE E-STOP (U) BEFORE HIDING THE OPERATOR STATION</source>
+      <translation>SUELTE EL PARO DE EMERGENCIA (U) ANTES DE OCULTAR LA ESTACIÓN DEL OPERADOR</translation>
+    </message>
+    <message>
+      <location filename="app/special/operator_settings.py" />
+      <source>SCREEN</source>
+      <translation>PANTALLA</translation>
+    </message>
+    <message>
+      <location filename="app/special/operator_settings.py" />
+      <source>SHOWN</source>
+      <translation>VISIBLE</translation>
+    </message>
+    <message>
+      <location filename="app/special/operator_settings.py" />
+      <source>SIMULATION ONLY: LATCHED PALM BUTTONS COULD START A REAL SPINDLE</source>
+      <translation>SÓLO EN SIMULACIÓN: PULSADORES RETENIDOS PODRÍAN ARRANCAR UN HUSILLO REAL</translation>
+    </message>
+    <message>
+      <location filename="app/special/operator_settings.py" />
+      <source>SPINDLE LIMITED TO {rpm} RPM UNTIL RESTART</source>
+      <translation>HUSILLO LIMITADO A {rpm} RPM HASTA REINICIAR</translation>
+    </message>
+    <message>
+      <location filename="app/special/operator_settings.py" />
+      <source>TYPE A SPEED OR EXPRESSION   ENTER: ACCEPT   ESC: BACK</source>
+      <translation>ESCRIBA UNA VELOCIDAD O UNA OPERACIÓN   ENTER: ACEPTAR   ESC: VOLVER</translation>
+    </message>
+    <message>
+      <location filename="app/special/operator_settings.py" />
+      <source>The control is set to inches.</source>
+      <translation>El control está en pulgadas.</translation>
+    </message>
+    <message>
+      <location filename="app/special/operator_settings.py" />
+      <source>The control is set to millimeters.</source>
+      <translation>El control está en milímetros.</translation>
+    </message>
+    <message>
+      <location filename="app/special/operator_settings.py" />
+      <source>The limit takes effect at once, even while a program runs.</source>
+      <translation>El tope actúa de inmediato, también con un programa en marcha.</translation>
+    </message>
+    <message>
+      <location filename="app/special/operator_settings.py" />
+      <source>VALUE IN LARGE READOUT</source>
+      <translation>VALOR EN LA LECTURA GRANDE</translation>
+    </message>
+    <message>
+      <location filename="app/special/operator_settings.py" />
+      <source>WINDOW</source>
+      <translation>VENTANA</translation>
+    </message>
+    <message>
+      <location filename="app/special/operator_settings.py" />
+      <source>spindle speed limit until restart</source>
+      <translation>tope de velocidad del husillo hasta reiniciar</translation>
+    </message>
+    <message>
+      <location filename="app/special/operator_settings.py" />
+      <source>spindle speed limit: {details}</source>
+      <translation>tope de velocidad del husillo: {details}</translation>
+    </message>
+    <message>
+      <location filename="app/special/operator_settings.py" />
+      <source>units, language, operator station, window</source>
+      <translation>unidades, idioma, estación del operador, ventana</translation>
+    </message>
+    <message>
+      <location filename="app/special/operator_settings.py" />
+      <source>{rpm} rpm is outside the range of this spindle, {low} to {high} rpm</source>
+      <translation>{rpm} rpm está fuera del margen de este husillo, de {low} a {high} rpm</translation>
     </message>
     <message>
       <location filename="app/special/setup_sheet.py" />
@@ -15160,6 +15285,11 @@
     </message>
     <message>
       <location filename="app/special/setup_sheet.py" />
+      <source>BLK FORM  {b}</source>
+      <translation>BLK FORM  {b}</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet.py" />
       <source>CHUCK</source>
       <translation>PLATO</translation>
     </message>
@@ -15167,6 +15297,11 @@
       <location filename="app/special/setup_sheet.py" />
       <source>NOT SET</source>
       <translation>SIN AJUSTAR</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet.py" />
+      <source>ROT {rotation}°</source>
+      <translation>ROT {rotation}°</translation>
     </message>
     <message>
       <location filename="app/special/setup_sheet.py" />
@@ -15197,6 +15332,21 @@
       <location filename="app/special/setup_sheet.py" />
       <source>max. {rpm} rpm</source>
       <translation>máx. {rpm} rpm</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet.py" />
+      <source>no tool name in the tool table</source>
+      <translation>sin nombre de herramienta en la tabla</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet.py" />
+      <source>stock not specified because the program has no BLK FORM</source>
+      <translation>material en bruto sin especificar porque el programa no tiene BLK FORM</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet.py" />
+      <source>teeth</source>
+      <translation>dientes</translation>
     </message>
     <message>
       <location filename="app/special/setup_sheet.py" />
@@ -15344,59 +15494,24 @@
       <translation>herramientas, material, paros, notas; imprimible</translation>
     </message>
     <message>
-      <location filename="app/special/setup_sheet_page.py" />
+      <location filename="app/special/setup_sheet_work.py" />
+      <source>ERRORS</source>
+      <translation>ERRORES</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_work.py" />
       <source>MESSAGE TO THE OPERATOR</source>
       <translation>MENSAJE AL OPERADOR</translation>
     </message>
     <message>
-      <location filename="app/special/setup_sheet_page.py" />
+      <location filename="app/special/setup_sheet_work.py" />
       <source>NOTES</source>
       <translation>NOTAS</translation>
     </message>
     <message>
-      <location filename="app/special/setup_sheet_page.py" />
+      <location filename="app/special/setup_sheet_work.py" />
       <source>None.</source>
       <translation>Ninguna.</translation>
-    </message>
-    <message>
-      <location filename="app/special/setup_sheet_page.py" />
-      <source>SECONDARY AND ZERO OFFSETS</source>
-      <translation>CORRECTORES SECUNDARIOS Y DE CERO</translation>
-    </message>
-    <message>
-      <location filename="app/special/setup_sheet_page.py" />
-      <source>STATION</source>
-      <translation>PUESTO</translation>
-    </message>
-    <message>
-      <location filename="app/special/setup_sheet_page.py" />
-      <source>Section view: the stock is light, the finished part is dark</source>
-      <translation>Sección: el material en bruto en claro, la pieza acabada en oscuro</translation>
-    </message>
-    <message>
-      <location filename="app/special/setup_sheet_page.py" />
-      <source>TIME PER PART</source>
-      <translation>TIEMPO POR PIEZA</translation>
-    </message>
-    <message>
-      <location filename="app/special/setup_sheet_page.py" />
-      <source>X (radius)</source>
-      <translation>X (radio)</translation>
-    </message>
-    <message>
-      <location filename="app/special/setup_sheet_page.py" />
-      <source>features milled by live tools are not shown</source>
-      <translation>lo que fresan las herramientas motorizadas no se muestra</translation>
-    </message>
-    <message>
-      <location filename="app/special/setup_sheet_page.py" />
-      <source>no T word</source>
-      <translation>sin palabra T</translation>
-    </message>
-    <message>
-      <location filename="app/special/setup_sheet_work.py" />
-      <source>ERRORS</source>
-      <translation>ERRORES</translation>
     </message>
     <message>
       <location filename="app/special/setup_sheet_work.py" />
@@ -15405,13 +15520,48 @@
     </message>
     <message>
       <location filename="app/special/setup_sheet_work.py" />
+      <source>SECONDARY AND ZERO OFFSETS</source>
+      <translation>CORRECTORES SECUNDARIOS Y DE CERO</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_work.py" />
+      <source>STATION</source>
+      <translation>PUESTO</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_work.py" />
+      <source>Section view: the stock is light, the finished part is dark</source>
+      <translation>Sección: el material en bruto en claro, la pieza acabada en oscuro</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_work.py" />
       <source>Setup sheet: {program}</source>
       <translation>Hoja de preparación: {program}</translation>
     </message>
     <message>
       <location filename="app/special/setup_sheet_work.py" />
+      <source>TIME PER PART</source>
+      <translation>TIEMPO POR PIEZA</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_work.py" />
       <source>WARNINGS</source>
       <translation>AVISOS</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_work.py" />
+      <source>X (radius)</source>
+      <translation>X (radio)</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_work.py" />
+      <source>features milled by live tools are not shown</source>
+      <translation>lo que fresan las herramientas motorizadas no se muestra</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_work.py" />
+      <source>no T word</source>
+      <translation>sin palabra T</translation>
     </message>
     <message>
       <location filename="app/special/special_functions.py" />
@@ -15429,201 +15579,6 @@
       <translation>TOQUE UNA FUNCIÓN O ESCRIBA SU NÚMERO   ENTER: ABRIR   ESC: VOLVER</translation>
     </message>
     <message>
-      <location filename="app/special/spindle_limit.py" />
-      <source>ACTIVE LIMIT</source>
-      <translation>TOPE ACTIVO</translation>
-    </message>
-    <message>
-      <location filename="app/special/spindle_limit.py" />
-      <source>COMMANDED SPEED</source>
-      <translation>VELOCIDAD ORDENADA</translation>
-    </message>
-    <message>
-      <location filename="app/special/spindle_limit.py" />
-      <source>If a program commands a higher speed, the spindle runs at the limit.</source>
-      <translation>Si un programa pide más velocidad, el husillo gira al tope.</translation>
-    </message>
-    <message>
-      <location filename="app/special/spindle_limit.py" />
-      <source>MACHINE MAXIMUM</source>
-      <translation>MÁXIMO DE LA MÁQUINA</translation>
-    </message>
-    <message>
-      <location filename="app/special/spindle_limit.py" />
-      <source>MAXIMUM SPINDLE SPEED</source>
-      <translation>VELOCIDAD MÁXIMA DEL HUSILLO</translation>
-    </message>
-    <message>
-      <location filename="app/special/spindle_limit.py" />
-      <source>MAXIMUM SPINDLE SPEED?</source>
-      <translation>¿VELOCIDAD MÁXIMA DEL HUSILLO?</translation>
-    </message>
-    <message>
-      <location filename="app/special/spindle_limit.py" />
-      <source>MEASURED SPEED</source>
-      <translation>VELOCIDAD MEDIDA</translation>
-    </message>
-    <message>
-      <location filename="app/special/spindle_limit.py" />
-      <source>NO LIMIT</source>
-      <translation>SIN TOPE</translation>
-    </message>
-    <message>
-      <location filename="app/special/spindle_limit.py" />
-      <source>NO SPINDLE SPEED LIMIT IS ACTIVE</source>
-      <translation>NO HAY TOPE DE VELOCIDAD DEL HUSILLO ACTIVO</translation>
-    </message>
-    <message>
-      <location filename="app/special/spindle_limit.py" />
-      <source>PRESS Y TO REMOVE THE LIMIT, N TO KEEP IT</source>
-      <translation>PULSE Y PARA QUITAR EL TOPE, N PARA CONSERVARLO</translation>
-    </message>
-    <message>
-      <location filename="app/special/spindle_limit.py" />
-      <source>SPINDLE LIMITED TO {rpm} RPM UNTIL RESTART</source>
-      <translation>HUSILLO LIMITADO A {rpm} RPM HASTA REINICIAR</translation>
-    </message>
-    <message>
-      <location filename="app/special/spindle_limit.py" />
-      <source>TYPE A SPEED OR EXPRESSION   ENTER: ACCEPT   ESC: BACK</source>
-      <translation>ESCRIBA UNA VELOCIDAD O UNA OPERACIÓN   ENTER: ACEPTAR   ESC: VOLVER</translation>
-    </message>
-    <message>
-      <location filename="app/special/spindle_limit.py" />
-      <source>The limit takes effect at once, even while a program runs.</source>
-      <translation>El tope actúa de inmediato, también con un programa en marcha.</translation>
-    </message>
-    <message>
-      <location filename="app/special/spindle_limit.py" />
-      <source>spindle speed limit until restart</source>
-      <translation>tope de velocidad del husillo hasta reiniciar</translation>
-    </message>
-    <message>
-      <location filename="app/special/spindle_limit.py" />
-      <source>spindle speed limit: {details}</source>
-      <translation>tope de velocidad del husillo: {details}</translation>
-    </message>
-    <message>
-      <location filename="app/special/spindle_limit.py" />
-      <source>{rpm} rpm is outside the range of this spindle, {low} to {high} rpm</source>
-      <translation>{rpm} rpm está fuera del margen de este husillo, de {low} a {high} rpm</translation>
-    </message>
-    <message>
-      <location filename="app/special/tool_life_function.py" />
-      <source>MINUTES</source>
-      <translation>MINUTOS</translation>
-    </message>
-    <message>
-      <location filename="app/special/tool_life_function.py" />
-      <source>NEW INSERT IN T{number}? OLD INSERT USED: {words}. Y: YES   N: NO</source>
-      <translation>¿PLAQUITA NUEVA EN T{number}? USO DE LA VIEJA: {words}. Y: SÍ   N: NO</translation>
-    </message>
-    <message>
-      <location filename="app/special/tool_life_function.py" />
-      <source>NO TOOL HAS OFFSETS YET</source>
-      <translation>AÚN NO HAY HERRAMIENTAS CON CORRECTOR</translation>
-    </message>
-    <message>
-      <location filename="app/special/tool_life_function.py" />
-      <source>Only time at feed counts toward the tool-life minutes. Enter 0 for no limit. STOP: no new part starts once the tool life is used up.</source>
-      <translation>Solo el tiempo en avance cuenta para los minutos de vida. Escriba 0 para no tener límite. PARO: no empieza otra pieza al agotarse la vida de la herramienta.</translation>
-    </message>
-    <message>
-      <location filename="app/special/tool_life_function.py" />
-      <source>REMAINING</source>
-      <translation>RESTANTE</translation>
-    </message>
-    <message>
-      <location filename="app/special/tool_life_function.py" />
-      <source>TYPE THE LIFE LIMIT. F2: NEXT LIMIT   F4: NEW INSERT</source>
-      <translation>ESCRIBA EL LÍMITE DE VIDA. F2: OTRO LÍMITE   F4: PLAQUITA NUEVA</translation>
-    </message>
-    <message>
-      <location filename="app/special/tool_life_function.py" />
-      <source>T{number} tool life: {limit_parts} parts, {minutes}, warn at {warn}</source>
-      <translation>vida de T{number}: {limit_parts} piezas, {minutes}, aviso al {warn}</translation>
-    </message>
-    <message>
-      <location filename="app/special/tool_life_function.py" />
-      <source>WARN</source>
-      <translation>AVISO</translation>
-    </message>
-    <message>
-      <location filename="app/special/tool_life_function.py" />
-      <source>WARN AT %</source>
-      <translation>AVISAR AL %</translation>
-    </message>
-    <message>
-      <location filename="app/special/tool_life_function.py" />
-      <source>insert life in parts and minutes</source>
-      <translation>vida de plaquita en piezas y minutos</translation>
-    </message>
-    <message>
-      <location filename="app/special/tool_life_function.py" />
-      <source>no stop at end of tool life</source>
-      <translation>sin paro al agotarse la vida de la herramienta</translation>
-    </message>
-    <message>
-      <location filename="app/special/tool_life_function.py" />
-      <source>{count} parts</source>
-      <translation>{count} piezas</translation>
-    </message>
-    <message>
-      <location filename="app/special/tool_life_function.py" />
-      <source>{limit_seconds} min</source>
-      <translation>{limit_seconds} min</translation>
-    </message>
-    <message>
-      <location filename="app/special/tool_life_function.py" />
-      <source>{value} is not a valid number of parts; type a whole number</source>
-      <translation>{value} no es un número de piezas válido; escriba un entero</translation>
-    </message>
-    <message>
-      <location filename="app/transfer/serial_settings.py" />
-      <source>BITS, PARITY, STOP BITS</source>
-      <translation>BITS, PARIDAD, BITS DE PARADA</translation>
-    </message>
-    <message>
-      <location filename="app/transfer/serial_settings.py" />
-      <source>CR LF</source>
-      <translation>CR LF</translation>
-    </message>
-    <message>
-      <location filename="app/transfer/serial_settings.py" />
-      <source>DC CODES</source>
-      <translation>CÓDIGOS DC</translation>
-    </message>
-    <message>
-      <location filename="app/transfer/serial_settings.py" />
-      <source>FLOW CONTROL</source>
-      <translation>CONTROL DE FLUJO</translation>
-    </message>
-    <message>
-      <location filename="app/transfer/serial_settings.py" />
-      <source>LEADING NULS</source>
-      <translation>NULOS INICIALES</translation>
-    </message>
-    <message>
-      <location filename="app/transfer/serial_settings.py" />
-      <source>LINE ENDING</source>
-      <translation>FIN DE LÍNEA</translation>
-    </message>
-    <message>
-      <location filename="app/transfer/serial_settings.py" />
-      <source>PORT</source>
-      <translation>PUERTO</translation>
-    </message>
-    <message>
-      <location filename="app/transfer/serial_settings.py" />
-      <source>SEND ONLY AFTER DC1</source>
-      <translation>ENVIAR SOLO TRAS DC1</translation>
-    </message>
-    <message>
-      <location filename="app/transfer/serial_settings.py" />
-      <source>START/END CHARACTER</source>
-      <translation>CARÁCTER DE INICIO Y FIN</translation>
-    </message>
-    <message>
       <location filename="app/transfer/serial_transfer.py" />
       <source>1 ERROR</source>
       <translation>1 ERROR</translation>
@@ -15637,6 +15592,11 @@
       <location filename="app/transfer/serial_transfer.py" />
       <source>7 BITS, EVEN PARITY (DETECTED)</source>
       <translation>7 BITS, PARIDAD PAR (DETECTADO)</translation>
+    </message>
+    <message>
+      <location filename="app/transfer/serial_transfer.py" />
+      <source>BITS, PARITY, STOP BITS</source>
+      <translation>BITS, PARIDAD, BITS DE PARADA</translation>
     </message>
     <message>
       <location filename="app/transfer/serial_transfer.py" />
@@ -15660,6 +15620,16 @@
     </message>
     <message>
       <location filename="app/transfer/serial_transfer.py" />
+      <source>CR LF</source>
+      <translation>CR LF</translation>
+    </message>
+    <message>
+      <location filename="app/transfer/serial_transfer.py" />
+      <source>DC CODES</source>
+      <translation>CÓDIGOS DC</translation>
+    </message>
+    <message>
+      <location filename="app/transfer/serial_transfer.py" />
       <source>ENTER: CHANGE VALUE   F4: SEND LOADED PROGRAM   F5: RECEIVE</source>
       <translation>ENTER: CAMBIAR VALOR   F4: ENVIAR PROGRAMA CARGADO   F5: RECIBIR</translation>
     </message>
@@ -15680,6 +15650,11 @@
     </message>
     <message>
       <location filename="app/transfer/serial_transfer.py" />
+      <source>FLOW CONTROL</source>
+      <translation>CONTROL DE FLUJO</translation>
+    </message>
+    <message>
+      <location filename="app/transfer/serial_transfer.py" />
       <source>INCOMING DATA</source>
       <translation>DATOS ENTRANTES</translation>
     </message>
@@ -15687,6 +15662,16 @@
       <location filename="app/transfer/serial_transfer.py" />
       <source>INCOMING DATA IS NOT TEXT: CHECK BAUD RATE, BITS AND PARITY</source>
       <translation>LO QUE LLEGA NO ES TEXTO: REVISE BAUDIOS, BITS Y PARIDAD</translation>
+    </message>
+    <message>
+      <location filename="app/transfer/serial_transfer.py" />
+      <source>LEADING NULS</source>
+      <translation>NULOS INICIALES</translation>
+    </message>
+    <message>
+      <location filename="app/transfer/serial_transfer.py" />
+      <source>LINE ENDING</source>
+      <translation>FIN DE LÍNEA</translation>
     </message>
     <message>
       <location filename="app/transfer/serial_transfer.py" />
@@ -15722,6 +15707,11 @@
       <location filename="app/transfer/serial_transfer.py" />
       <source>NOTHING SAVED: {why}</source>
       <translation>NO SE GUARDÓ NADA: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/transfer/serial_transfer.py" />
+      <source>PORT</source>
+      <translation>PUERTO</translation>
     </message>
     <message>
       <location filename="app/transfer/serial_transfer.py" />
@@ -15765,6 +15755,11 @@
     </message>
     <message>
       <location filename="app/transfer/serial_transfer.py" />
+      <source>SEND ONLY AFTER DC1</source>
+      <translation>ENVIAR SOLO TRAS DC1</translation>
+    </message>
+    <message>
+      <location filename="app/transfer/serial_transfer.py" />
       <source>SENDING</source>
       <translation>ENVIANDO</translation>
     </message>
@@ -15772,6 +15767,11 @@
       <location filename="app/transfer/serial_transfer.py" />
       <source>SHA-256</source>
       <translation>SHA-256</translation>
+    </message>
+    <message>
+      <location filename="app/transfer/serial_transfer.py" />
+      <source>START/END CHARACTER</source>
+      <translation>CARÁCTER DE INICIO Y FIN</translation>
     </message>
     <message>
       <location filename="app/transfer/serial_transfer.py" />
@@ -18724,24 +18724,9 @@
       <translation>un PIN de una sola cifra repetida es demasiado fácil de adivinar; elija otro</translation>
     </message>
     <message>
-      <location filename="core/extras/analyses/ball_bar.py" />
+      <location filename="core/extras/analyses/path_error.py" />
       <source>a ball-bar plot needs {minimum} samples of an arc; use a lower feed or a larger arc</source>
       <translation>un diagrama ball-bar necesita {minimum} muestras de un arco; use un avance menor o un arco mayor</translation>
-    </message>
-    <message>
-      <location filename="core/extras/analyses/ball_bar.py" />
-      <source>the arc is shorter than {least_angle} degrees, too short for a ball-bar plot</source>
-      <translation>el arco es más corto que {least_angle} grados, demasiado corto para un diagrama ball-bar</translation>
-    </message>
-    <message>
-      <location filename="core/extras/analyses/ball_bar.py" />
-      <source>the driver does not report the axis positions, so no arc can be shown</source>
-      <translation>el driver no informa de las posiciones de los ejes, así que no se puede mostrar ningún arco</translation>
-    </message>
-    <message>
-      <location filename="core/extras/analyses/ball_bar.py" />
-      <source>this time range does not contain an arc; choose a line that programs an arc</source>
-      <translation>este intervalo no contiene ningún arco; elija una línea que programe un arco</translation>
     </message>
     <message>
       <location filename="core/extras/analyses/path_error.py" />
@@ -18755,6 +18740,16 @@
     </message>
     <message>
       <location filename="core/extras/analyses/path_error.py" />
+      <source>the arc is shorter than {least_angle} degrees, too short for a ball-bar plot</source>
+      <translation>el arco es más corto que {least_angle} grados, demasiado corto para un diagrama ball-bar</translation>
+    </message>
+    <message>
+      <location filename="core/extras/analyses/path_error.py" />
+      <source>the driver does not report the axis positions, so no arc can be shown</source>
+      <translation>el driver no informa de las posiciones de los ejes, así que no se puede mostrar ningún arco</translation>
+    </message>
+    <message>
+      <location filename="core/extras/analyses/path_error.py" />
       <source>the driver does not report the axis positions, so no path can be compared</source>
       <translation>el driver no informa de las posiciones de los ejes, así que no se puede comparar ninguna trayectoria</translation>
     </message>
@@ -18762,6 +18757,11 @@
       <location filename="core/extras/analyses/path_error.py" />
       <source>the number of path points and the number of line numbers differ</source>
       <translation>el número de puntos de la trayectoria y el de números de línea difieren</translation>
+    </message>
+    <message>
+      <location filename="core/extras/analyses/path_error.py" />
+      <source>this time range does not contain an arc; choose a line that programs an arc</source>
+      <translation>este intervalo no contiene ningún arco; elija una línea que programe un arco</translation>
     </message>
     <message>
       <location filename="core/extras/analyses/step_response.py" />
@@ -18837,6 +18837,21 @@
       <location filename="core/extras/drawings/contour_walk.py" />
       <source>this side has no contour. Choose another contour.</source>
       <translation>este lado no tiene contorno. Elija otro contorno.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/contour_walk.py" />
+      <source>{size} {unit} across</source>
+      <translation>{size} {unit} de diámetro</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/contour_walk.py" />
+      <source>{size} {unit} long</source>
+      <translation>{size} {unit} de largo</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/drawing.py" />
+      <source>the drawing has too many parallel lines. Save only the contour of the part.</source>
+      <translation>el dibujo tiene demasiadas líneas paralelas. Guarde sólo el contorno de la pieza.</translation>
     </message>
     <message>
       <location filename="core/extras/drawings/drawing.py" />
@@ -18944,14 +18959,59 @@
       <translation>{path} es un dibujo DWG: guárdelo como DXF.</translation>
     </message>
     <message>
-      <location filename="core/extras/drawings/expansion.py" />
-      <source>A repeated group in {name} contains itself: save only the contour of the part.</source>
-      <translation>Un grupo repetido de {name} se contiene a sí mismo: guarde solo el contorno de la pieza.</translation>
+      <location filename="core/extras/drawings/profile_job.py" />
+      <source>Z {front} to {back} is not cut: {why}</source>
+      <translation>Z {front} a {back} no se corta: {why}</translation>
     </message>
     <message>
-      <location filename="core/extras/drawings/expansion.py" />
-      <source>The repeated groups in {name} add up to more than {most_elements} entities: save only the contour of the part.</source>
-      <translation>Los grupos repetidos de {name} suman más de {most_elements} entidades: guarde solo el contorno de la pieza.</translation>
+      <location filename="core/extras/drawings/profile_job.py" />
+      <source>except at the listed deviations, the simulated part matches the drawing to within {within} {unit}</source>
+      <translation>salvo en las desviaciones indicadas, la pieza simulada coincide con el dibujo con {within} {unit} de diferencia como máximo</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/profile_job.py" />
+      <source>gaps up to {closed} {unit} were closed</source>
+      <translation>se cerraron huecos de hasta {closed} {unit}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/profile_job.py" />
+      <source>proving did not produce a simulated part, so a comparison with the drawing was not possible</source>
+      <translation>la comprobación no produjo una pieza simulada, así que no se pudo comparar con el dibujo</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/profile_job.py" />
+      <source>secondary offset {number} must have X {x} (diameter), Z {z}, R {radius} {unit}</source>
+      <translation>el corrector secundario {number} debe tener X {x} (diámetro), Z {z}, R {radius} {unit}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/profile_job.py" />
+      <source>the simulated part matches the drawing to within {within} {unit}</source>
+      <translation>la pieza simulada coincide con el dibujo con {within} {unit} de diferencia como máximo</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/profile_job.py" />
+      <source>the tool data of T{tool} has no nose radius, so the contour is not compensated</source>
+      <translation>los datos de herramienta de T{tool} no tienen radio de punta, así que el contorno no se compensa</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/profile_job.py" />
+      <source>{depth} {unit} of stock remains (measured on the radius) from Z {front} to Z {back}</source>
+      <translation>quedan {depth} {unit} de material (medidos en el radio) de Z {front} a Z {back}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/profile_job.py" />
+      <source>{depth} {unit} of stock remains in the corner at Z {position} because of the tool nose radius</source>
+      <translation>{depth} {unit} de material quedan en el rincón en Z {position} por el radio de punta del útil</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/profile_job.py" />
+      <source>{depth} {unit} too much is cut (measured on the radius) from Z {front} to Z {back}</source>
+      <translation>se cortan {depth} {unit} de más (medidos en el radio) de Z {front} a Z {back}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/profile_job.py" />
+      <source>{edge} must have nose radius {radius} {unit} and tip quadrant {quadrant}</source>
+      <translation>{edge} debe tener radio de punta {radius} {unit} y cuadrante de punta {quadrant}</translation>
     </message>
     <message>
       <location filename="core/extras/drawings/profile_program.py" />
@@ -18974,59 +19034,14 @@
       <translation>la ranura es más estrecha que la cuchilla de {wide} mm</translation>
     </message>
     <message>
-      <location filename="core/extras/drawings/profile_words.py" />
-      <source>Z {front} to {back} is not cut: {why}</source>
-      <translation>Z {front} a {back} no se corta: {why}</translation>
+      <location filename="core/extras/drawings/reader_parts.py" />
+      <source>A repeated group in {name} contains itself: save only the contour of the part.</source>
+      <translation>Un grupo repetido de {name} se contiene a sí mismo: guarde solo el contorno de la pieza.</translation>
     </message>
     <message>
-      <location filename="core/extras/drawings/profile_words.py" />
-      <source>except at the listed deviations, the simulated part matches the drawing to within {within} {unit}</source>
-      <translation>salvo en las desviaciones indicadas, la pieza simulada coincide con el dibujo con {within} {unit} de diferencia como máximo</translation>
-    </message>
-    <message>
-      <location filename="core/extras/drawings/profile_words.py" />
-      <source>gaps up to {closed} {unit} were closed</source>
-      <translation>se cerraron huecos de hasta {closed} {unit}</translation>
-    </message>
-    <message>
-      <location filename="core/extras/drawings/profile_words.py" />
-      <source>proving did not produce a simulated part, so a comparison with the drawing was not possible</source>
-      <translation>la comprobación no produjo una pieza simulada, así que no se pudo comparar con el dibujo</translation>
-    </message>
-    <message>
-      <location filename="core/extras/drawings/profile_words.py" />
-      <source>secondary offset {number} must have X {x} (diameter), Z {z}, R {radius} {unit}</source>
-      <translation>el corrector secundario {number} debe tener X {x} (diámetro), Z {z}, R {radius} {unit}</translation>
-    </message>
-    <message>
-      <location filename="core/extras/drawings/profile_words.py" />
-      <source>the simulated part matches the drawing to within {within} {unit}</source>
-      <translation>la pieza simulada coincide con el dibujo con {within} {unit} de diferencia como máximo</translation>
-    </message>
-    <message>
-      <location filename="core/extras/drawings/profile_words.py" />
-      <source>the tool data of T{tool} has no nose radius, so the contour is not compensated</source>
-      <translation>los datos de herramienta de T{tool} no tienen radio de punta, así que el contorno no se compensa</translation>
-    </message>
-    <message>
-      <location filename="core/extras/drawings/profile_words.py" />
-      <source>{depth} {unit} of stock remains (measured on the radius) from Z {front} to Z {back}</source>
-      <translation>quedan {depth} {unit} de material (medidos en el radio) de Z {front} a Z {back}</translation>
-    </message>
-    <message>
-      <location filename="core/extras/drawings/profile_words.py" />
-      <source>{depth} {unit} of stock remains in the corner at Z {position} because of the tool nose radius</source>
-      <translation>{depth} {unit} de material quedan en el rincón en Z {position} por el radio de punta del útil</translation>
-    </message>
-    <message>
-      <location filename="core/extras/drawings/profile_words.py" />
-      <source>{depth} {unit} too much is cut (measured on the radius) from Z {front} to Z {back}</source>
-      <translation>se cortan {depth} {unit} de más (medidos en el radio) de Z {front} a Z {back}</translation>
-    </message>
-    <message>
-      <location filename="core/extras/drawings/profile_words.py" />
-      <source>{edge} must have nose radius {radius} {unit} and tip quadrant {quadrant}</source>
-      <translation>{edge} debe tener radio de punta {radius} {unit} y cuadrante de punta {quadrant}</translation>
+      <location filename="core/extras/drawings/reader_parts.py" />
+      <source>The repeated groups in {name} add up to more than {most_elements} entities: save only the contour of the part.</source>
+      <translation>Los grupos repetidos de {name} suman más de {most_elements} entidades: guarde solo el contorno de la pieza.</translation>
     </message>
     <message>
       <location filename="core/extras/drawings/svg_reader.py" />
@@ -19072,36 +19087,6 @@
       <location filename="core/extras/drawings/turning_contour.py" />
       <source>the contour slopes too steeply for the tool</source>
       <translation>el contorno tiene una pendiente demasiado fuerte para el útil</translation>
-    </message>
-    <message>
-      <location filename="core/extras/drawings/unit_check.py" />
-      <source>{size} {unit} across</source>
-      <translation>{size} {unit} de diámetro</translation>
-    </message>
-    <message>
-      <location filename="core/extras/drawings/unit_check.py" />
-      <source>{size} {unit} long</source>
-      <translation>{size} {unit} de largo</translation>
-    </message>
-    <message>
-      <location filename="core/extras/drawings/work_limit.py" />
-      <source>the drawing has too many parallel lines. Save only the contour of the part.</source>
-      <translation>el dibujo tiene demasiadas líneas paralelas. Guarde sólo el contorno de la pieza.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/quality/capability.py" />
-      <source>process capability needs a tolerance; enter a tolerance for this feature</source>
-      <translation>la capacidad del proceso necesita una tolerancia; introduzca una tolerancia para esta característica</translation>
-    </message>
-    <message>
-      <location filename="core/extras/quality/capability.py" />
-      <source>the lower limit must be below the upper limit; correct the tolerance</source>
-      <translation>el límite inferior debe ser menor que el superior; corrija la tolerancia</translation>
-    </message>
-    <message>
-      <location filename="core/extras/quality/capability.py" />
-      <source>{values_count} readings are not enough; a Cpk needs at least {minimum} readings</source>
-      <translation>{values_count} lecturas no bastan; un Cpk necesita al menos {minimum} lecturas</translation>
     </message>
     <message>
       <location filename="core/extras/quality/control_charts.py" />
@@ -19155,8 +19140,18 @@
     </message>
     <message>
       <location filename="core/extras/quality/control_charts.py" />
+      <source>process capability needs a tolerance; enter a tolerance for this feature</source>
+      <translation>la capacidad del proceso necesita una tolerancia; introduzca una tolerancia para esta característica</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/control_charts.py" />
       <source>six points in a row rising or falling</source>
       <translation>seis puntos seguidos subiendo o bajando</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/control_charts.py" />
+      <source>the lower limit must be below the upper limit; correct the tolerance</source>
+      <translation>el límite inferior debe ser menor que el superior; corrija la tolerancia</translation>
     </message>
     <message>
       <location filename="core/extras/quality/control_charts.py" />
@@ -19169,14 +19164,49 @@
       <translation>dos de tres puntos más allá de dos sigmas a un lado</translation>
     </message>
     <message>
+      <location filename="core/extras/quality/control_charts.py" />
+      <source>{values_count} readings are not enough; a Cpk needs at least {minimum} readings</source>
+      <translation>{values_count} lecturas no bastan; un Cpk necesita al menos {minimum} lecturas</translation>
+    </message>
+    <message>
       <location filename="core/extras/quality/measured_feature.py" />
       <source>a feature name must have 1 to {name_longest} characters</source>
       <translation>el nombre de una característica debe tener de 1 a {name_longest} caracteres</translation>
     </message>
     <message>
       <location filename="core/extras/quality/measured_feature.py" />
+      <source>the correction would be less than the smallest offset step, so no correction is needed</source>
+      <translation>la corrección sería menor que el paso mínimo del corrector, así que no hace falta corregir</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/measured_feature.py" />
+      <source>the deviation is within the dead band, so no correction is needed</source>
+      <translation>la desviación está dentro de la banda muerta, así que no hace falta corregir</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/measured_feature.py" />
+      <source>{feature}: a correction of {change} mm is too large to be tool wear; touch the tool off</source>
+      <translation>{feature}: una corrección de {change} mm es demasiado grande para ser desgaste; tome referencia de la herramienta</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/measured_feature.py" />
+      <source>{feature}: a reading is not a number; delete that reading</source>
+      <translation>{feature}: una lectura no es un número; borre esa lectura</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/measured_feature.py" />
+      <source>{feature}: a reading is off by more than {distance} times the tolerance, which is too large for tool wear; measure again</source>
+      <translation>{feature}: una lectura se desvía más de {distance} veces la tolerancia, demasiado para ser desgaste; mida de nuevo</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/measured_feature.py" />
       <source>{feature}: a sample must have 1 to {sample_sizes} parts</source>
       <translation>{feature}: una muestra debe tener de 1 a {sample_sizes} piezas</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/measured_feature.py" />
+      <source>{feature}: no part has been measured since the last correction</source>
+      <translation>{feature}: no se ha medido ninguna pieza desde la última corrección</translation>
     </message>
     <message>
       <location filename="core/extras/quality/measured_feature.py" />
@@ -19227,56 +19257,6 @@
       <location filename="core/extras/quality/stops.py" />
       <source>{reason}: the end of a stop is earlier than its start because the clock was set back</source>
       <translation>{reason}: el final de un paro es anterior a su comienzo porque el reloj se atrasó</translation>
-    </message>
-    <message>
-      <location filename="core/extras/quality/wear_proposal.py" />
-      <source>the correction would be less than the smallest offset step, so no correction is needed</source>
-      <translation>la corrección sería menor que el paso mínimo del corrector, así que no hace falta corregir</translation>
-    </message>
-    <message>
-      <location filename="core/extras/quality/wear_proposal.py" />
-      <source>the deviation is within the dead band, so no correction is needed</source>
-      <translation>la desviación está dentro de la banda muerta, así que no hace falta corregir</translation>
-    </message>
-    <message>
-      <location filename="core/extras/quality/wear_proposal.py" />
-      <source>{feature}: a correction of {change} mm is too large to be tool wear; touch the tool off</source>
-      <translation>{feature}: una corrección de {change} mm es demasiado grande para ser desgaste; tome referencia de la herramienta</translation>
-    </message>
-    <message>
-      <location filename="core/extras/quality/wear_proposal.py" />
-      <source>{feature}: a reading is not a number; delete that reading</source>
-      <translation>{feature}: una lectura no es un número; borre esa lectura</translation>
-    </message>
-    <message>
-      <location filename="core/extras/quality/wear_proposal.py" />
-      <source>{feature}: a reading is off by more than {distance} times the tolerance, which is too large for tool wear; measure again</source>
-      <translation>{feature}: una lectura se desvía más de {distance} veces la tolerancia, demasiado para ser desgaste; mida de nuevo</translation>
-    </message>
-    <message>
-      <location filename="core/extras/quality/wear_proposal.py" />
-      <source>{feature}: no part has been measured since the last correction</source>
-      <translation>{feature}: no se ha medido ninguna pieza desde la última corrección</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/blade.py" />
-      <source>BLADE WIDTH</source>
-      <translation>ANCHO DE LA CUCHILLA</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/blade.py" />
-      <source>CORNER USED FOR TOUCH-OFF</source>
-      <translation>ESQUINA DE REFERENCIA</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/blade.py" />
-      <source>Depth {depth} is more than the reach of {name}, which is {length}. Use a longer blade.</source>
-      <translation>La profundidad {depth} es más que el alcance de {name}, que es {length}. Use una cuchilla más larga.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/blade.py" />
-      <source>The blade width in the tool data of {name} is {width}: enter that width.</source>
-      <translation>El ancho de cuchilla en los datos de herramienta de {name} es {width}: introduzca ese ancho.</translation>
     </message>
     <message>
       <location filename="core/extras/shapes/calculators.py" />
@@ -19480,6 +19460,11 @@
     </message>
     <message>
       <location filename="core/extras/shapes/forms/bar_work.py" />
+      <source>A chamfer of {word} removes the whole wall: enter a smaller chamfer.</source>
+      <translation>Un chaflán de {word} quita toda la pared: introduzca un chaflán menor.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/bar_work.py" />
       <source>BAR FEED PER MINUTE</source>
       <translation>AVANCE DE BARRA POR MINUTO</translation>
     </message>
@@ -19495,8 +19480,38 @@
     </message>
     <message>
       <location filename="core/extras/shapes/forms/bar_work.py" />
+      <source>BLADE WIDTH</source>
+      <translation>ANCHO DE LA CUCHILLA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/bar_work.py" />
+      <source>CHAMFER ON THE BAR</source>
+      <translation>CHAFLÁN DE LA BARRA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/bar_work.py" />
+      <source>CHAMFER ON THE PART</source>
+      <translation>CHAFLÁN DE LA PIEZA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/bar_work.py" />
+      <source>CORNER USED FOR TOUCH-OFF</source>
+      <translation>ESQUINA DE REFERENCIA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/bar_work.py" />
+      <source>Depth {depth} is more than the reach of {name}, which is {length}. Use a longer blade.</source>
+      <translation>La profundidad {depth} es más que el alcance de {name}, que es {length}. Use una cuchilla más larga.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/bar_work.py" />
       <source>EACH PART</source>
       <translation>CADA PIEZA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/bar_work.py" />
+      <source>END DIAMETER</source>
+      <translation>DIÁMETRO FINAL</translation>
     </message>
     <message>
       <location filename="core/extras/shapes/forms/bar_work.py" />
@@ -19510,13 +19525,38 @@
     </message>
     <message>
       <location filename="core/extras/shapes/forms/bar_work.py" />
+      <source>PART LENGTH</source>
+      <translation>LONGITUD DE LA PIEZA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/bar_work.py" />
+      <source>PART OFF</source>
+      <translation>TRONZADO</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/bar_work.py" />
       <source>PART SUBROUTINE NUMBER</source>
       <translation>NÚMERO DE SUBRUTINA</translation>
     </message>
     <message>
       <location filename="core/extras/shapes/forms/bar_work.py" />
+      <source>Parting off starts at diameter {top} and runs inward: end diameter {end} must be less.</source>
+      <translation>El tronzado empieza en el diámetro {top} y va hacia dentro: el diámetro final {end} debe ser menor.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/bar_work.py" />
       <source>TOOL USED AS STOP</source>
       <translation>HERRAMIENTA DE TOPE</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/bar_work.py" />
+      <source>The blade width in the tool data of {name} is {width}: enter that width.</source>
+      <translation>El ancho de cuchilla en los datos de herramienta de {name} es {width}: introduzca ese ancho.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/bar_work.py" />
+      <source>The chamfer is longer than the part: enter a smaller chamfer.</source>
+      <translation>El chaflán es más largo que la pieza: introduzca un chaflán menor.</translation>
     </message>
     <message>
       <location filename="core/extras/shapes/forms/bar_work.py" />
@@ -19527,6 +19567,11 @@
       <location filename="core/extras/shapes/forms/bar_work.py" />
       <source>feeds the bar to a stop and repeats the following lines for a number of parts; these lines make the part</source>
       <translation>saca la barra hasta un tope y repite las líneas siguientes para varias piezas; esas líneas hacen la pieza</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/bar_work.py" />
+      <source>parts off to the center or to a bore, with chamfers on both sides of the cut</source>
+      <translation>tronza hasta el centro o hasta un taladro, con chaflanes a ambos lados del corte</translation>
     </message>
     <message>
       <location filename="core/extras/shapes/forms/drilling.py" />
@@ -19834,66 +19879,6 @@
       <translation>{number} agujeros separados {number2}° dan más de una vuelta a la pieza: introduzca un ángulo menor.</translation>
     </message>
     <message>
-      <location filename="core/extras/shapes/forms/parting.py" />
-      <source>A chamfer of {word} removes the whole wall: enter a smaller chamfer.</source>
-      <translation>Un chaflán de {word} quita toda la pared: introduzca un chaflán menor.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/parting.py" />
-      <source>CHAMFER ON THE BAR</source>
-      <translation>CHAFLÁN DE LA BARRA</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/parting.py" />
-      <source>CHAMFER ON THE PART</source>
-      <translation>CHAFLÁN DE LA PIEZA</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/parting.py" />
-      <source>END DIAMETER</source>
-      <translation>DIÁMETRO FINAL</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/parting.py" />
-      <source>PART LENGTH</source>
-      <translation>LONGITUD DE LA PIEZA</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/parting.py" />
-      <source>PART OFF</source>
-      <translation>TRONZADO</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/parting.py" />
-      <source>Parting off starts at diameter {top} and runs inward: end diameter {end} must be less.</source>
-      <translation>El tronzado empieza en el diámetro {top} y va hacia dentro: el diámetro final {end} debe ser menor.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/parting.py" />
-      <source>The chamfer is longer than the part: enter a smaller chamfer.</source>
-      <translation>El chaflán es más largo que la pieza: introduzca un chaflán menor.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/parting.py" />
-      <source>parts off to the center or to a bore, with chamfers on both sides of the cut</source>
-      <translation>tronza hasta el centro o hasta un taladro, con chaflanes a ambos lados del corte</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/program_head.py" />
-      <source>BAR DIAMETER</source>
-      <translation>DIÁMETRO DE LA BARRA</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/program_head.py" />
-      <source>TOOL CHANGE AT Z</source>
-      <translation>CAMBIO DE HERRAMIENTA EN Z</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/program_head.py" />
-      <source>the start of the program: units, diameter programming, rapid rates, material</source>
-      <translation>el inicio del programa: unidades, programación en diámetros, avances rápidos, material</translation>
-    </message>
-    <message>
       <location filename="core/extras/shapes/forms/tapers_and_bores.py" />
       <source>An edge size of {edge} is more than half of diameter {across}: enter {across2} or less.</source>
       <translation>Un canto de {edge} es más que la mitad del diámetro {across}: introduzca {across2} o menos.</translation>
@@ -20074,24 +20059,9 @@
       <translation>{label} {value} no es válido: elija uno de {choices}.</translation>
     </message>
     <message>
-      <location filename="core/extras/shapes/sinumerik_helpers.py" />
-      <source>CYCLE95 ROUGHING</source>
-      <translation>DESBASTE CYCLE95</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/sinumerik_helpers.py" />
-      <source>THREAD CYCLE97</source>
-      <translation>ROSCA CYCLE97</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/sinumerik_helpers.py" />
-      <source>calls the tool, leads in, and cuts passes with a constant chip cross-section</source>
-      <translation>llama al útil, entra y corta pasadas con sección de viruta constante</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/sinumerik_helpers.py" />
-      <source>equivalent feed per minute: G94 F{number}</source>
-      <translation>avance por minuto equivalente: G94 F{number}</translation>
+      <location filename="core/extras/shapes/templates.py" />
+      <source>BAR DIAMETER</source>
+      <translation>DIÁMETRO DE LA BARRA</translation>
     </message>
     <message>
       <location filename="core/extras/shapes/templates.py" />
@@ -20100,8 +20070,18 @@
     </message>
     <message>
       <location filename="core/extras/shapes/templates.py" />
+      <source>CYCLE95 ROUGHING</source>
+      <translation>DESBASTE CYCLE95</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/templates.py" />
       <source>START OF PROGRAM</source>
       <translation>INICIO DE PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/templates.py" />
+      <source>THREAD CYCLE97</source>
+      <translation>ROSCA CYCLE97</translation>
     </message>
     <message>
       <location filename="core/extras/shapes/templates.py" />
@@ -20110,8 +20090,23 @@
     </message>
     <message>
       <location filename="core/extras/shapes/templates.py" />
+      <source>TOOL CHANGE AT Z</source>
+      <translation>CAMBIO DE HERRAMIENTA EN Z</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/templates.py" />
+      <source>calls the tool, leads in, and cuts passes with a constant chip cross-section</source>
+      <translation>llama al útil, entra y corta pasadas con sección de viruta constante</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/templates.py" />
       <source>calls the tool, leads in, cuts passes with a constant chip cross-section, and pulls out</source>
       <translation>llama al útil, entra, corta pasadas con sección de viruta constante y sale</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/templates.py" />
+      <source>equivalent feed per minute: G94 F{number}</source>
+      <translation>avance por minuto equivalente: G94 F{number}</translation>
     </message>
     <message>
       <location filename="core/extras/shapes/templates.py" />
@@ -20127,6 +20122,11 @@
       <location filename="core/extras/shapes/templates.py" />
       <source>retracts, changes the tool, starts the spindle and moves to the part</source>
       <translation>retira, cambia la herramienta, arranca el husillo y va a la pieza</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/templates.py" />
+      <source>the start of the program: units, diameter programming, rapid rates, material</source>
+      <translation>el inicio del programa: unidades, programación en diámetros, avances rápidos, material</translation>
     </message>
     <message>
       <location filename="core/extras/shapes/templates.py" />
@@ -20194,72 +20194,72 @@
       <translation>Las roscas {series} no se pueden roscar con macho en esta forma: corte la rosca con G33.</translation>
     </message>
     <message>
-      <location filename="core/extras/shapes/threads/thread_checks.py" />
+      <location filename="core/extras/shapes/threads/thread_values.py" />
       <source>A lead of {lead} is more than the maximum that the control can cut, {coarse}.</source>
       <translation>Un avance de rosca de {lead} es más que el máximo que puede cortar el control, {coarse}.</translation>
     </message>
     <message>
-      <location filename="core/extras/shapes/threads/thread_checks.py" />
+      <location filename="core/extras/shapes/threads/thread_values.py" />
       <source>A relief width of {relief} is less than {lead}, which is 1.5 times the lead.</source>
       <translation>Un ancho de salida de {relief} es menos que {lead}, que es 1.5 veces el avance de rosca.</translation>
     </message>
     <message>
-      <location filename="core/extras/shapes/threads/thread_checks.py" />
+      <location filename="core/extras/shapes/threads/thread_values.py" />
       <source>An external thread is cut inward, so the diameter at the last pass, {root}, must be smaller than the diameter before threading, {crest}.</source>
       <translation>Una rosca exterior se corta hacia dentro, así que el diámetro en la última pasada, {root}, debe ser menor que el diámetro antes de roscar, {crest}.</translation>
     </message>
     <message>
-      <location filename="core/extras/shapes/threads/thread_checks.py" />
+      <location filename="core/extras/shapes/threads/thread_values.py" />
       <source>An infeed angle of {angle}° is more than the flank angle of {flank}°, so the first passes would cut into the flank. Enter {limit} or less.</source>
       <translation>Un ángulo de penetración de {angle}° es más que el del flanco, {flank}°, así que las primeras pasadas cortarían el flanco. Introduzca {limit} o menos.</translation>
     </message>
     <message>
-      <location filename="core/extras/shapes/threads/thread_checks.py" />
+      <location filename="core/extras/shapes/threads/thread_values.py" />
       <source>An internal thread is cut outward, so the diameter at the last pass, {root}, must be larger than the diameter before threading, {crest}.</source>
       <translation>Una rosca interior se corta hacia fuera, así que el diámetro en la última pasada, {root}, debe ser mayor que el diámetro antes de roscar, {crest}.</translation>
     </message>
     <message>
-      <location filename="core/extras/shapes/threads/thread_checks.py" />
+      <location filename="core/extras/shapes/threads/thread_values.py" />
       <source>At S{number} the axis needs {speed} in/min, but the axis limit is 300 in/min: enter S{slow} or less.</source>
       <translation>Con S{number} el eje necesita {speed} in/min, pero el límite del eje es 300 in/min: introduzca S{slow} o menos.</translation>
     </message>
     <message>
-      <location filename="core/extras/shapes/threads/thread_checks.py" />
+      <location filename="core/extras/shapes/threads/thread_values.py" />
       <source>CLASS {tolerance} is not valid: choose one of {allowed}.</source>
       <translation>La CLASE {tolerance} no es válida: elija una de {allowed}.</translation>
     </message>
     <message>
-      <location filename="core/extras/shapes/threads/thread_checks.py" />
+      <location filename="core/extras/shapes/threads/thread_values.py" />
       <source>The bar of {name} does not fit into a bore of {number}.</source>
       <translation>La barra de {name} no cabe en un taladro de {number}.</translation>
     </message>
     <message>
-      <location filename="core/extras/shapes/threads/thread_checks.py" />
+      <location filename="core/extras/shapes/threads/thread_values.py" />
       <source>The thread is {filled} deep, but at a pitch of {pitch} its flanks meet at a depth of {sharp}. Check both diameters.</source>
       <translation>La rosca tiene {filled} de hondo, pero con un paso de {pitch} sus flancos se juntan a {sharp} de hondo. Revise los dos diámetros.</translation>
     </message>
     <message>
-      <location filename="core/extras/shapes/threads/thread_checks.py" />
+      <location filename="core/extras/shapes/threads/thread_values.py" />
       <source>Thread relief missing: the tool cuts a ring where it stops. Enter the relief width, or set pull-out to YES.</source>
       <translation>Falta la salida de rosca: la herramienta corta un anillo donde para. Introduzca su ancho, o ponga SÍ en salir sin parar.</translation>
     </message>
     <message>
-      <location filename="core/extras/shapes/threads/thread_checks.py" />
+      <location filename="core/extras/shapes/threads/thread_values.py" />
       <source>Thread relief missing: the tool cuts a ring where it stops. Enter the relief width.</source>
       <translation>Falta la salida de rosca: la herramienta corta un anillo donde para. Introduzca su ancho.</translation>
     </message>
     <message>
-      <location filename="core/extras/shapes/threads/thread_checks.py" />
+      <location filename="core/extras/shapes/threads/thread_values.py" />
       <source>{name} cuts a thread angle of {point}°, but this thread needs {angle}°: use another insert.</source>
       <translation>{name} corta un ángulo de rosca de {point}°, pero esta rosca necesita {angle}°: use otra plaquita.</translation>
     </message>
     <message>
-      <location filename="core/extras/shapes/threads/thread_checks.py" />
+      <location filename="core/extras/shapes/threads/thread_values.py" />
       <source>{name} is made for a pitch of {pitch}, not {needed}: use another insert.</source>
       <translation>{name} está hecha para un paso de {pitch}, no {needed}: use otra plaquita.</translation>
     </message>
     <message>
-      <location filename="core/extras/shapes/threads/thread_checks.py" />
+      <location filename="core/extras/shapes/threads/thread_values.py" />
       <source>{series} does not include size {size}: choose a size with the arrows.</source>
       <translation>{series} no incluye la medida {size}: elija una medida con las flechas.</translation>
     </message>

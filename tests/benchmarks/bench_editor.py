@@ -25,9 +25,8 @@ from app.compose.screen_desk import build_desk
 from app.compose.stored_offsets import read_offsets
 from app.compose.workshop import samples
 from app.editor.editor_view import EditorPage
-from app.screen.look import Look, dress, load_fonts
-from app.screen.main_window import MainWindow
-from app.screen.theme import DARK
+from app.screen.look import DARK, Look, dress, load_fonts
+from app.screen.window.main_window import MainWindow
 
 LINES = 2000
 KEYS = "X9.Y\b\b\b\b"  # each leaves another text; the Y is refused

@@ -27,9 +27,8 @@ from app.desk.programs.program_loading import Phase
 from app.scope.scope_model import Scope
 from app.scope.scope_view import ScopePage
 from app.screen import page_table
-from app.screen.look import Look, dress, load_fonts
-from app.screen.main_window import MainWindow
-from app.screen.theme import DARK
+from app.screen.look import DARK, Look, dress, load_fonts
+from app.screen.window.main_window import MainWindow
 from core.executor.recorder import Recorder
 from core.records.record import Record
 from tests.benchmarks.bench_screen import Bench

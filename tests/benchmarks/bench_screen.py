@@ -26,9 +26,8 @@ from PySide6.QtWidgets import QApplication
 from app.compose.screen_desk import build_desk
 from app.compose.stored_offsets import read_offsets
 from app.desk.programs.program_loading import Phase
-from app.screen.look import Look, dress, load_fonts
-from app.screen.main_window import MainWindow
-from app.screen.theme import DARK
+from app.screen.look import DARK, Look, dress, load_fonts
+from app.screen.window.main_window import MainWindow
 from core.executor.snapshot import State
 from tests.benchmarks.bench_hold import chords
 from tests.benchmarks.footprint import keep_result

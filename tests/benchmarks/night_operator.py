@@ -12,8 +12,8 @@ from typing import Any
 
 from app.desk.programs.program_loading import Phase
 from app.screen.page_table import PAGES, class_of
+from app.special.counters import ToolLifeFunction
 from app.special.special_functions import SpecialFunction, SpecialFunctions
-from app.special.tool_life_function import ToolLifeFunction
 from core.executor.commands import ForceOutput
 from core.executor.snapshot import State
 from core.store.production import measured_parts, tool_lives

@@ -12,18 +12,16 @@ import pytest
 
 from app.compose.runs.journal import Journal
 from app.editor.editor import Editor
-from app.offsets.offset_history import OffsetHistory
-from app.offsets.offset_questions import OffsetQuestions
+from app.offsets.offset_changes import OffsetHistory, OffsetQuestions
 from app.production.parts_watch import PartsWatch
 from app.programs.program_list import ProgramList
+from app.special.counters import PartsCounterFunction
 from app.special.inputs_outputs import InputsOutputs
 from app.special.inputs_outputs import Kind as Shown
 from app.special.lamps_and_sound import LampsAndSound
-from app.special.logged_events import FILTERS
-from app.special.machine_file_acceptance import MachineFileAcceptance
-from app.special.parts_counter import PartsCounterFunction
+from app.special.machine_records import FILTERS, MachineFileAcceptance
+from app.special.operator_settings import SpindleSpeedLimit
 from app.special.setup_sheet_function import SetupSheetFunction
-from app.special.spindle_limit import SpindleSpeedLimit
 from app.transfer.line_transfer import Received
 from app.transfer.serial_transfer import SerialTransfer
 from core.access.access_page import page
@@ -51,18 +49,17 @@ WRITES = re.compile(
     r"|\b(write_whole|write_new|write_out|write_in_place|store_new|ForceOutput|SpindleLimit)\("
 )
 BEHIND_A_RULE = {
-    "compose/machine/accepted_machine.py": "asked by machine_file_acceptance.py",
+    "compose/machine/accepted_machine.py": "asked by machine_records.py",
     "compose/runs/journal.py": "does what pages ask that have asked",
     "compose/known_part.py": "asked by part_options.py and part_sheet.py",
     "compose/machine/setup_file.py": "asked by setup_command.py",
     "extras/sharing/sharing_desk.py": "asked by share_command.py",
-    "extras/access/pin_question.py": "asked by who_changes.py, which has asked",
     "extras/access/sign_in.py": "asked by access_levels.py",
     "desk/persistence.py": "as journal.py",
     "desk/screen_settings.py": "asked by desk.py",
-    "editor/document.py": "asked by may_save of the editor",
+    "editor/document.py": "asked by may_save of the editor; drafts are not saved",
     "extras/quality/sample_plan.py": "asked by features_section.py",
-    "special/part_count.py": "asked by parts_counter.py",
+    "programs/run_history.py": "asked by counters.py",
     "transfer/line_transfer.py": "asked by serial_command.py and serial_transfer.py",
 }
 NO_CHANGE = {
@@ -82,11 +79,10 @@ NO_CHANGE = {
     "compose/thumbnails.py": "pictures that can be made again",
     "desk/daily_backup.py": "the machine's own backups",
     "desk/pages/first_job.py": "how far the first job has come",
-    "editor/drafts.py": "what is typed and not saved",
     "jog/hand_functions.py": "coolant off: it brings to rest",
-    "mdi/mdi_line.py": "the lines that were typed",
+    "mdi/mdi_model.py": "the lines that were typed",
     "programs/whole_file.py": "how a file is written; who calls it asks",
-    "extras/quality/readings_file.py": "readings, to a file of whoever asks",
+    "extras/quality/parts_data.py": "readings, to a file of whoever asks",
     "extras/quality/shift_function.py": "a report",
     "scope/record_shelf.py": "how records are kept; asked by scope_model.py",
     "shopfloor/status_file.py": "what the machine does, for other programs",

@@ -18,7 +18,7 @@ from app.compose.stored_offsets import NONE
 from app.desk.desk import Desk
 from app.desk.persistence import Persistence
 from app.desk.status.standing_prompt import prompt
-from app.special.machine_file_acceptance import MachineFileAcceptance
+from app.special.machine_records import MachineFileAcceptance
 from app.special.special_functions import SpecialFunctions
 from core.executor.executor import Executor
 from core.executor.snapshot import State

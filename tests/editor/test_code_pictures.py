@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from app.editor.code_pictures import _PICTURES, picture_of
+from app.editor.code_help_view import _PICTURES, picture_of
 from core.interpreter.dialects import code_book
 from core.language.source import Dialect
 from core.tool_edges import TIP_DIRECTIONS

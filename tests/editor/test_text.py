@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from app.editor.document import NameRefusedError, program_name
-from app.editor.find_replace import Search, following, preceding
+from app.editor.question_view import Search, following, preceding
 from app.editor.versions import DifferenceRow as Row
 from app.editor.versions import differences
 from core.language.source import Dialect, dialect_of, usual_ending

@@ -7,8 +7,7 @@ from dataclasses import dataclass, field
 import pytest
 
 from app.compose.machine.machine_files import load_machine
-from app.jog.held_jog import HeldJog
-from app.jog.jog_speeds import CONTINUOUS, JogSpeeds
+from app.jog.held_jog import CONTINUOUS, HeldJog, JogSpeeds
 from core.executor.commands import Command, Jog, JogStep, JogStop
 from core.executor.snapshot import Snapshot, State
 from core.interpreter.modal_state import Modal

@@ -14,9 +14,9 @@ from PySide6.QtCore import Qt, QTimer
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QWidget
 
-from app.screen.main_window import MainWindow
 from app.screen.run_screen import run_screen
-from app.screen.window_frame import Frame
+from app.screen.window.main_window import MainWindow
+from app.screen.window.window_frame import Frame
 from core.executor.snapshot import State
 
 LOOK = 20  # ms

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from app.compose.machine.machine_files import load_machine, shipped_machine
-from app.jog.jog_speeds import JogSpeeds, directions_of
+from app.jog.held_jog import JogSpeeds, directions_of
 from app.offsets.offset_values import Mode
 
 MILL, LATHE = shipped_machine("ac-table-mill"), load_machine()

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from app.mdi.line_completion import LineCompletion
-from app.mdi.mdi_line import LONGEST, MdiLine
+from app.mdi.mdi_model import LONGEST, LineCompletion, MdiLine
 from core.interpreter.dialects import code_book
 from core.language.source import Dialect
 

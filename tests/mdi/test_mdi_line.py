@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from app.desk.persistence import Persistence
-from app.mdi.mdi_line import KEPT, KEY, LONGEST, MdiLine
+from app.mdi.mdi_model import KEPT, KEY, LONGEST, MdiLine
 from core.store.store_errors import StoreError
 
 

@@ -13,11 +13,10 @@ from app.compose.machine.machine_setup import setup_for
 from app.compose.stored_offsets import book_of, read_offsets, setup_with
 from app.desk.status.machine_status import Tone
 from app.offsets.cell_table import CellTable
-from app.offsets.mill_lives import MillLives
-from app.offsets.mill_offsets import MillOffsets, with_mill
 from app.offsets.mill_tools import MillTools
-from app.offsets.mill_touch import MillTouch
-from app.offsets.presets import Presets
+from app.offsets.mill_touch import MillLives, MillTouch
+from app.offsets.offsets_in_force import MillOffsets, with_mill
+from app.offsets.zero_offsets import Presets
 from core.executor.snapshot import State
 from core.interpreter.job_setup import ToolOffset
 from core.production.tool_life import ToolLife

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from app.offsets.suspicious_changes import Doubt, suspicions, suspicions_of
+from app.offsets.change_rules import Doubt, suspicions, suspicions_of
 from core.store.store_rows import Kind, MillRow, PresetRow, Row, SecondaryRow, ToolRow, ZeroRow
 from tests.offsets.conftest import Room
 from tests.texts import text

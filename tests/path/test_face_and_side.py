@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 from app.compose.machine.machine_setup import read_machine, setup_for
-from app.path.face_and_side import face_point
-from app.path.path_picture import Picture, PictureBuilder, picture_of
+from app.path.path_picture import Picture, PictureBuilder, face_point, picture_of
 from app.path.polyline import CHORD_ERROR, Polyline, Stroke
 from core.geometry.virtual_mill import Face, PlaneMove, Side
 from core.interpreter.elementary_blocks import Block, Kind

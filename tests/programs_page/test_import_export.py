@@ -10,9 +10,8 @@ import pytest
 from app.desk.persistence import Persistence
 from app.programs import import_export
 from app.programs.copy_rename_delete import checked_name, delete_program, rename_program
-from app.programs.folder_chooser import UP, FolderChooser
 from app.programs.import_export import Carried, export_programs, import_programs
-from app.programs.removable_media import Stick
+from app.programs.removable_media import UP, FolderChooser, Stick
 from app.programs.whole_file import FileError
 from tests.programs_page.test_run_history import Kept
 from tests.texts import pattern

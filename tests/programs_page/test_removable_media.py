@@ -8,9 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from app.programs.folder_chooser import FolderChooser
 from app.programs.import_export import export_programs
-from app.programs.removable_media import Medium, Stick, sticks, why_not
+from app.programs.removable_media import FolderChooser, Medium, Stick, sticks, why_not
 from app.programs.whole_file import FileError
 from tests.texts import pattern
 from tests.texts import text as wording

@@ -16,8 +16,7 @@ from app.compose.thumbnails import HIGH, WIDE, Thumbnails
 from app.compose.workshop import workshop
 from app.desk.background_work import Watch
 from app.desk.kept_part import NOTHING_KEPT, KeptPart
-from app.programs.preview import Preview, Thumbnail
-from app.programs.program_rows import Program
+from app.programs.program_rows import Preview, Program, Thumbnail
 from core.executor.job import Job
 from core.language.source import Source, load_source
 from core.machine.machine_model import Machine

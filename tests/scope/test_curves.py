@@ -7,10 +7,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.scope.curve_columns import Columns, kept_range, points_of, round_range
-from app.scope.scope_curves import LiveCurves, RecordCurves, Wanted
-from app.scope.scope_trigger import Trigger, When
+from app.scope.scope_curves import (
+    Columns,
+    LiveCurves,
+    RecordCurves,
+    Wanted,
+    kept_range,
+    points_of,
+    round_range,
+)
 from app.scope.signals import Quantity, first_chosen, signals_of
+from app.scope.time_window import Trigger, When
 from core.executor.snapshot import State
 from core.records.record import channels_of
 from tests.scope.played_record import CHANNELS, STATES, PlayedSamples, record_of, seconds

@@ -17,7 +17,7 @@ from tempfile import TemporaryDirectory
 from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QApplication
 
-from app.screen.language import speak_in
+from app.screen.look import speak_in
 from tests.extras.modules import of_extras
 from tests.screen.pictures import lean
 

@@ -19,18 +19,16 @@ from pytestqt.qtbot import QtBot
 from app.compose.runs.journal import Journal
 from app.desk.desk import Desk
 from app.desk.translation import ENGLISH
-from app.screen import event_times
-from app.screen.language import speak_in
-from app.screen.look import Look, dress, load_fonts
-from app.screen.main_window import MainWindow
-from app.screen.theme import DARK
+from app.screen.look import DARK, Look, dress, load_fonts, speak_in
+from app.screen.window import keyboard
+from app.screen.window.main_window import MainWindow
 from tests.screen.desks import desk_on
 from tests.screen.fake import FakeMachine
 from tests.screen.hands import Hands, window_on
 from tests.screen.lathe import Operator
 from tests.screen.pictures import Stage
 
-STALL = event_times.STALL
+STALL = keyboard.STALL
 
 
 def left_over(*, collect: bool) -> list[str]:
@@ -63,13 +61,13 @@ def nothing_left(qapp: QApplication) -> Iterator[None]:
 @pytest.fixture(autouse=True)
 def never_late(monkeypatch: pytest.MonkeyPatch) -> None:
     """No key and no finger is late, however busy this computer is; ``stalls`` is for those that play it."""
-    monkeypatch.setattr(event_times, "STALL", float("inf"))
+    monkeypatch.setattr(keyboard, "STALL", float("inf"))
 
 
 @pytest.fixture
 def stalls(monkeypatch: pytest.MonkeyPatch, never_late: None) -> None:
     """Who is late is late, as in the shop."""
-    monkeypatch.setattr(event_times, "STALL", STALL)
+    monkeypatch.setattr(keyboard, "STALL", STALL)
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -21,10 +21,9 @@ from app.compose.stored_offsets import stored_offsets
 from app.desk.data_folder import data_folder
 from app.desk.desk import Desk
 from app.programs.whole_file import write_whole
-from app.screen.look import Look
-from app.screen.main_window import MainWindow
-from app.screen.theme import DARK
-from app.screen.window_frame import Frame
+from app.screen.look import DARK, Look
+from app.screen.window.main_window import MainWindow
+from app.screen.window.window_frame import Frame
 from core.executor.executor import Executor
 from core.executor.snapshot import Snapshot, State
 from core.store.store import Store

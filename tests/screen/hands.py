@@ -13,10 +13,9 @@ from pytestqt.qtbot import QtBot
 
 from app.automatic.automatic_view import AutomaticPage
 from app.desk.desk import Desk
-from app.screen.look import Look
-from app.screen.main_window import MainWindow
-from app.screen.theme import DARK
-from app.screen.window_frame import Frame
+from app.screen.look import DARK, Look
+from app.screen.window.main_window import MainWindow
+from app.screen.window.window_frame import Frame
 from core.executor.snapshot import State
 from tests.screen.fake import FakeMachine
 from tests.texts import text as wording

@@ -9,8 +9,8 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 
 from app.mdi.mdi_model import MdiModel
-from app.screen.main_window import MainWindow
-from app.screen.window_frame import Frame
+from app.screen.window.main_window import MainWindow
+from app.screen.window.window_frame import Frame
 from core.executor.snapshot import Snapshot, State
 from tests.attached import attached
 from tests.screen.pictures import Stage

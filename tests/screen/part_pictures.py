@@ -20,7 +20,7 @@ from app.compose.machine.machine_files import load_machine
 from app.compose.machine.machine_setup import setup_for
 from app.compose.stored_offsets import read_offsets
 from app.compose.workshop import samples
-from app.path.solid_pane_view import quarter
+from app.path.part_pane_view import quarter
 from app.screen.look import FAMILY, load_fonts
 from core.interpreter.job_setup import SecondaryOffset, Setup, ToolOffset
 from core.language.called_files import with_called_files

@@ -30,9 +30,8 @@ from app.desk.desk import Desk
 from app.editor.editor_view import EditorPage
 from app.offsets.offset_book import OffsetBook
 from app.screen import page_table
-from app.screen.look import Look, dress, load_fonts
-from app.screen.main_window import MainWindow
-from app.screen.theme import PALETTES
+from app.screen.look import PALETTES, Look, dress, load_fonts
+from app.screen.window.main_window import MainWindow
 from core.access.access_table import Level
 from core.executor.snapshot import State
 from core.store.people import PersonRow

@@ -14,12 +14,11 @@ from pytestqt.qtbot import QtBot
 
 from app.desk.pages.sheet import Row, Sheet
 from app.screen import accessible, page_table
-from app.screen.look import Look, Painter
-from app.screen.main_window import MainWindow
+from app.screen.look import DARK, Look, Painter
 from app.screen.page_table import pages_of
 from app.screen.panel import Control, FingerPanel
 from app.screen.sheet_panel import SheetPanel
-from app.screen.theme import DARK
+from app.screen.window.main_window import MainWindow
 from core.executor.commands import SetSwitch
 from tests.screen.accessible_tree import DESCRIPTION, NAME, named, press, tree
 from tests.screen.day import begun

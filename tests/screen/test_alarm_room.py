@@ -9,9 +9,8 @@ from PySide6.QtWidgets import QApplication
 from app.desk.status.machine_status import status_of
 from app.desk.status.prompt_line import alarm_of, exactly, reason
 from app.desk.status.readouts import Readout
-from app.screen.look import Look, load_fonts
-from app.screen.readout_panels import stop_words
-from app.screen.theme import DARK
+from app.screen.look import DARK, Look, load_fonts
+from app.screen.window.readout_panels import stop_words
 from core.alarms import CATALOGUE, Code, Reaction
 from core.executor.raised_alarm import make_alarm
 from core.executor.snapshot import Snapshot, State

@@ -14,8 +14,7 @@ from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
 from app.screen.chart import Chart, curve_colour, line_pen, set_curve
-from app.screen.look import Look
-from app.screen.theme import CURVES, DARK, LIGHT
+from app.screen.look import CURVES, DARK, LIGHT, Look
 
 
 @pytest.fixture
@@ -34,7 +33,7 @@ def chart_of(parent: QWidget, look: Look | None = None) -> Chart:
 
 def test_pyqtgraph_is_not_imported_at_the_start() -> None:
     code = (
-        "import sys; import app.screen.run_screen, app.compose.screen_desk, app.screen.main_window;"
+        "import sys; import app.screen.run_screen, app.compose.screen_desk, app.screen.window.main_window;"
         "from app.screen.page_table import PAGES; sys.exit('pyqtgraph' in sys.modules)"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

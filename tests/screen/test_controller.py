@@ -13,9 +13,8 @@ from pytestqt.qtbot import QtBot
 import resources
 from app.compose.screen_desk import build_desk
 from app.desk.desk import Desk
-from app.screen.look import Look
-from app.screen.main_window import MainWindow
-from app.screen.theme import DARK
+from app.screen.look import DARK, Look
+from app.screen.window.main_window import MainWindow
 from core.executor.snapshot import State
 from drivers.simulators.grblhal_far_end import TcpEnd, serve
 from drivers.simulators.grblhal_firmware import Firmware

@@ -7,9 +7,8 @@ from PySide6.QtGui import QTouchEvent
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
-from app.screen.look import Look
-from app.screen.station_dock import StationDock
-from app.screen.theme import DARK
+from app.screen.look import DARK, Look
+from app.screen.window.station_dock import StationDock
 from app.screen.window_layout import FINGER, LEAST, places, unit
 from core.executor.commands import CycleStart
 from core.executor.snapshot import State

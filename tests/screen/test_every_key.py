@@ -21,8 +21,8 @@ from app.desk.status.standing_prompt import start_refusal
 from app.jog import hand_functions
 from app.programs.whole_file import write_whole
 from app.screen import page_table
-from app.screen.keys import OF_AUTOMATIC
 from app.screen.page_table import pages_of
+from app.screen.window.keys import OF_AUTOMATIC
 from core.executor.snapshot import BY_HAND, State
 from tests.screen.day import Day, Key, begun
 from tests.screen.jog.bench import shipped

@@ -13,9 +13,8 @@ from app.compose.machine.machine_files import load_machine
 from app.compose.machine.machine_setup import setup_for
 from app.compose.screen_desk import desk_and_executor
 from app.compose.stored_offsets import Offsets
-from app.screen.look import Look
-from app.screen.main_window import MainWindow
-from app.screen.theme import DARK
+from app.screen.look import DARK, Look
+from app.screen.window.main_window import MainWindow
 from core.executor.snapshot import State
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import load_source

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from app.mdi.mdi_view import MdiPage
-from app.screen.station_dock import StationDock
+from app.screen.window.station_dock import StationDock
 from app.searchto.searchto_model import SearchtoModel, SearchtoStage
 from core.executor.commands import CROSSES
 from core.executor.snapshot import Starts, State

@@ -10,8 +10,8 @@ from PySide6.QtGui import QKeyEvent, QWindow
 from PySide6.QtWidgets import QApplication
 
 from app.screen import page_table
-from app.screen.event_times import FRAMES, STALL, EventTimes
-from app.screen.main_window import MainWindow
+from app.screen.window.keyboard import FRAMES, STALL, EventTimes
+from app.screen.window.main_window import MainWindow
 from core.executor.commands import CycleStart, FeedHold
 from core.executor.snapshot import State
 from tests.screen.hands import Hands, Key
@@ -115,7 +115,7 @@ def test_a_repeat_that_the_release_has_overtaken_is_no_press(
     watched: Hands, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     server, keyboard = Server(), watched.window.keyboard
-    monkeypatch.setattr("app.screen.keyboard.x_server", lambda: server)
+    monkeypatch.setattr("app.screen.window.keyboard.x_server", lambda: server)
     keyboard.watch(window_of(watched))
     now = [keyboard.times.clock()]
     monkeypatch.setattr(keyboard.times, "clock", lambda: now[0])

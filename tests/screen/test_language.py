@@ -20,12 +20,10 @@ from app.desk.status.modal_rows import NONE, rows_of
 from app.desk.status.prompt_line import exactly
 from app.desk.translation import tr
 from app.screen import look
-from app.screen.language import CONTEXT, speak_in
-from app.screen.look import Look
-from app.screen.main_window import MainWindow
+from app.screen.look import CONTEXT, DARK, Look, speak_in
 from app.screen.page_base import Page
-from app.screen.theme import DARK
-from app.special.logged_events import event_row
+from app.screen.window.main_window import MainWindow
+from app.special.machine_records import event_row
 from core.alarms import CATALOGUE, Code, Entry
 from core.executor.raised_alarm import log_line, make_alarm
 from core.executor.snapshot import Alarm

@@ -25,12 +25,11 @@ from app.offsets.cell_table_view import CellPanel
 from app.offsets.mill_tools import MillTools
 from app.offsets.offsets_view import HistoryList
 from app.programs.file_prompt_view import FilePrompt
-from app.screen.look import Look, Painter
+from app.screen.look import DARK, Look, Painter
 from app.screen.main_menu import _Tiles
 from app.screen.page_table import menu_of
 from app.screen.panel import Panel
 from app.screen.sheet_panel import SheetPanel
-from app.screen.theme import DARK
 from app.screen.window_layout import FINGER
 from app.special.special_view import ItemList
 from core.language.diagnostics import Diagnostic, Severity

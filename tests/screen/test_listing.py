@@ -9,9 +9,8 @@ import pytest
 from PySide6.QtGui import QPixmap
 from pytestqt.qtbot import QtBot
 
-from app.screen.look import Look
+from app.screen.look import DARK, Look
 from app.screen.program_listing import Listing
-from app.screen.theme import DARK
 
 
 class Counted(Sequence[str]):

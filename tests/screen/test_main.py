@@ -12,9 +12,9 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.exceptions import capture_exceptions
 
 from app.desk.desk import Desk
-from app.screen.main_window import MainWindow
 from app.screen.run_screen import run_screen
-from app.screen.window_frame import Frame
+from app.screen.window.main_window import MainWindow
+from app.screen.window.window_frame import Frame
 from core.executor.snapshot import State
 from tests.screen.desks import SAMPLES, desk_on
 from tests.screen.fake import FakeMachine

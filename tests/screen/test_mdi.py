@@ -8,7 +8,7 @@ import pytest
 
 from app.mdi.mdi_view import MdiPage
 from app.screen import page_table
-from app.screen.letter_keys import LINES
+from app.screen.entry_panel import LINES
 from core.executor.snapshot import Starts, State
 from tests.screen.lathe import Key, Operator
 from tests.screen.yes import yes

@@ -17,8 +17,7 @@ from app.path.path_aspects import Aspect, DrawnLeg, Tip
 from app.path.path_marks_view import leg_labels
 from app.path.path_picture import Picture, PictureBuilder
 from app.path.path_view import PathView
-from app.screen.look import Look
-from app.screen.theme import DARK
+from app.screen.look import DARK, Look
 from core.executor.snapshot import State
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.elementary_blocks import Kind as BlockKind

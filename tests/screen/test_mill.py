@@ -18,9 +18,8 @@ from app.compose.workshop import samples
 from app.editor.editor_view import EditorPage
 from app.jog.jog_view import JogPage
 from app.offsets.offset_book import OffsetBook
-from app.screen.look import Look
-from app.screen.main_window import MainWindow
-from app.screen.theme import DARK
+from app.screen.look import DARK, Look
+from app.screen.window.main_window import MainWindow
 from app.searchto.searchto_view import SearchtoPage
 from core.executor.snapshot import Snapshot, State
 from core.store.store import Store

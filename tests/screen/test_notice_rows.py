@@ -11,10 +11,8 @@ from PySide6.QtWidgets import QApplication
 from app.desk.status.interrupted_notice import NoticeRow, _uncertain
 from app.desk.translation import tr
 from app.screen import page_table
-from app.screen.language import speak_in
-from app.screen.look import Look, load_fonts
-from app.screen.theme import DARK
-from app.screen.window_bars import NoticeRows
+from app.screen.look import DARK, Look, load_fonts, speak_in
+from app.screen.window.window_bars import NoticeRows
 from app.screen.window_layout import FINGER
 from core.executor.snapshot import CONTROL_LOST, State
 from core.ports import ALL_UNKNOWN, Unknown

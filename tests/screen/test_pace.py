@@ -9,8 +9,8 @@ import pytest
 from PySide6.QtCore import QTimer
 from PySide6.QtTest import QTest
 
-from app.screen.main_window import FRAME_MS, REST_MS, UNTOUCHED
-from app.screen.window_frame import STALE
+from app.screen.window.main_window import FRAME_MS, REST_MS, UNTOUCHED
+from app.screen.window.window_frame import STALE
 from core.executor.snapshot import State
 from tests.screen.hands import Hands, Key
 

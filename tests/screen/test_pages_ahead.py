@@ -13,9 +13,9 @@ from app.desk.desk import Desk
 from app.desk.page_description import PageEntry
 from app.desk.programs.program_loading import Phase
 from app.scope.scope_view import ScopePage
-from app.screen import page_table, pages_ahead
+from app.screen import page_table
 from app.screen.page_base import Page
-from app.screen.pages_ahead import APART, PagesAhead
+from app.screen.page_table import APART, PagesAhead
 from tests.screen.desks import desk_on
 from tests.screen.fake import FakeMachine
 from tests.screen.hands import Hands
@@ -77,7 +77,7 @@ NO_FILE = (PageEntry("GONE", "app.scope.no_such_file.Page", later=("app.screen.c
 
 
 def entries(monkeypatch: pytest.MonkeyPatch, found: tuple[PageEntry, ...]) -> None:
-    monkeypatch.setattr(pages_ahead, "pages_of", lambda _language: found)
+    monkeypatch.setattr(page_table, "pages_of", lambda _language: found)
 
 
 def test_a_page_with_charts_is_made_slice_by_slice(idle: Desk, monkeypatch: pytest.MonkeyPatch) -> None:

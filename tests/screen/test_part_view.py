@@ -11,13 +11,12 @@ from PySide6.QtGui import QColor, QImage
 from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
+from app.path.part_pane_view import quarter
 from app.path.part_player import PartPlayer
 from app.path.path_aspects import Aspect, Tip
 from app.path.path_marks_view import part_words
 from app.path.path_view import PathView
-from app.path.solid_pane_view import quarter
-from app.screen.look import Look
-from app.screen.theme import DARK, LIGHT
+from app.screen.look import DARK, LIGHT, Look
 from core.part.stock import Clamping
 from tests.path.test_part_player import RAPID, SHAFT, Clock, picture
 from tests.screen.hands import LIMIT

@@ -23,8 +23,7 @@ from app.path.path_projection import (
     travelled,
 )
 from app.path.polyline import Polyline, Stroke
-from app.screen.look import Look
-from app.screen.theme import DARK
+from app.screen.look import DARK, Look
 from app.screen.window_layout import FINGER
 from tests.screen.colours import apart
 

@@ -8,9 +8,8 @@ import pytest
 from PySide6.QtTest import QTest
 
 from app.desk.desk import Desk
-from app.screen.look import Look
-from app.screen.main_window import MainWindow
-from app.screen.theme import DARK
+from app.screen.look import DARK, Look
+from app.screen.window.main_window import MainWindow
 from core.executor.snapshot import State
 from tests.screen.hands import Key
 from tests.screen.pictures import Stage

@@ -17,10 +17,10 @@ from PySide6.QtWidgets import QApplication
 from app.desk.desk import Desk
 from app.scope.record_shelf import RecordShelf, ShelfError
 from app.scope.scope_model import Scope, Side
-from app.scope.scope_trigger import When
 from app.scope.scope_view import ScopePage
+from app.scope.time_window import When
 from app.screen import page_table
-from app.screen.theme import CURVES
+from app.screen.look import CURVES
 from app.screen.window_layout import FINGER
 from app.special.special_view import SpecialPage
 from core.executor.commands import FeedHold

@@ -7,8 +7,7 @@ from dataclasses import fields
 import pytest
 from PySide6.QtGui import QFontInfo, QFontMetricsF, QRawFont
 
-from app.screen.look import LEAST, Look, load_fonts, width_of
-from app.screen.theme import CURVES, DARK, PALETTES, Palette
+from app.screen.look import CURVES, DARK, LEAST, PALETTES, Look, Palette, load_fonts, width_of
 
 TEXT = [
     *((ink, ground) for ink in ("text", "soft", "accent") for ground in ("ground", "panel", "key")),

@@ -11,7 +11,7 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
 from app.offsets.offset_book import OffsetBook
-from app.offsets.tool_shapes_view import ShapeTable, ToolShapePage
+from app.offsets.tool_offsets_view import ShapeTable, ToolShapePage
 from app.screen import page_table
 from app.screen.entry_panel import KeyPad
 from app.screen.panel import Panel

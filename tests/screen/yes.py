@@ -7,7 +7,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
 from app.desk.desk import Desk
-from app.screen.main_window import MainWindow
+from app.screen.window.main_window import MainWindow
 
 NEVER = float("-inf")
 

@@ -8,8 +8,7 @@ import pytest
 
 from app.compose.workshop import rebuilt
 from app.desk.programs.program_loading import Proved
-from app.searchto.searchto_cursor import LineCursor
-from app.searchto.searchto_finder import LineFinder
+from app.searchto.searchto_finder import LineCursor, LineFinder
 from core.executor.job import Job, Proof, make_job
 from core.interpreter.restart.restart_point import NoRestart, RestartPoint
 from core.language.source import Source

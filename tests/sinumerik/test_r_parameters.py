@@ -12,7 +12,7 @@ from app.compose.runs.journal import Journal
 from app.compose.screen_desk import desk_and_executor
 from app.compose.stored_offsets import offsets_of, setup_with, stored_offsets
 from app.offsets.offsets_in_force import R_PARAMETERS, r_parameters
-from app.special.r_parameters import RParameters
+from app.special.operator_settings import RParameters
 from app.special.special_functions import SpecialFunctions
 from core.executor.job import make_job
 from core.language.diagnostics import Severity

@@ -9,7 +9,7 @@ import pytest
 from app.compose.machine.machine_files import parse_machine, shipped_machine
 from app.compose.machine.machine_setup import control_limits
 from app.desk.status.readouts import Readout, position_figures
-from app.jog.jog_speeds import directions_of
+from app.jog.held_jog import directions_of
 from core.executor.snapshot import Snapshot
 from core.interpreter.checkpoint import Begin, Checkpoint
 from core.interpreter.job_setup import Setup, ZeroOffset

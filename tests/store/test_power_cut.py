@@ -11,8 +11,7 @@ import numpy as np
 import pytest
 
 from app.desk.background_work import Latest
-from app.editor.document import Document
-from app.editor.drafts import Drafts
+from app.editor.document import Document, Drafts
 from app.editor.versions import NoArchive
 from app.programs.whole_file import FileError, write_new, write_out, write_whole
 from app.shopfloor.status_file import StatusFile

@@ -23,9 +23,9 @@ from PySide6.QtWidgets import QApplication, QLineEdit, QMenu, QPlainTextEdit, QW
 
 from app.cli.main import console
 from app.desk.desk import Desk
-from app.screen.keyboard import Keyboard
-from app.screen.main_window import MainWindow
 from app.screen.panel import FingerPanel, Panel
+from app.screen.window.keyboard import Keyboard
+from app.screen.window.main_window import MainWindow
 from drivers.simulators.plant_hands import PlantHands
 from tests.stories import patient_clock
 

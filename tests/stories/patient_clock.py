@@ -10,7 +10,7 @@ from __future__ import annotations
 import threading
 import time
 
-from app.screen import event_times
+from app.screen.window import keyboard
 from drivers.waiting import RealClock
 
 GRACE = 0.12  # s; the control at rest ticks every 0.095 s
@@ -70,7 +70,7 @@ class PatientClock:
 
 
 CLOCK = PatientClock()
-_STALL = event_times.STALL
+_STALL = keyboard.STALL
 
 
 def install() -> None:
@@ -88,10 +88,10 @@ def install() -> None:
     setattr(RealClock, "__init__", begin)  # noqa: B010
     setattr(RealClock, "sleep_until", sleep_until)  # noqa: B010
     setattr(RealClock, "now", now)  # noqa: B010
-    event_times.STALL = float("inf")
+    keyboard.STALL = float("inf")
 
 
 def run_in_real_time() -> None:
     """Let delays of machine time and of keys count from now on."""
-    event_times.STALL = _STALL
+    keyboard.STALL = _STALL
     CLOCK.run_in_real_time()

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from app.transfer.serial_settings import ROWS, settings_of, stored_form
+from app.transfer.serial_transfer import ROWS, settings_of, stored_form
 from core.machine.desk_tables import DncModel
 from tests.texts import text
 

@@ -16,7 +16,7 @@ from app.cli.who_changes import who_changes
 from app.desk.arithmetic import EntryError, value_of
 from app.desk.command_errors import EXIT_OK, CommandError
 from app.desk.toml_file import unknown
-from app.offsets.offset_acts import act_of
+from app.offsets.change_rules import act_of
 from app.offsets.offset_values import stated_fields
 from app.offsets.offsets_file import ALIASES, TOOL_KEYS, out_of_range, shown
 from core.access.access_table import Act

@@ -1,4 +1,4 @@
-"""``turndesk access``: people, their levels and PINs, and the service reset at the machine's own keyboard."""
+"""``turndesk access``: people, levels, PINs, the service reset; the PIN that other commands ask for."""
 
 from __future__ import annotations
 
@@ -6,18 +6,48 @@ import argparse
 import getpass
 import json
 import sys
+import time
 from typing import TYPE_CHECKING
 
 from app.cli.store_command import opened_store
 from app.cli.who_changes import RESET, add_as_option, demand_own_keyboard, who_changes
 from app.desk.command_errors import EXIT_OK, CommandError, as_command_error
 from core.access.access_table import RULES, Act, Level
+from core.extras.access.pins import Hashed, hashed, is_outdated, is_pin, wait_after
+from core.json_key import Output, keys
 from core.message import Message
+from core.store.people import PersonRow, keep_person
+from core.store.store import Store
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
-    from core.store.people import PersonRow
-    from core.store.store import Store
+
+
+ACCESS_LIST = Output(
+    "access list --json",
+    "One object.",
+    keys(
+        """
+on | boolean | | Whether access levels are on.
+damaged | boolean | | Whether an entry of a user is damaged, so that this user cannot log in.
+people | list | | Users.
+people[].name | string | | Name.
+people[].level | string | | Level: OPERATOR, SETUP or SERVICE.
+"""
+    ),
+)
+ACCESS_TABLE = Output(
+    "access table --json",
+    "One object with a key for each kind of change, such as ZERO OFFSETS.",
+    keys(
+        """
+*.level | string | | Level that the change needs.
+*.what | string | | Description of the change.
+"""
+    ),
+)
+OUTPUTS = {"scope FILE --json": (ACCESS_LIST, ACCESS_TABLE)}
+
 
 _DAMAGED = (
     "levels are on, but an entry of the people is damaged and lets nobody in; enter it again, "
@@ -123,7 +153,7 @@ def _pin(store: Store, args: argparse.Namespace) -> str:
 
 def _kept(store: Store, args: argparse.Namespace, name: str, level: Level, done: str) -> str:
     """Ask for the PIN twice and keep it."""
-    from app.extras.access.pin_question import asked_pin
+    from app.extras.access.access_command import asked_pin
     from core.extras.access.pins import PinError, check_pin, hashed
     from core.store import people
 
@@ -166,3 +196,45 @@ def _reset(store: Store, _args: argparse.Namespace) -> str:
 
 
 _ACTIONS = {"list": _list, "add": _add, "pin": _pin, "remove": _remove, "reset": _reset}
+
+
+_WRONG = "wrong PINs"  # the setting that the desk keeps too
+
+
+def demand_pin(store: Store, row: PersonRow, remedy: str) -> None:
+    """Raises CommandError for a wrong one, which is logged, and lets the next wait."""
+    if not row.has_pin:
+        raise CommandError(
+            Message("no PIN is stored for user {row}; {remedy}", row=row.name, remedy=remedy), "no-pin"
+        )
+    kept = store.setting(_WRONG)
+    wrong = kept if isinstance(kept, int) else 0
+    if pause := wait_after(wrong):
+        sys.stderr.write(f"turndesk: {wrong} wrong PINs in a row; try again in {pause:.0f} s\n")
+        time.sleep(pause)
+    pin = asked_pin(Message("PIN for {row}: ", row=row.name))
+    store.set_setting(_WRONG, wrong + 1).result()  # before it is looked at: who ends us then is counted too
+    stored = Hashed(row.salt, row.hash)
+    if is_pin(pin, stored):
+        if is_outdated(stored):
+            renewed = row._replace(**hashed(pin)._asdict())
+            store.write(lambda c: keep_person(c, renewed)).result()
+        store.set_setting(_WRONG, None).result()
+        return
+    told = Message(
+        "wrong PIN for {row} entered on the command line; consecutive wrong PINs: {wrong}",
+        row=row.name,
+        wrong=wrong + 1,
+    )
+    store.log_event("access", told, who=getpass.getuser()).result()
+    raise CommandError(
+        Message("wrong PIN for user {row}; nothing was changed, and the attempt was logged", row=row.name),
+        "wrong-pin",
+    )
+
+
+def asked_pin(question: str) -> str:
+    """What is typed, which nobody sees; without a terminal a line of the standard input."""
+    if sys.stdin.isatty():
+        return getpass.getpass(question)
+    return sys.stdin.readline().strip()

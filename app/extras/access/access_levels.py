@@ -12,8 +12,7 @@ from app.desk.pages.sheet import Entry, Key, Row, Sheet, following
 from app.desk.persistence import Persistence
 from app.desk.status.machine_status import Tone
 from app.desk.translation import data, tr
-from app.extras.access.access_reset import AccessReset
-from app.extras.access.sign_in import MINUTES, SignIn
+from app.extras.access.sign_in import MINUTES, AccessReset, SignIn
 from app.special.special_functions import SpecialFunction
 from core.access.access_table import RULES, Act, Level
 from core.executor.snapshot import Snapshot

@@ -39,13 +39,13 @@ class AccessByPin(Extra):
         return ((AccessLevels(desk, persistence, sign_in_of(desk.access)), "LAMPS AND SOUND"),)
 
     def demand_pin(self, store: Store, row: PersonRow, remedy: str) -> bool:
-        from app.extras.access.pin_question import demand_pin
+        from app.extras.access.access_command import demand_pin
 
         demand_pin(store, row, remedy)
         return True
 
     def json_outputs(self) -> Mapping[str, Sequence[Output]]:
-        from app.extras.access.access_json_keys import OUTPUTS
+        from app.extras.access.access_command import OUTPUTS
 
         return OUTPUTS
 

@@ -32,8 +32,15 @@ from app.extras.analyses.drive_test_figures import (
 )
 from app.extras.analyses.spindle_response import SpindleResponse, last_run_up, spindle_drawing, spindle_sheet
 from app.scope.scope_model import Scope
-from core.extras.analyses.ball_bar import BallBar, arcs_in, ball_bar
-from core.extras.analyses.path_error import PathError, WorstPlace, of_samples, worst_places
+from core.extras.analyses.path_error import (
+    BallBar,
+    PathError,
+    WorstPlace,
+    arcs_in,
+    ball_bar,
+    of_samples,
+    worst_places,
+)
 from core.extras.analyses.thread_passes import Thread, fastest, find_thread
 from core.machine.machine_model import Axis, SpindleModel
 from core.message import Message

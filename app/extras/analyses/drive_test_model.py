@@ -28,9 +28,8 @@ from app.extras.analyses.drive_test_figures import (
     shown_words,
     words_of,
 )
-from app.jog.held_jog import Held, HeldJog
+from app.jog.held_jog import Held, HeldJog, JogDirection, JogSpeeds, directions_of
 from app.jog.jog_model import LEASE, why_no_jog
-from app.jog.jog_speeds import JogDirection, JogSpeeds, directions_of
 from app.scope.record_shelf import INSTANT
 from app.scope.scope_model import Scope
 from core.executor.commands import Command, DriveTest, DriveTestOn, JogStop

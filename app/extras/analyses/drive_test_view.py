@@ -11,11 +11,9 @@ from PySide6.QtWidgets import QWidget
 from app.desk.programs.program_loading import Loaded
 from app.desk.status.machine_status import MachineStatus
 from app.desk.translation import tr
-from app.extras.analyses.analyses_view import Above
-from app.extras.analyses.drawing_room_view import DrawingRoom
+from app.extras.analyses.analyses_view import Above, DrawingRoom
 from app.extras.analyses.drive_test_model import DriveTests
-from app.jog.held_keys_view import HeldKeysPage
-from app.jog.jog_cross_view import JogCross
+from app.jog.held_keys_view import HeldKeysPage, JogCross
 from app.screen import page_table
 from app.screen.look import CENTRE, Look, Painter
 from app.screen.page_base import Host, KeyActions

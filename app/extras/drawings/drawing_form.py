@@ -1,24 +1,28 @@
-"""The form of a drawing (DXF, SVG): which contour, about which axis, by which tools; it writes shapes."""
+"""The form of a drawing (DXF, SVG): read, planned and tried beside the screen; it writes shapes."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from pathlib import Path
 
-from app.extras.drawings.drawing_plan import ALL, OWN, Asked, Plan, pictured
-from app.extras.shapes.shape_form import ShapeForm
+from app.desk.background_work import Latest, Watch
+from app.desk.pages.sheet import Key
+from app.desk.translation import tr
+from app.extras.drawings.drawing_plan import ALL, OWN, Asked, Plan, Planner, pictured
+from app.extras.shapes.shape_form import AddedForm, ShapeForm, Show
+from core.extras.drawings.contour_walk import UNITS
+from core.extras.drawings.drawing_file import is_drawing
+from core.extras.drawings.drawing_process import read_in_process
 from core.extras.drawings.drawing_view import Front, Side, Zero
 from core.extras.drawings.part_against_drawing import Comparison
-from core.extras.drawings.profile_words import in_words
-from core.extras.drawings.unit_check import UNITS
+from core.extras.drawings.profile_job import in_words
 from core.extras.shapes.cutting_data import MATERIALS
 from core.extras.shapes.lines.code_lines import Code
 from core.extras.shapes.shape import Filled, Shape
-from core.extras.shapes.shape_fields import Field, Kind, Value, Values, text
-from core.extras.shapes.shape_setting import Setting
+from core.extras.shapes.shape_fields import Field, Kind, Setting, Value, Values, text
 from core.message import Message
 from core.sketch import Dim, Sketch, cut, part, sketch
 
@@ -244,3 +248,99 @@ def _from_segment(p: tuple[float, float], a: tuple[float, float], b: tuple[float
     whole = dx * dx + dy * dy
     share = max(0.0, min(1.0, ((p[0] - a[0]) * dx + (p[1] - a[1]) * dy) / whole)) if whole else 0.0
     return math.dist(p, (a[0] + share * dx, a[1] + share * dy))
+
+
+Attempt = Callable[[str, Plan, Watch], tuple[Comparison | None, tuple[str, ...]]]
+"""A program that was made of a drawing is proved, and its part held against it."""
+
+
+def nothing_tried(_text: str, _plan: Plan, _watch: Watch) -> tuple[Comparison | None, tuple[str, ...]]:
+    """Of a desk that knows no machine."""
+    return None, ()
+
+
+class AddedDrawing(AddedForm):
+    """``files`` returns the drawings beside the programs; ``attempt`` tries a program that was made."""
+
+    key, shape = "X", PROFILE
+
+    def __init__(self, files: Callable[[], Mapping[str, Path]], attempt: Attempt = nothing_tried) -> None:
+        self.files, self.attempt = files, attempt
+        self.planner = Planner(read_in_process)
+        self.planning, self.trying = Latest("planning-drawing"), Latest("trying-drawing")
+
+    def open_form(self, setting: Setting, before: tuple[str, ...], wanted: Path | None) -> DrawingForm:
+        """With the drawings beside the programs, that which was asked for first."""
+        files = dict(self.files())
+        if wanted is not None:
+            files = {wanted.name: wanted, **{name: path for name, path in files.items() if path != wanted}}
+        return DrawingForm(PROFILE, setting, files=files, before=before)
+
+    def makes_of(self, name: str) -> bool:
+        """Of a drawing."""
+        return is_drawing(name)
+
+    def work(self, form: ShapeForm, show: Show, tell: Callable[[str], None]) -> None:
+        """What was typed is worked out beside the screen; then the program is tried."""
+        if not isinstance(form, DrawingForm) or form.pending is None:
+            return
+        asked = form.pending
+
+        def planned(plan: Plan) -> None:
+            if form.pending == asked:
+                form.take(plan)
+                self._try(form, plan, show(form), failed)
+
+        def failed(why: str) -> None:
+            tell(tr(Message("THE DRAWING CANNOT BE PROCESSED: {why}", why=why)))
+
+        self.trying.give_up()
+        self.planning.ask(lambda watch: self.planner.plan(asked, watch), planned, failed)
+
+    def _try(self, form: DrawingForm, plan: Plan, text: str | None, failed: Callable[[str], None]) -> None:
+        """``text`` is the program with what the form writes; None where the form is no longer open."""
+        if not form.lines or text is None:
+            return
+
+        def tried(found: tuple[Comparison | None, tuple[str, ...]]) -> None:
+            if form.plan is plan:
+                form.tried(*found)
+
+        self.trying.ask(lambda watch: self.attempt(text, plan, watch), tried, failed)
+
+    def cancel(self, form: ShapeForm) -> None:
+        """Cancel the reading of a drawing (F6 or Esc) by ending its process."""
+        if isinstance(form, DrawingForm):
+            self.planning.give_up()
+            form.cancel()
+
+    def keys(self, form: ShapeForm, show: Show) -> Mapping[int, Key]:
+        """F6 cancels the reading, and begins it again."""
+
+        def read_again() -> None:
+            form.work()
+            show(form)
+
+        if form.waits:
+            return {6: Key("CANCEL", lambda: self.cancel(form))}
+        return {6: Key("READ", read_again)} if isinstance(form, DrawingForm) and form.canceled else {}
+
+    def prompt(self, form: ShapeForm) -> str:
+        """How far the reading is, what is wrong, or what the keys do."""
+        if not form.waits:
+            keys = tr("LEFT/RIGHT: CHANGE   TAP DRAWING: PICK CONTOUR OR AXIS")
+            return tr(form.trouble or keys)
+        if not self.planner.reading:
+            return tr("CALCULATING THE CONTOUR. PRESS F6 TO CANCEL")
+        words = tr("READING THE DRAWING: {seconds} s. PRESS F6 TO CANCEL")
+        return tr(Message(words, seconds=self.planning.reached))
+
+    def poll(self) -> None:
+        """Take up what was planned and tried."""
+        self.planning.poll()
+        self.trying.poll()
+
+    def close(self) -> None:
+        """End both workers."""
+        self.planning.close()
+        self.trying.close()

@@ -9,7 +9,7 @@ from pathlib import Path
 from app.compose.stored_offsets import shapes_at_hand
 from app.desk.background_work import Watch
 from app.desk.desk import Desk
-from app.extras.drawings.added_drawing import AddedDrawing
+from app.extras.drawings.drawing_form import AddedDrawing
 from app.extras.drawings.drawing_plan import Plan
 from app.extras.drawings.profile_trial_desk import TrialStock, tried
 from app.extras.shapes.shapes_model import Shapes

@@ -28,13 +28,13 @@ class Drawings(Extra):
             add_drawing(part, desk, machine)
 
     def json_outputs(self) -> Mapping[str, Sequence[Output]]:
-        from app.extras.drawings.profile_json_keys import OUTPUTS
+        from app.extras.drawings.profile_command import OUTPUTS
 
         return {"access table --json": OUTPUTS}
 
     def words(self) -> Sequence[str]:
         from app.extras.drawings.drawing_form import PROFILE
-        from app.extras.shapes.shape_words import words_of
+        from app.extras.shapes.shape_form import words_of
 
         of_drawings = ("DRAWING UNIT: INCH", "DRAWING UNIT: AS DRAWN", "LAYER: ALL")  # not in the table
         return (*words_of([PROFILE]), *of_drawings)

@@ -1,4 +1,4 @@
-"""``turndesk profile PART.dxf``: the contour of a drawing, and the program that turns it."""
+"""``turndesk profile PART.dxf``: the contour of a drawing, and the program that turns it; its JSON keys."""
 
 from __future__ import annotations
 
@@ -12,8 +12,9 @@ from app.cli.program_options import out_file
 from app.cli.who_changes import add_as_option
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError, as_command_error
 from app.extras.shapes.shapes_command import may_write, write_made
-from core.extras.drawings.unit_check import UNITS
+from core.extras.drawings.contour_walk import UNITS
 from core.extras.shapes.cutting_data import MATERIALS
+from core.json_key import Output, keys
 from core.language.source import Dialect, dialect_of
 from core.message import Message
 
@@ -137,8 +138,7 @@ def _add_tool_options(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Write the program, and say what stays of the drawing; 1 when the program would have errors."""
-    from core.extras.drawings.drawing import DrawingError
-    from core.extras.drawings.work_limit import limited_work
+    from core.extras.drawings.drawing import DrawingError, limited_work
 
     with as_command_error(DrawingError), limited_work(lambda _seconds: None):
         return _run(args)
@@ -194,7 +194,7 @@ def _run(args: argparse.Namespace) -> int:
 def _check_unit(drawing: Drawing, view: View, net: Net, machine: Machine) -> None:
     """Refuse a contour that is too large for the machine only because of the unit that its file states."""
     from app.extras.shapes.shapes_desk import shop_of
-    from core.extras.drawings.unit_check import wrong_unit
+    from core.extras.drawings.contour_walk import wrong_unit
 
     if (wrong := wrong_unit(net, view.unit, shop_of(machine, {}).travel)) is not None:
         size, name = wrong[0], wrong[1].lower()
@@ -378,14 +378,14 @@ def _program(
 ) -> ProfileProgram:
     from app.extras.shapes.shapes_desk import shop_of
     from core.extras.drawings.profile_program import profile_program
-    from core.extras.shapes.shape_setting import Setting
+    from core.extras.shapes.shape_fields import Setting
 
     setting = Setting(metric=args.metric, shop=shop_of(machine, shapes), dialect=args.dialect)
     return profile_program(chosen, typed, [], setting)
 
 
 def _tell(made: ProfileProgram, trial: Trial, chosen: Profile, text: str, args: argparse.Namespace) -> None:
-    from core.extras.drawings.profile_words import in_json, in_words
+    from core.extras.drawings.profile_job import in_json, in_words
 
     if args.json:
         told = {
@@ -398,3 +398,58 @@ def _tell(made: ProfileProgram, trial: Trial, chosen: Profile, text: str, args: 
         return
     for line in (*in_words(made, trial.comparison, chosen, metric=args.metric), *trial.errors):
         sys.stderr.write(f"turndesk: {line}\n")
+
+
+PROFILE = Output(
+    "profile DRAWING --json",
+    "One object. Lengths are in millimeters.",
+    keys(
+        """
+file | string | | The drawing.
+out | string or null | | File of --out.
+program | string | | Text of the program.
+side | string | | OUTSIDE or BORE.
+closed_gap_mm | number | mm | Largest gap in the contour that was closed.
+secondary_offset | object or null | | OmniTurn: secondary offset that G41 needs; null without it.
+secondary_offset.number | integer | | Number of the secondary offset.
+secondary_offset.x | number | mm | X, a radius.
+secondary_offset.z | number | mm | Z.
+secondary_offset.r | number | mm | Nose radius.
+cutting_edge | object | | SINUMERIK: cutting edge that G41 needs; the key is missing without it.
+cutting_edge.tool | integer | | Number of the tool.
+cutting_edge.edge | integer | | Number of the cutting edge.
+cutting_edge.r | number | mm | Nose radius.
+cutting_edge.quadrant | integer | | Tip quadrant.
+left | list | | Parts of the contour that are not cut.
+left[].back_mm | number | mm | Z at which the uncut part ends toward the chuck.
+left[].front_mm | number | mm | Z at which the uncut part ends toward the face.
+left[].why | string | | Why it is not cut.
+worst_mm | number or null | mm | Largest deviation of the part from the drawing; null if it was not compared.
+deviations | list | | Deviations from the drawing.
+deviations[].back_mm | number | mm | Z of the end of the deviation toward the chuck.
+deviations[].front_mm | number | mm | Z of the end of the deviation toward the face.
+deviations[].most_mm | number | mm | Largest deviation there.
+errors | list | | Errors of the program; the exit status is then 1.
+"""
+    ),
+)
+PROFILE_LIST = Output(
+    "profile DRAWING --list --json",
+    "One object.",
+    keys(
+        """
+file | string | | The drawing.
+unit_mm | number or null | mm | Length of one unit of the drawing; null if the drawing does not specify it.
+layers | list | | Names of the layers.
+axes | list | | Names of the axes.
+axis | string | | The axis that is used.
+contours | list | | Contours, numbered from 1.
+contours[].elements | integer | | Number of lines and arcs.
+contours[].length_mm | number | mm | Length.
+contours[].diameter_mm | number | mm | Largest diameter.
+left_out | object | | Objects of the drawing that are ignored.
+left_out.* | integer | | Number, by kind.
+"""
+    ),
+)
+OUTPUTS = (PROFILE, PROFILE_LIST)

@@ -44,12 +44,12 @@ class Jobs(Extra):
     def special_functions(
         self, desk: Desk, machine: Machine, persistence: Persistence, worker: Latest
     ) -> Sequence[tuple[SpecialFunction, str]]:
-        from app.extras.jobs.jobs_function import JobsFunction
+        from app.extras.jobs.jobs_watch import JobsFunction
 
         return ((JobsFunction(desk), "MEASURED PARTS"),)
 
     def json_outputs(self) -> Mapping[str, Sequence[Output]]:
-        from app.extras.jobs.jobs_json_keys import OUTPUTS
+        from app.extras.jobs.jobs_command import OUTPUTS
 
         return OUTPUTS
 

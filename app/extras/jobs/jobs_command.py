@@ -1,4 +1,4 @@
-"""``turndesk jobs``: the queue of programs that are to be made, and how many parts of each."""
+"""``turndesk jobs``: the queue of programs, how many parts of each, and the keys of its JSON."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from app.cli.store_command import opened_store
 from app.cli.who_changes import COMMAND_LINE, add_as_option, who_changes
 from app.desk.command_errors import EXIT_OK, CommandError
 from core.access.access_table import Act
+from core.json_key import Output, keys
 from core.message import Message
 
 if TYPE_CHECKING:
@@ -158,3 +159,23 @@ def _at(store: Store, place: int) -> JobRow:
 
 
 _ACTIONS = {"list": _list, "add": _add, "move": _move, "remove": _remove, "clear": _clear}
+
+
+JOBS = Output(
+    "jobs list --json",
+    "One object.",
+    keys(
+        """
+jobs | list | | The job queue, in order.
+jobs[].place | integer | | Position, from 1.
+jobs[].program | string | | File name of the program.
+jobs[].parts | integer | | Parts to make.
+jobs[].made | integer | | Parts made.
+jobs[].left | integer | | Parts that remain to be made.
+jobs[].state | string | | waiting, in progress or done.
+jobs[].note | string | | Note.
+jobs[].added | string | UTC | Time at which the job was added.
+"""
+    ),
+)
+OUTPUTS = {"shift --json": (JOBS,)}

@@ -15,9 +15,8 @@ from app.desk.page_description import ProgramKey
 from app.desk.persistence import Persistence
 from app.desk.programs.program_loading import LoadingSteps
 from app.desk.translation import tr
-from app.extras.jobs.job_setup import ProvedJob
 from app.extras.jobs.jobs_model import JobsModel
-from app.extras.jobs.jobs_watch import FEATURE, JobProofs, JobsWatch
+from app.extras.jobs.jobs_watch import FEATURE, JobProofs, JobsWatch, ProvedJob
 from app.production.parts_watch import PartsWatch
 from core.machine.machine_model import Machine
 from core.message import Message

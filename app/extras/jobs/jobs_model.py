@@ -16,9 +16,8 @@ from app.desk.status.formats import NOTHING, duration
 from app.desk.status.machine_status import Tone
 from app.desk.status.prompt_line import UNDER_WAY
 from app.desk.translation import tr
-from app.extras.jobs.job_setup import ProvedJob, Station, findings, missing, stations, tool_name
-from app.extras.jobs.jobs_watch import JobsWatch
-from app.special.parts_counter import whole_number
+from app.extras.jobs.jobs_watch import JobsWatch, ProvedJob, Station, findings, missing, stations, tool_name
+from app.special.counters import whole_number
 from core.access.access_table import Act
 from core.executor.snapshot import Snapshot
 from core.language.diagnostics import Severity

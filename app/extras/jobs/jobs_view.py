@@ -13,8 +13,7 @@ from app.desk.programs.program_loading import Loaded
 from app.desk.status.machine_status import MachineStatus
 from app.extras.jobs.jobs_model import JobsModel
 from app.screen import page_table
-from app.screen.entry_panel import KeyPad
-from app.screen.letter_keys import LetterPad
+from app.screen.entry_panel import KeyPad, LetterPad
 from app.screen.page_base import Host, KeyActions
 from app.screen.sheet_panel import ListPage, SheetPanel
 from core.executor.snapshot import Snapshot

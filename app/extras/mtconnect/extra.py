@@ -48,7 +48,7 @@ class Mtconnect(Extra):
 
     def check(self, machine: Machine, answers: Answers) -> None:
         if _TABLE in machine.hardware.tables:
-            from app.extras.mtconnect.mtconnect_check import check_mtconnect
+            from app.extras.mtconnect.mtconnect_command import check_mtconnect
 
             check_mtconnect(machine, answers)
 

@@ -1,4 +1,4 @@
-"""``turndesk machine mtconnect``: the device model for an MTConnect agent."""
+"""``turndesk machine mtconnect``: the device model for an agent; and the adapter's row of machine check."""
 
 from __future__ import annotations
 
@@ -8,9 +8,12 @@ from datetime import UTC, datetime
 from typing import TYPE_CHECKING
 
 from app.desk.command_errors import EXIT_OK, as_command_error
+from core.message import Message
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
+    from app.compose.backends.backend_entry import Answers
+    from core.machine.machine_model import Machine
 
 
 def add_parser(actions: SubParsers) -> None:
@@ -34,3 +37,23 @@ def run(args: argparse.Namespace) -> int:
     if not told_to_agents(machine):
         sys.stderr.write(f"turndesk: {file}: [mtconnect] enabled = false, so no agent can find the adapter\n")
     return EXIT_OK
+
+
+def check_mtconnect(machine: Machine, answers: Answers) -> None:
+    """Add whether agents would find the adapter, and accept its device model."""
+    from app.compose.backends.backend_entry import Row
+    from app.extras.mtconnect.driver.mtconnect_table import MtconnectTable
+    from app.extras.mtconnect.shop_floor import try_shop_floor
+    from core.ports import DriverError
+
+    model = machine.hardware.table(MtconnectTable)
+    if model is None or not model.enabled:
+        return
+    at = f"{model.bind}:{model.port}"
+    try:
+        try_shop_floor(machine, model)
+    except DriverError as error:
+        answers.rows.append(Row("mtconnect", at, "fault", str(error)))
+        answers.trouble.append(str(error))
+    else:
+        answers.rows.append(Row("mtconnect", at, "ok", Message("device {device}", device=model.device)))

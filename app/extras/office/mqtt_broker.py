@@ -13,7 +13,7 @@ import paho.mqtt.client as mqtt
 from paho.mqtt.enums import CallbackAPIVersion, MQTTErrorCode
 
 from app.extras.office.announcements import HELD, Announcement
-from app.extras.office.network_causes import NO_ANSWER, Trouble, cause_of
+from app.extras.office.timed_http import NO_ANSWER, Trouble, cause_of
 from app.shopfloor.status_file import Status
 from core.extras.office.shop_network_tables import AnnounceTable, broker_of
 from core.message import Message

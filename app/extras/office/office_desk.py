@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -16,23 +17,87 @@ from app.compose.workshop import thumbnails
 from app.desk.kept_part import kept_part
 from app.desk.status.prompt_line import UNDER_WAY
 from app.desk.status.standing_prompt import time_left
-from app.extras.office.office_status import OfficeLook
 from app.extras.office.page_server import PageServer, listening_at
 from app.production.parts_watch import PartsWatch
 from app.shopfloor.floor_reading import FloorReader
+from app.shopfloor.status_file import Status, status_of
+from core.executor.snapshot import Snapshot
 from core.extras.office.shop_network_tables import AnnounceTable, StatusPageTable
+from core.message import Message
 from core.ports import DriverError
+from core.store.production.part_cycles import StopRow
 
 if TYPE_CHECKING:
     from app.compose.runs.journal import Journal
     from app.desk.desk import Desk
     from app.extras.office.announcements import Told
     from app.extras.office.status_page import OtherDesk
-    from app.programs.preview import DrawThumbnail
+    from app.programs.program_rows import DrawThumbnail
     from core.executor.job import Job
-    from core.executor.snapshot import Snapshot
     from core.machine.machine_model import Machine
-    from core.store.production.part_cycles import StopRow
+
+
+STOPS = 6  # the newest
+
+
+@dataclass(frozen=True, slots=True)
+class OfficeLook:
+    """Looks at what the desk publishes; from any thread. ``time_left`` is in s, infinite while it stands."""
+
+    machine: str
+    reader: FloorReader
+    snapshot: Callable[[], Snapshot]
+    time_left: Callable[[Snapshot], float]
+    stops: Callable[[], Sequence[StopRow]]
+    utc: Callable[[], datetime]
+
+    def status(self) -> Status:
+        """The keys of status.json and those of the page; seconds, ``None`` for what is not known."""
+        snapshot = self.snapshot()
+        reading = self.reader.look(snapshot)
+        told = {"updated": self.utc().isoformat(timespec="seconds"), **status_of(self.machine, reading)}
+        if not reading.available:
+            return {**told, **_NOTHING_KNOWN}
+        left = self.time_left(snapshot)
+        newest = self.stops()[::-1][:STOPS]  # as they came: the clock may have been set back
+        return {
+            **told,
+            "state": snapshot.state.value,
+            "waiting_for": snapshot.waiting_for,
+            "line": snapshot.line or None,
+            "made": snapshot.made,
+            "time_left": round(left, 1) if math.isfinite(left) and snapshot.counts else None,
+            "cycle_elapsed": round(snapshot.cycle_elapsed, 1),
+            "last_cycle": round(snapshot.last_cycle, 1) or None,
+            "stop": _words(snapshot),
+            "next_barred": snapshot.next_barred,
+            "stops": [{"at": row.at, "reason": row.reason, "seconds": round(row.seconds)} for row in newest],
+        }
+
+
+_NOTHING_KNOWN: Status = {
+    "state": "CONTROL SILENT",
+    "waiting_for": "",
+    "line": None,
+    "made": None,
+    "time_left": None,
+    "cycle_elapsed": None,
+    "last_cycle": None,
+    "stop": "",
+    "next_barred": "",
+    "stops": [],
+}
+
+
+def _words(snapshot: Snapshot) -> str:
+    """Why it stands, in the words of the screen."""
+    if snapshot.alarms:
+        return Message("{alarms}: {cause}", alarms=snapshot.alarms[0].text, cause=snapshot.alarms[0].cause)
+    if snapshot.message:
+        return snapshot.message
+    told = snapshot.stop.text if snapshot.stop is not None else ""
+    return "" if told == snapshot.state.value else told
+
 
 PICTURE = 600, 400  # pixels: as large as a telephone shows it
 MISSING = "{what} needs {package}, which is not installed; install turndesk[shop]"
@@ -104,8 +169,7 @@ def _page(
     if find_spec("waitress") is None:
         tell(MISSING.format(what="[status_page]", package="waitress"))
         return []
-    from app.extras.office.agent_desk import asked_agent
-    from app.extras.office.other_desks import OtherDesks, asked
+    from app.extras.office.other_desks import OtherDesks, asked, asked_agent
     from app.extras.office.status_page import StatusPage
 
     try:
@@ -158,7 +222,7 @@ class PartPicture:
         return png if job is not None and job.digest == digest else b""
 
     def _png(self, job: Job) -> bytes:
-        from app.extras.office.png_file import png_of
+        from app.extras.office.office_pictures import png_of
 
         found = self.draw(job, lambda _done: None)
         return png_of(found.pixels, found.width, found.height) if found is not None else b""
@@ -186,7 +250,7 @@ class AlarmDrawing:
 
 
 def _drawing(record: Path) -> bytes:
-    from app.extras.office.alarm_drawing import alarm_drawing
+    from app.extras.office.office_pictures import alarm_drawing
     from core.records.record import RecordError
     from core.records.record_file import open_record
 

@@ -1,9 +1,43 @@
-"""The sections of the office page, of MQTT and of the web hook in the reference of JSON."""
+"""Keys of the office page, of MQTT and of the web hook, for the reference and its tests."""
 
 from __future__ import annotations
 
-from app.extras.office.office_json_keys import EVENT, OFFICE
-from core.json_key import Output
+from app.shopfloor.json_keys import STATUS
+from core.json_key import Output, keys
+
+OFFICE = (
+    *keys("updated | string | UTC | Time of the status."),
+    *STATUS,
+    *keys(
+        """
+state | string | | State as shown on the screen, such as RUNNING, FEED HOLD or ALARM; CONTROL SILENT
+  if TurnDesk does not receive the state of the machine.
+waiting_for | string | | What a cycle waits for; empty if it does not wait.
+line | integer or null | | Line that is being executed.
+made | integer or null | | Part count of the program.
+time_left | number or null | s | Remaining time of the cycle; null if it is not known.
+cycle_elapsed | number or null | s | Time since the start of the cycle.
+last_cycle | number or null | s | Time of the last complete cycle.
+stop | string | | Why the machine is stopped, as shown on the screen.
+next_barred | string | | Why no further part can start, such as a used-up tool life; empty if a part can
+    start.
+stops | list | | The newest stops of production, at most six, the newest first.
+stops[].at | string | UTC | Start of the stop.
+stops[].reason | string | | Reason for the stop.
+stops[].seconds | integer | s | Length of the stop.
+"""
+    ),
+)
+EVENT = (
+    *keys(
+        """
+event | string | | part, stop, alarm, tool-life or runs.
+text | string | | The event in one sentence.
+"""
+    ),
+    *OFFICE,
+)
+
 
 _OFFICE = """
 The office page, which [status_page] configures, serves this object at `/status.json`. MQTT

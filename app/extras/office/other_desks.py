@@ -1,14 +1,11 @@
-"""The desks beside this one: their status.json read every few seconds, while somebody looks at the page.
-
-Machines that an MTConnect agent tells of are asked the same way (``agent_desk.py``).
-"""
+"""Machines beside this desk, read while somebody looks at the page: TurnDesks, and MTConnect agents."""
 
 from __future__ import annotations
 
 import json
 import threading
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from http import HTTPStatus
 from http.client import HTTPException
@@ -16,11 +13,12 @@ from typing import NamedTuple
 from urllib.error import HTTPError, URLError
 from urllib.parse import urlsplit, urlunsplit
 from urllib.request import ProxyHandler
+from xml.etree import ElementTree
+from xml.etree.ElementTree import Element
 
 from app.desk.translation import tr
-from app.extras.office.network_causes import cause_of, one_line
 from app.extras.office.status_page import NOT_YET, OtherDesk
-from app.extras.office.timed_http import timed_opener
+from app.extras.office.timed_http import cause_of, one_line, timed_opener
 from core.message import Message
 
 EVERY = 3.0  # s
@@ -161,3 +159,83 @@ def _if_fresh(desk: OtherDesk, age: float) -> OtherDesk:
     if age <= STALE:
         return desk
     return OtherDesk(desk.address, trouble=tr(Message("no response for {age} s", age=round(age))))
+
+
+_MOST_OF_AGENT = 1_000_000  # bytes
+_UNAVAILABLE = "UNAVAILABLE"
+_WORDS = {
+    "ACTIVE": "RUNNING",
+    "WAIT": "WAITING",
+    "PROGRAM_STOPPED": "PROGRAM STOP",
+    "PROGRAM_COMPLETED": "READY",
+}
+_LONGEST = 15  # figures of a number
+
+
+def current_address(address: str) -> str:
+    """Where the agent says how the machine is now, which ``address`` names behind the agent's own."""
+    parts = urlsplit(address)
+    return urlunsplit(parts._replace(path=parts.path.rstrip("/") + "/current", fragment=""))
+
+
+def asked_agent(address: str) -> OtherDesk:
+    """One machine, asked now; waits for two seconds at most."""
+    return answered(address, current_address(address), _MOST_OF_AGENT, streams_answer)
+
+
+def streams_answer(data: bytes) -> Answer:
+    """What of an MTConnectStreams document the page shows, and why the machine stands. Raises ValueError."""
+    if b"<!DOCTYPE" in data:  # an agent sends none, and entities can grow without end
+        raise ValueError(data[:40])
+    try:
+        device = next(_named(ElementTree.fromstring(data), "DeviceStream"), None)
+    except ElementTree.ParseError as error:
+        raise ValueError(str(error)) from error
+    if device is None:
+        raise ValueError("no DeviceStream")
+    machine = {"machine": device.get("name") or ""}
+    if next(_values(device, "Availability"), "AVAILABLE") == _UNAVAILABLE:
+        return Answer(None, tr("the MTConnect agent reports that the machine is unavailable"))
+    faults = ". ".join(
+        filter(None, (" ".join((each.text or "").split()) for each in _named(device, "Fault")))
+    )
+    faulty = next(_named(device, "Fault"), None) is not None
+    return Answer({**machine, "state": _state(device, faulty=faulty), **_figures(device)}, faults)
+
+
+def _state(device: Element, *, faulty: bool) -> str:
+    """In the words of our own desks, where they have one."""
+    if "TRIGGERED" in _values(device, "EmergencyStop"):
+        return "E-STOP"
+    if faulty:
+        return "ALARM"
+    execution = next(_known(device, "Execution"), _UNAVAILABLE)
+    return _WORDS.get(execution, execution.replace("_", " "))
+
+
+def _figures(device: Element) -> dict[str, object]:
+    counts = (each.text for each in _named(device, "PartCount") if each.get("subType") in {None, "ALL"})
+    found: dict[str, object] = {
+        "program": next(_known(device, "Program"), None),
+        "line": _whole(next(_known(device, "Line"), next(_known(device, "LineNumber"), None))),
+        "made": _whole(next(counts, None)),
+    }
+    return {key: value for key, value in found.items() if value is not None}
+
+
+def _whole(text: str | None) -> int | None:
+    text = (text or "").strip()
+    return int(text) if text.isascii() and text.isdigit() and len(text) <= _LONGEST else None
+
+
+def _named(inside: Element, name: str) -> Iterator[Element]:
+    """Whatever the version of the standard, which stands in the name space."""
+    return (each for each in inside.iter() if each.tag.rpartition("}")[2] == name)
+
+
+def _values(device: Element, name: str) -> Iterator[str]:
+    return ((each.text or "").strip() for each in _named(device, name))
+
+
+def _known(device: Element, name: str) -> Iterator[str]:
+    return (value for value in _values(device, name) if value and value != _UNAVAILABLE)

@@ -13,8 +13,7 @@ from urllib.error import HTTPError, URLError
 from urllib.request import HTTPRedirectHandler, Request
 
 from app.extras.office.announcements import HELD, Announcement
-from app.extras.office.network_causes import Trouble, cause_of, host_of, one_line
-from app.extras.office.timed_http import Clock, timed_opener
+from app.extras.office.timed_http import Clock, Trouble, cause_of, host_of, one_line, timed_opener
 from app.shopfloor.status_file import Status
 from core.message import Message
 

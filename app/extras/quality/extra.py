@@ -28,7 +28,7 @@ class Quality(Extra):
         PageEntry(
             "MEASURED PARTS",
             "app.extras.quality.quality_view.MeasuredPartsPage",
-            "app.extras.quality.quality_functions.QualityFunctions",
+            "app.extras.quality.quality_desk.QualityFunctions",
             "W",
             "MEASURED",
             "features, readings, charts, trends",
@@ -53,7 +53,7 @@ class Quality(Extra):
         self, desk: Desk, machine: Machine, persistence: Persistence, worker: Latest
     ) -> Sequence[tuple[SpecialFunction, str]]:
         from app.desk.data_folder import data_folder
-        from app.extras.quality.parts_function import MeasuredPartsFunction
+        from app.extras.quality.quality_desk import MeasuredPartsFunction
         from app.extras.quality.shift_function import ShiftReport
 
         report = ShiftReport(desk, machine.name, worker, data_folder() / "sheets")

@@ -17,6 +17,7 @@ from app.offsets.offset_values import Mode
 from app.production.parts_watch import PartsWatch
 from core.access.access_table import Act
 from core.executor.snapshot import Snapshot
+from core.extras.quality.control_charts import QualityError
 from core.extras.quality.measured_feature import (
     NAME_LONGEST,
     CorrectedBy,
@@ -24,7 +25,6 @@ from core.extras.quality.measured_feature import (
     FeatureKind,
     check_feature,
 )
-from core.extras.quality.quality_errors import QualityError
 from core.message import Message
 from core.store.production import measured_parts
 

@@ -115,8 +115,7 @@ def _capability(data: PartsData, number: int) -> dict[str, object] | None:
     from dataclasses import asdict
 
     from app.extras.quality.parts_data import feature_of
-    from core.extras.quality.capability import capability
-    from core.extras.quality.quality_errors import QualityError
+    from core.extras.quality.control_charts import QualityError, capability
 
     row = next(each for each in data.features if each.id == number)
     values = [each.value for each in data.readings_of(number)]
@@ -130,7 +129,7 @@ def _capability(data: PartsData, number: int) -> dict[str, object] | None:
 
 
 def _write_csv(store: Store, names: Sequence[str]) -> None:
-    from app.extras.quality.readings_file import HEAD, reading_lines
+    from app.extras.quality.parts_data import HEAD, reading_lines
 
     table = csv.writer(sys.stdout, lineterminator="\n")
     table.writerow(("program", *HEAD))

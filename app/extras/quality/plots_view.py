@@ -9,7 +9,7 @@ from PySide6.QtGui import QPainter, QPaintEvent, QResizeEvent, QShowEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.translation import tr
-from app.extras.quality.plots import ChartDrawing, Curve, Level, Plot
+from app.extras.quality.section import ChartDrawing, Curve, Level, Plot
 from app.screen import chart
 from app.screen.chart import Chart, curve_colour, line_pen, set_curve
 from app.screen.look import CENTRE, Look, Painter, put_raw

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from core.extras.quality.capability import Capability
+from core.extras.quality.control_charts import Capability
 from core.extras.quality.stops import ReasonShare
 from core.json_key import Output, below, keys, row_keys
 from core.store import table_keys

@@ -8,7 +8,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.desk.programs.program_loading import Loaded
 from app.desk.status.machine_status import MachineStatus
-from app.extras.quality.quality_functions import QualityFunctions
+from app.extras.quality.quality_desk import QualityFunctions
 from app.extras.quality.section import QualitySection
 from app.screen.page_base import Host
 from app.special.special_view import LETTERS, LIST, PAD, SpecialPage

@@ -12,19 +12,15 @@ from app.desk.desk import Desk
 from app.desk.pages.sheet import Key, Row, Sheet
 from app.desk.status.machine_status import Tone
 from app.desk.translation import tr
-from app.extras.quality.correction_effect import CorrectionEffect
-from app.extras.quality.gauge_line import Gauge, NoGauge, Reading
-from app.extras.quality.parts_data import feature_of
-from app.extras.quality.plots import ChartDrawing
-from app.extras.quality.readings_file import write_readings
-from app.extras.quality.section import QualitySection, mark_of, signed_size, size, typed_length
-from app.extras.quality.wear_correction import correction, proposal
-from app.offsets.offset_history import OffsetHistory, refusal
-from app.offsets.offset_questions import OffsetQuestions
+from app.extras.quality.gauge_wire import Gauge, NoGauge, Reading
+from app.extras.quality.parts_data import feature_of, write_readings
+from app.extras.quality.section import ChartDrawing, QualitySection, mark_of, signed_size, size, typed_length
+from app.extras.quality.wear_correction import CorrectionEffect, correction, proposal
+from app.offsets.offset_changes import OffsetHistory, OffsetQuestions, refusal
 from app.production.parts_watch import PartsWatch
 from core.access.access_table import Act
 from core.executor.snapshot import Snapshot
-from core.extras.quality.quality_errors import QualityError
+from core.extras.quality.control_charts import QualityError
 from core.message import Message
 from core.store.production import measured_parts
 from core.store.production.measured_parts import FeatureRow, ReadingRow

@@ -6,16 +6,15 @@ from collections.abc import Sequence
 
 from app.desk.data_folder import data_folder
 from app.desk.desk import Desk
-from app.extras.quality.charts_section import ChartsSection
+from app.extras.quality.charts_and_trends import ChartsSection, TrendsSection
 from app.extras.quality.features_section import FeaturesSection
 from app.extras.quality.gauge_table import GaugeModel
 from app.extras.quality.gauge_wire import GaugeWire
 from app.extras.quality.readings_section import ReadingsSection
 from app.extras.quality.sample_plan import SamplePlan
-from app.extras.quality.trends_section import TrendsSection
 from app.production.parts_watch import PartsWatch
+from app.special.counters import ToolLifeFunction
 from app.special.special_functions import SpecialFunction
-from app.special.tool_life_function import ToolLifeFunction
 from core.machine.machine_model import Machine
 
 

@@ -15,8 +15,7 @@ from core.message import Message
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
-    from app.extras.quality.shift_figures import ShiftFigures
-    from app.extras.quality.shift_times import Shift
+    from app.extras.quality.shift_figures import Shift, ShiftFigures
     from core.store.store import Store
 
 
@@ -63,7 +62,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _shift(store: Store, args: argparse.Namespace) -> Shift:
-    from app.extras.quality.shift_times import SETTING, between, hours_of, shift_of
+    from app.extras.quality.shift_figures import SETTING, between, hours_of, shift_of
 
     if (args.since is None) != (args.until is None):
         raise CommandError("--from and --to must be used together; specify both", "from-and-to")

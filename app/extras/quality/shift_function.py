@@ -12,9 +12,8 @@ from app.desk.desk import Desk
 from app.desk.pages.sheet import Key, Row, Sheet
 from app.desk.status.formats import duration
 from app.desk.translation import tr
-from app.extras.quality.shift_figures import ShiftFigures, shift_figures
+from app.extras.quality.shift_figures import SETTING, ShiftFigures, hours_of, shift_figures, shift_of
 from app.extras.quality.shift_page import facts, shift_html, title_of
-from app.extras.quality.shift_times import SETTING, hours_of, shift_of
 from app.production.parts_watch import PartsWatch
 from app.programs.removable_media import Stick, sticks
 from app.programs.whole_file import FileError, settle, write_out

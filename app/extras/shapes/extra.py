@@ -27,12 +27,12 @@ class ShapesAndCalculators(Extra):
         desk.attach_later("app.extras.shapes.shapes_model.Shapes", partial(_shapes, desk, machine))
 
     def json_outputs(self) -> Mapping[str, Sequence[Output]]:
-        from app.extras.shapes.shapes_json_keys import OUTPUTS
+        from app.extras.shapes.shapes_command import OUTPUTS
 
         return {"store verify --json": OUTPUTS}
 
     def words(self) -> Sequence[str]:
-        from app.extras.shapes.shape_words import words_of
+        from app.extras.shapes.shape_form import words_of
         from core.extras.shapes.shape_table import HELPERS_OF, SHAPES_OF
 
         tables = (*SHAPES_OF.values(), *HELPERS_OF.values())

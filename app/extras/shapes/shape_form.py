@@ -1,20 +1,22 @@
-"""The form of one shape: what is typed into its fields, what that comes to, and what is wrong with it."""
+"""The form of one shape: what is typed, what it comes to, what is wrong; and forms that features add."""
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import NamedTuple
 
 from app.desk.arithmetic import CHARACTERS, EntryError, value_of
-from app.desk.pages.sheet import edited
+from app.desk.pages.sheet import Key, edited
 from app.desk.translation import tr
 from core.extras.shapes.contour import Row, row_word
-from core.extras.shapes.number_words import plain
+from core.extras.shapes.lines.code_lines import plain
 from core.extras.shapes.pieces import Piece
 from core.extras.shapes.shape import Filled, Shape, filled
-from core.extras.shapes.shape_fields import Field, Kind, Refusal, Value, choice_text
-from core.extras.shapes.shape_setting import Setting
-from core.extras.shapes.threads.thread_series import SIZES
+from core.extras.shapes.shape_fields import Field, Kind, Refusal, Setting, Value, choice_text
+from core.extras.shapes.threads.thread_series import SIZES, Series
 from core.extras.shapes.threads.thread_values import class_choices, series_of
 from core.sketch import Sketch
 
@@ -350,3 +352,62 @@ def shown_choice(each: Field, choice: str) -> str:
     known = choice_text(each, choice)
     said = tr(known)
     return choice if said == known else said
+
+
+Show = Callable[[ShapeForm], str | None]
+"""Shows what a form has worked out, and returns the whole text; None when the form is no longer open."""
+
+
+class AddedForm(ABC):
+    """One form of the list, with what it works out beside the screen. ``key`` opens it."""
+
+    key: str
+    shape: Shape
+
+    @abstractmethod
+    def open_form(self, setting: Setting, before: tuple[str, ...], wanted: Path | None) -> ShapeForm:
+        """Return a new form; ``before`` are the lines in front, ``wanted`` is the file to begin with."""
+
+    @abstractmethod
+    def makes_of(self, name: str) -> bool:
+        """Return whether this form makes a program of a file of this name."""
+
+    @abstractmethod
+    def work(self, form: ShapeForm, show: Show, tell: Callable[[str], None]) -> None:
+        """Work out what has been typed; ``tell`` is told why that is impossible."""
+
+    @abstractmethod
+    def cancel(self, form: ShapeForm) -> None:
+        """Stop working."""
+
+    @abstractmethod
+    def keys(self, form: ShapeForm, show: Show) -> Mapping[int, Key]:
+        """Return the function keys that only this form has."""
+
+    @abstractmethod
+    def prompt(self, form: ShapeForm) -> str:
+        """Return what the prompt line says."""
+
+    @abstractmethod
+    def poll(self) -> None:
+        """Take up what the workers have found; called once a frame."""
+
+    @abstractmethod
+    def close(self) -> None:
+        """End the workers."""
+
+
+def words_of(shapes: Iterable[Shape]) -> list[str]:
+    """Return the names of shapes and of their fields: many are single words."""
+    shapes = tuple(shapes)
+    fields = [field for shape in shapes for field in shape.fields]
+    labels = {field.label for field in fields if len(field.label) > 1}
+    choices = {choice_text(field, choice) for field in fields for choice in _in_words(field)}
+    return sorted({shape.name for shape in shapes} | labels | choices)
+
+
+def _in_words(field: Field) -> tuple[str, ...]:
+    """The choices that are words: series and classes of threads have names that all languages use."""
+    if field.word == "SERIES":
+        return (Series.OWN.value,)
+    return () if field.word in {"CLASS", "SIZE"} else field.choices

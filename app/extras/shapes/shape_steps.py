@@ -6,13 +6,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from app.extras.shapes.shape_form import COLUMNS, ShapeForm
-from core.extras.shapes.forms.program_head import HEAD
-from core.extras.shapes.number_words import plain
+from core.extras.shapes.lines.code_lines import plain
 from core.extras.shapes.pieces import begun, setting_at, with_shape
 from core.extras.shapes.shape import Shape
-from core.extras.shapes.shape_fields import WORDS, Kind
-from core.extras.shapes.shape_setting import Setting
+from core.extras.shapes.shape_fields import WORDS, Kind, Setting
 from core.extras.shapes.shape_table import SHAPES_OF
+from core.extras.shapes.templates import HEAD
 from core.language.source import Dialect
 from core.message import Message, nearest
 

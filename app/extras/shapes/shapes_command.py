@@ -1,4 +1,4 @@
-"""``turndesk shapes FORM.toml --out part.nc``: the forms of the editor as a file, and their program."""
+"""``turndesk shapes FORM.toml --out part.nc``: the forms of the editor as a file; keys of its JSON."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from app.cli.store_command import opened_store
 from app.cli.who_changes import add_as_option, note_change, who_may
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError, as_command_error
 from core.access.access_table import Act
+from core.json_key import Output, keys
 from core.language.source import Dialect, Source, dialect_of
 from core.message import Message
 
@@ -119,7 +120,7 @@ def _written(args: argparse.Namespace, machine: Machine, dialect: Dialect) -> Wr
     from app.extras.shapes.shape_steps import StepError, written
     from app.extras.shapes.shapes_desk import shop_of
     from app.offsets.offsets_file import read_tool_shapes
-    from core.extras.shapes.shape_setting import Setting
+    from core.extras.shapes.shape_fields import Setting
 
     steps = _steps(Path(args.file))
     shapes = stored_shapes() if args.tools is None else read_tool_shapes(Path(args.tools))
@@ -223,3 +224,24 @@ def write_made(args: argparse.Namespace, text: str, who: str) -> None:
         who,
         Message("program {out} made from {file}", out=Path(args.out).name, file=Path(args.file).name),
     )
+
+
+SHAPES = Output(
+    "shapes FORM.toml --json",
+    "One object.",
+    keys(
+        """
+file | string | | The file with the steps.
+out | string or null | | File of --out.
+program | string | | Text of the program.
+steps | list | | Kinds of the steps.
+words | list | | Choices and observations of TurnDesk, as sentences.
+errors | list | | Errors of the program; the exit status is then 1.
+cycle_time_s | number | s | Cycle time.
+"""
+    ),
+)
+SHAPES_LIST = Output(
+    "shapes --list --json", "One object.", keys("* | list | | Keys that a step of this kind can have.")
+)
+OUTPUTS = (SHAPES, SHAPES_LIST)

@@ -9,7 +9,7 @@ from app.compose.extra import extras
 from app.compose.stored_offsets import shapes_at_hand
 from app.desk.desk import Desk
 from app.extras.shapes.shapes_model import Shapes
-from core.extras.shapes.shape_setting import Setting, Shop
+from core.extras.shapes.shape_fields import Setting, Shop
 from core.machine.machine_model import Axis, Machine
 from core.part.tool_shape import ToolShape
 

@@ -10,9 +10,7 @@ from app.desk.background_work import Latest
 from app.desk.pages.editor_panel import PanelModel
 from app.desk.pages.sheet import STEPS, Key
 from app.desk.translation import tr
-from app.extras.shapes.added_form import AddedForm
-from app.extras.shapes.shape_form import ShapeForm
-from core.extras.shapes.forms.program_head import HEAD
+from app.extras.shapes.shape_form import AddedForm, ShapeForm
 from core.extras.shapes.pieces import (
     Piece,
     begins_subroutine,
@@ -25,8 +23,9 @@ from core.extras.shapes.pieces import (
     with_shape,
 )
 from core.extras.shapes.shape import Shape
-from core.extras.shapes.shape_setting import Setting, Shop
+from core.extras.shapes.shape_fields import Setting, Shop
 from core.extras.shapes.shape_table import HELPERS_OF, SHAPES, SHAPES_OF
+from core.extras.shapes.templates import HEAD
 from core.language.source import dialect_of
 from core.message import Message
 

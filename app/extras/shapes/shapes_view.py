@@ -15,13 +15,12 @@ from app.desk.desk import Desk
 from app.desk.translation import spoken, tr
 from app.extras.shapes.shape_form import COLUMNS, Cell, ShapeForm
 from app.extras.shapes.shapes_model import Shapes, written_in
-from app.screen.editor_panel import EditorPanel, HeadKey
+from app.screen.drawings import SketchPanel
 from app.screen.entry_panel import KeyPad, draw_entry
 from app.screen.look import CENTRE, LEFT, RIGHT, Look, Painter, width_of
-from app.screen.page_base import Host, Page
+from app.screen.page_base import EditorPanel, HeadKey, Host, Page
 from app.screen.panel import Panel, Shown
-from app.screen.row_panel import RowPanel
-from app.screen.sketch_view import SketchPanel
+from app.screen.sheet_panel import RowPanel
 from core.extras.shapes.contour import row_word
 
 ROW = 5.2  # units: at least a finger's height

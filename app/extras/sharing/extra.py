@@ -51,7 +51,7 @@ class Sharing(Extra):
         return start_sharing(desk, journal)
 
     def json_outputs(self) -> Mapping[str, Sequence[Output]]:
-        from app.extras.sharing.share_json_keys import FOLLOWS, OUTPUTS
+        from app.extras.sharing.share_command import FOLLOWS, OUTPUTS
 
         return {FOLLOWS: OUTPUTS}
 

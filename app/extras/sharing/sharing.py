@@ -8,12 +8,14 @@ from __future__ import annotations
 
 import sqlite3
 import threading
+import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
+from hashlib import sha256
 from pathlib import Path
 
-from app.extras.sharing.program_files import FilesOfMachine, SharedFile
+from app.desk.programs.program_folder import ENDINGS
 from app.programs.whole_file import FileError, write_new, write_whole
 from core.extras.sharing import shared_versions
 from core.extras.sharing.shared_place import Found, Published, SharedPlace
@@ -23,9 +25,59 @@ from core.extras.sharing.version_record import MOST_BYTES, DeskState, new_versio
 from core.input_file import input_bytes
 from core.message import CodedError, Message, error_code
 from core.store import program_records
+from core.store.program_records import check_name
 from core.store.store import Store
 from core.store.store_errors import StoreError
 from core.store.store_rows import utc_now
+
+_PATIENCE = 2.0  # s that closing waits for a look: one that hangs in a dead network drive is left behind
+
+
+class SharingThread:
+    """``heard`` is told, on this thread, of what each look has found; ``every``: s between two looks."""
+
+    def __init__(
+        self,
+        sharing: Sharing,
+        every: float,
+        heard: Callable[[Shared], None],
+        now: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self._sharing, self._every, self._heard = sharing, every, heard
+        self._wake, self._closing = threading.Event(), threading.Event()
+        self._thread = threading.Thread(target=self._repeat, name="sharing", daemon=True)
+        self._now, self._since = now, -1.0  # when the look that is under way began; under 0: none is
+
+    def start(self) -> None:
+        """Once."""
+        self._thread.start()
+
+    def look_now(self) -> None:
+        """From any thread; it waits for nothing."""
+        self._wake.set()
+
+    def silent_for(self) -> float:
+        """How many seconds a look has waited for the place: a dead network drive may never answer."""
+        since = self._since
+        return self._now() - since if since >= 0.0 else 0.0
+
+    def close(self) -> None:
+        """What is under way is left behind: it is taken up again when the desk starts anew."""
+        self._closing.set()
+        self._wake.set()
+        if self._thread.is_alive():
+            self._thread.join(_PATIENCE)
+
+    def _repeat(self) -> None:
+        while not self._closing.is_set():
+            self._since = self._now()
+            shared = self._sharing.look(settled=True)
+            self._since = -1.0
+            if not self._closing.is_set():
+                self._heard(shared)
+            self._wake.wait(self._every)
+            self._wake.clear()
+
 
 _AT_ONCE, _BYTES_AT_ONCE = 200, 8 * 2**20  # versions that are published together
 
@@ -316,3 +368,86 @@ def _published(versions: Sequence[SharedVersion], connection: sqlite3.Connection
 def _kept(version: SharedVersion, connection: sqlite3.Connection) -> None:
     shared_versions.add(connection, [version])
     shared_versions.set_here(connection, version.key, version.id)
+
+
+_Stamp = tuple[int, int]  # time of the last change in nanoseconds, bytes
+_GRAIN = 2_000_000_000  # ns: a file that has just been written may change once more and keep its time
+
+
+@dataclass(frozen=True, slots=True)
+class SharedFile:
+    """One program file; ``digest`` is SHA-256 of what it holds."""
+
+    name: str
+    path: Path
+    digest: str
+
+
+@dataclass(slots=True)
+class FilesOfMachine:
+    """The operator's folder. A file is read again only when its time or size has changed."""
+
+    folder: Path
+    refused: Mapping[str, str] = field(default_factory=dict)  # why a file is not shared, by its name
+    present: frozenset[str] = frozenset()  # keys of all files of the last look, shared or not
+    _read: dict[str, tuple[_Stamp, str]] = field(default_factory=dict)
+    _seen: dict[str, _Stamp] = field(default_factory=dict)
+
+    def look(self, *, settled: bool) -> dict[str, SharedFile]:
+        """Files by the key of their program.
+
+        ``settled``: what is being written is left for the next look, when it has stopped changing.
+        """
+        found, refused, stamps = dict[str, SharedFile](), dict[str, str](), dict[str, _Stamp]()
+        names = [path.name for path in _program_files(self.folder)]
+        keys = [key_of(name) for name in names]
+        for name, key in zip(names, keys, strict=True):
+            path = self.folder / name
+            try:
+                status = path.stat()
+                stamps[name] = stamp = status.st_mtime_ns, status.st_size
+                why = _why_not(name, status.st_size, twice=keys.count(key) > 1)
+                if not why and (not settled or stamp == self._seen.get(name, stamp)):
+                    found[key] = SharedFile(name, path, self._digest(path, stamp))
+            except OSError as error:
+                why = error.strerror or str(error)
+            if why:
+                refused[name] = why
+        self.refused, self._seen, self.present = refused, stamps, frozenset(keys)
+        return found
+
+    def _digest(self, path: Path, stamp: _Stamp) -> str:
+        before = self._read.get(path.name)
+        if before is not None and before[0] == stamp:
+            return before[1]
+        digest = sha256(input_bytes(path, MOST_BYTES)).hexdigest()
+        if time.time_ns() - stamp[0] > _GRAIN:
+            self._read[path.name] = stamp, digest
+        return digest
+
+
+def _program_files(folder: Path) -> list[Path]:
+    try:
+        paths = sorted(folder.iterdir())
+    except OSError:
+        return []
+    return [
+        path
+        for path in paths
+        if path.suffix.lower() in ENDINGS and not path.name.startswith(".") and path.is_file()
+    ]
+
+
+def _why_not(name: str, size: int, *, twice: bool) -> str:
+    if twice:
+        return (
+            "the name of another program on this control differs from the name of this "
+            "program only in upper and lower case: rename one of the programs"
+        )
+    if size > MOST_BYTES:
+        return Message("the file is larger than {most_bytes} MB", most_bytes=MOST_BYTES // 2**20)
+    try:
+        check_name(name)
+    except StoreError as error:
+        return str(error)
+    return ""

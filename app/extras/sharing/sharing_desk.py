@@ -65,8 +65,8 @@ def start_sharing(desk: Desk, journal: Journal) -> Callable[[], None] | None:
     table = desk.lathe.hardware.table(SharingTable) if desk.lathe is not None else None
     if table is None:
         return None
+    from app.extras.sharing.sharing import SharingThread
     from app.extras.sharing.sharing_model import SharingModel
-    from app.extras.sharing.sharing_thread import SharingThread
 
     model = desk.attached(SharingModel)
     if model is None or model.sharing is None:

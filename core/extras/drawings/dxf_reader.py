@@ -11,7 +11,6 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from core.extras.drawings.arc_fitting import Place, arcs_of
 from core.extras.drawings.drawing import (
     Drawing,
     DrawingError,
@@ -22,7 +21,7 @@ from core.extras.drawings.drawing import (
     nearest,
     within_limits,
 )
-from core.extras.drawings.expansion import Content, check_expansion
+from core.extras.drawings.reader_parts import Content, Place, arcs_of, check_expansion
 from core.geometry.lines_and_arcs import Element, Point
 from core.message import Message
 

@@ -12,9 +12,8 @@ from typing import Any
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element as Element_
 
-from core.extras.drawings.arc_fitting import Place, arcs_of
 from core.extras.drawings.drawing import Drawing, DrawingError, Drawn, arc, line, nearest, within_limits
-from core.extras.drawings.expansion import Content, check_expansion
+from core.extras.drawings.reader_parts import Content, Place, arcs_of, check_expansion
 from core.geometry.lines_and_arcs import Element, Point
 from core.message import Message
 

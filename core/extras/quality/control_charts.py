@@ -1,4 +1,4 @@
-"""Control charts of Shewhart: average and range (X-bar/R), individuals and moving range (I-MR).
+"""Control charts of Shewhart (X-bar/R, I-MR), and the capability of a process (ISO 22514-2).
 
 Limits are three standard deviations of the process within its samples, by the constants of ISO 7870-2 and
 ASTM E2587 for normally distributed values. Lengths are whatever unit the values have. The rules that tell
@@ -7,6 +7,7 @@ drift on a chart are those of Western Electric (1956) and Nelson (1984), in Nels
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -14,8 +15,77 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from core.extras.quality.quality_errors import QualityError
-from core.message import Message
+from core.message import CodedError, Message
+
+LEAST = 10  # readings below which no capability is told: it would be luck
+_ONE_SIDED_95 = 1.645  # of the normal distribution
+
+
+@dataclass(frozen=True, slots=True)
+class Capability:
+    """None where there is no limit on one side (Cp, Pp), or nothing scatters."""
+
+    count: int
+    mean: float
+    within: float  # standard deviation within samples
+    cp: float | None
+    cpk: float | None
+    pp: float | None
+    ppk: float | None
+
+    @property
+    def at_least(self) -> float | None:
+        """What Cpk is with 95 % confidence at least, after Bissell (1990): few readings promise little."""
+        if self.cpk is None:
+            return None
+        n = self.count
+        return self.cpk - _ONE_SIDED_95 * math.sqrt(1.0 / (9.0 * n) + self.cpk**2 / (2.0 * (n - 1)))
+
+
+def capability(
+    values: Sequence[float], lower: float | None, upper: float | None, size: int = 1
+) -> Capability:
+    """Of values in the order of the parts against limits of size, in samples of ``size``.
+
+    Raises QualityError for fewer than 10 values, no limit at all, or limits the wrong way round.
+    """
+    if lower is None and upper is None:
+        raise QualityError(
+            "process capability needs a tolerance; enter a tolerance for this feature", "no-tolerance"
+        )
+    if lower is not None and upper is not None and lower >= upper:
+        raise QualityError(
+            "the lower limit must be below the upper limit; correct the tolerance", "limits-reversed"
+        )
+    if len(values) < LEAST:
+        raise QualityError(
+            Message(
+                "{values_count} readings are not enough; a Cpk needs at least {minimum} readings",
+                values_count=len(values),
+                minimum=LEAST,
+            ),
+            "too-few-readings",
+        )
+    within = charts_of(values, size).within
+    mean, overall = float(np.mean(values)), float(np.std(values, ddof=1))  # of all values, n − 1
+    cp, cpk = _indices(mean, within, lower, upper)
+    pp, ppk = _indices(mean, overall, lower, upper)
+    return Capability(len(values), mean, within, cp, cpk, pp, ppk)
+
+
+def _indices(
+    mean: float, sigma: float, lower: float | None, upper: float | None
+) -> tuple[float | None, float | None]:
+    """Width of the tolerance by six standard deviations; distance of the nearer limit by three."""
+    if sigma <= 1e-12:
+        return None, None  # a gauge that reads too coarsely to see the scatter
+    near = [
+        (upper - mean) if upper is not None else math.inf,
+        (mean - lower) if lower is not None else math.inf,
+    ]
+    width = (upper - lower) / (6.0 * sigma) if upper is not None and lower is not None else None
+    return width, min(near) / (3.0 * sigma)
+
 
 FloatArray = npt.NDArray[np.float64]
 SETTLED = 20  # samples from which on limits are called settled; below it they still move with every sample
@@ -225,3 +295,7 @@ RULES: dict[int, tuple[str, Callable[[Zones], Iterator[int]]]] = {
     ),
 }
 """By Nelson's number: in words, and the points at which it is broken. 1, 5, 6 are Western Electric's too."""
+
+
+class QualityError(CodedError, ValueError):
+    """Figures from which nothing can be told; the text says which and what to do."""

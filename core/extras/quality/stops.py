@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
-from core.extras.quality.quality_errors import QualityError
+from core.extras.quality.control_charts import QualityError
 from core.message import Message
 
 

@@ -9,11 +9,19 @@ from dataclasses import replace
 from core.extras.shapes import cutting_data
 from core.extras.shapes.cutting_data import MATERIALS, Work
 from core.extras.shapes.cutting_depth import rough_depth
-from core.extras.shapes.lines.code_lines import Code
-from core.extras.shapes.number_words import plain
+from core.extras.shapes.lines.code_lines import Code, plain
 from core.extras.shapes.shape import Filled, Shape
-from core.extras.shapes.shape_fields import Field, Kind, Proposal, Refusal, Value, Values, number, text
-from core.extras.shapes.shape_setting import Setting
+from core.extras.shapes.shape_fields import (
+    Field,
+    Kind,
+    Proposal,
+    Refusal,
+    Setting,
+    Value,
+    Values,
+    number,
+    text,
+)
 from core.extras.shapes.threads.thread_values import filled_depth
 from core.extras.shapes.threads.threading import THREAD, first_depth, first_word
 from core.extras.shapes.usual_fields import MOST_RPM, too_fast

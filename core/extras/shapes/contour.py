@@ -7,8 +7,7 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
-from core.extras.shapes.shape_fields import Refusal
-from core.extras.shapes.shape_setting import Setting
+from core.extras.shapes.shape_fields import Refusal, Setting
 from core.language.source import Dialect
 from core.message import Message
 

@@ -10,7 +10,7 @@ import math
 from dataclasses import dataclass
 from enum import StrEnum
 
-from core.extras.shapes.shape_setting import Setting
+from core.extras.shapes.shape_fields import Setting
 
 FEET = 0.3048  # m
 _INCHES = 12.0

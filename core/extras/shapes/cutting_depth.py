@@ -18,7 +18,7 @@ from __future__ import annotations
 import math
 
 from core.extras.shapes.cutting_data import Work, feed, material_of
-from core.extras.shapes.shape_setting import Setting
+from core.extras.shapes.shape_fields import Setting
 from core.part.insert_codes import Insert, InsertCodeError, decoded, insert_of
 
 _OF_EDGE = ((75.0, 1 / 2), (55.0, 1 / 3), (0.0, 1 / 5))  # by corner angle, of the cutting edge

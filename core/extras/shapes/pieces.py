@@ -11,11 +11,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from core.extras.shapes.contour import Row, read_contour
-from core.extras.shapes.forms.program_head import MM, RADIUS
 from core.extras.shapes.shape import TOOL_WORD, Filled, Shape, filled, read_comment
-from core.extras.shapes.shape_fields import LENGTHS, Kind, Value, Values
-from core.extras.shapes.shape_setting import Setting, Shop
+from core.extras.shapes.shape_fields import LENGTHS, Kind, Setting, Shop, Value, Values
 from core.extras.shapes.shape_table import named
+from core.extras.shapes.templates import MM, RADIUS
 from core.language.source import Dialect
 
 _COMMENT = {

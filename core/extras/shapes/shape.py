@@ -6,16 +6,15 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 
 from core.extras.shapes.contour import Row
-from core.extras.shapes.lines.code_lines import Code
-from core.extras.shapes.lines.sinumerik_lines import SinumerikCode
-from core.extras.shapes.number_words import (
+from core.extras.shapes.lines.code_lines import (
+    Code,
     from_comment,
     in_comment,
     name_from_comment,
     name_in_comment,
 )
-from core.extras.shapes.shape_fields import LENGTHS, WORDS, Field, Kind, Refusal, Value, Values
-from core.extras.shapes.shape_setting import Setting
+from core.extras.shapes.lines.sinumerik_lines import SinumerikCode
+from core.extras.shapes.shape_fields import LENGTHS, WORDS, Field, Kind, Refusal, Setting, Value, Values
 from core.language.source import Dialect
 from core.message import Message
 from core.part.tool_shape import ToolKind

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from core.extras.shapes.calculators import SPEED, THREADS, TRIANGLE
-from core.extras.shapes.forms.bar_work import LOOP, SINUMERIK_LOOP
+from core.extras.shapes.forms.bar_work import LOOP, PART_OFF, SINUMERIK_LOOP
 from core.extras.shapes.forms.drilling import DRILL
 from core.extras.shapes.forms.grooving import GROOVE, SINUMERIK_GROOVE
 from core.extras.shapes.forms.live_tools import (
@@ -16,20 +16,24 @@ from core.extras.shapes.forms.live_tools import (
     SINUMERIK_SLOT,
     SLOT,
 )
-from core.extras.shapes.forms.parting import PART_OFF
-from core.extras.shapes.forms.program_head import HEAD, SINUMERIK_HEAD
 from core.extras.shapes.forms.tapers_and_bores import BORE, EDGE, TAPER
 from core.extras.shapes.forms.turning import FACE, LABEL, TURN
 from core.extras.shapes.shape import Shape
-from core.extras.shapes.sinumerik_helpers import (
+from core.extras.shapes.templates import (
+    BAR_FEED,
+    HEAD,
+    ROUGH,
     SINUMERIK_BAR_FEED,
+    SINUMERIK_HEAD,
     SINUMERIK_ROUGH,
     SINUMERIK_SPEED,
     SINUMERIK_START,
     SINUMERIK_THREADING,
     SINUMERIK_THREADS,
+    START,
+    THREADING,
+    TOOL_CHANGE,
 )
-from core.extras.shapes.templates import BAR_FEED, ROUGH, START, THREADING, TOOL_CHANGE
 from core.extras.shapes.threads.tapping import SINUMERIK_TAP, TAP
 from core.extras.shapes.threads.threading import SINUMERIK_THREAD, THREAD
 from core.language.source import Dialect

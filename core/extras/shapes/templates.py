@@ -1,17 +1,101 @@
-"""Templates of the editor: lines that begin a program, change a tool, rough, thread, feed a bar."""
+"""Heads and templates of programs, with the calculators, in SINUMERIK: begin, rough, thread, feed a bar."""
 
 from __future__ import annotations
 
-from core.extras.shapes.cutting_data import Work
+from collections.abc import Iterator
+from dataclasses import replace
+
+from core.extras.shapes.calculators import SPEED, THREADS
+from core.extras.shapes.contour import Row
+from core.extras.shapes.cutting_data import MATERIALS, Work
 from core.extras.shapes.cutting_depth import finish_depth, rough_depth
-from core.extras.shapes.forms.program_head import HEAD
-from core.extras.shapes.lines.code_lines import Code
-from core.extras.shapes.number_words import plain, rounded_up
+from core.extras.shapes.forms.bar_work import SINUMERIK_LOOP, no_chuck
+from core.extras.shapes.forms.turning import LABEL
+from core.extras.shapes.lines.code_lines import Along, Bars, Code, figure, plain, rounded_up, write_bars
 from core.extras.shapes.shape import Filled, Shape
-from core.extras.shapes.shape_fields import Field, Kind, Value, Values, number, size
-from core.extras.shapes.shape_setting import Setting
+from core.extras.shapes.shape_fields import (
+    CLEAR,
+    Field,
+    Kind,
+    Proposal,
+    Refusal,
+    Setting,
+    Value,
+    Values,
+    number,
+    size,
+    text,
+)
+from core.extras.shapes.threads.threading import write_cycle97
 from core.extras.shapes.usual_fields import MOST_RPM, bar, feed_field, next_tool
-from core.sketch import Sketch, cut, part, sketch, tool
+from core.message import Message
+from core.sketch import Dim, Sketch, cut, part, sketch, tool
+
+INCH, MM = "INCH", "METRIC"
+DIAMETER, RADIUS = "DIAMETER", "RADIUS"
+_YES, _NO = "ON", "OFF"
+
+
+def _metric(values: Values) -> bool:
+    return text(values, "UNIT") == MM
+
+
+def _length(inch: float, metric: float) -> Proposal:
+    def proposed(values: Values, _setting: Setting) -> Value | None:
+        return metric if _metric(values) else inch
+
+    return proposed
+
+
+def _unit(_values: Values, setting: Setting) -> Value | None:
+    return MM if setting.metric else INCH
+
+
+def _cut(filled: Filled, _setting: Setting, code: Code) -> None:
+    modes = "G71" if _metric(filled.values) else ""
+    modes += "G72" if filled.t("WORDS") == DIAMETER else "G73"
+    code.write(f"G90G94F{plain(filled.n('RAPID'))}{modes}")
+    if filled.t("COOLANT") == _YES:
+        code.write("M08")
+
+
+def _sketch(_filled: Filled) -> Sketch:
+    body = part((0, 0), (0, 10), (-24, 10), (-24, 0))
+    return sketch(
+        body,
+        dims=(Dim("BAR", (-20, -10), (-20, 10)), Dim("CLEAR", (0, 13), (10, 13), 0)),
+    )
+
+
+HEAD = Shape(
+    "HEAD",
+    "the start of the program: units, diameter programming, rapid rates, material",
+    (
+        Field("UNIT", "UNIT", Kind.CHOICE, _unit, (INCH, MM)),
+        Field("WORDS", "X VALUES", Kind.CHOICE, DIAMETER, (DIAMETER, RADIUS)),
+        Field("MATERIAL", "MATERIAL", Kind.CHOICE, "STEEL", tuple(MATERIALS)),
+        Field("BAR", "BAR DIAMETER", Kind.DIAMETER, 0.0, zero=True),
+        Field("COOLANT", "COOLANT", Kind.CHOICE, _YES, (_YES, _NO)),
+        Field("CLEAR", "TOOL CHANGE AT Z", Kind.LENGTH, _length(CLEAR[False], CLEAR[True])),
+        Field("RAPID", "RAPID", Kind.RATE, _length(300.0, 7620.0)),
+    ),
+    _cut,
+    _sketch,
+)
+
+
+def _sinumerik(filled: Filled, _setting: Setting, code: Code) -> None:
+    unit = "G710" if _metric(filled.values) else "G700"
+    code.write(f"G54 G18 G90 G95 {unit} {'DIAMON' if filled.t('WORDS') == DIAMETER else 'DIAMOF'}")
+    if filled.t("COOLANT") == _YES:
+        code.write("M8")
+
+
+SINUMERIK_HEAD = replace(
+    HEAD, cut=_sinumerik, fields=tuple(each for each in HEAD.fields if each.word != "RAPID")
+)
+"""The same for a control that knows its rapid: zero offset, plane, unit of F too."""
+
 
 V60_DEEP = 0.6134  # of a thread of 60 degrees, in pitches; ISO 68-1
 _TOOL = Field("T", "TOOL", Kind.TOOL, lambda _v, s: float(next_tool(s)), most=32)
@@ -140,3 +224,73 @@ BAR_FEED = Shape(
     ends=_loop_end,
     noted=False,
 )
+
+
+_BAR_RATE = {False: 20.0, True: 500.0}  # by metric, a minute
+
+
+def _speed(filled: Filled, _setting: Setting, code: Code) -> None:
+    code.write(f"G95 S{figure(filled.n('RPM'), 0)} M3 F{figure(filled.n('FEED'), 6)}")
+
+
+def _speed_says(filled: Filled, setting: Setting) -> tuple[str, ...]:
+    """The feed a minute as it is written here."""
+    _, *others = SPEED.says(filled, setting)
+    return Message("equivalent feed per minute: G94 F{number}", number=figure(filled.n("RATE"), 3)), *others
+
+
+def _run_up(filled: Filled, setting: Setting) -> Filled:
+    """With three turns before the thread: the slide has to reach the lead."""
+    return replace(filled, values={**filled.values, "RUNUP": 3.0 * filled.n("PITCH") + setting.near})
+
+
+def _passes(filled: Filled, setting: Setting, code: Code) -> None:
+    write_cycle97(_run_up(filled, setting), code)
+
+
+def _passes_say(filled: Filled, setting: Setting) -> tuple[str, ...]:
+    """The cycle goes to its first pass by itself."""
+    depth, _, passes = THREADS.says(filled, setting)
+    return depth, passes
+
+
+def _sinumerik_rough(filled: Filled, setting: Setting, code: Code) -> None:
+    across, long = filled.n("FROM"), 12.5 if setting.metric else 0.5
+    code.rapid(across / 2.0, setting.near)
+    rows = (Row(across / 2.0, 0.0), Row(z=-long), Row(across))
+    feed, rough, leave = (filled.n(word) for word in ("FEED", "ROUGH", "LEAVE"))
+    code.along(Along(rows, across / 2.0, False, feed, rough, leave, feed, 0.0, filled.n("LABEL")))
+    code.away()
+
+
+def _sinumerik_thread(filled: Filled, setting: Setting, code: Code) -> None:
+    crest = filled.n("FROM")
+    root = crest - 2.0 * V60_DEEP * filled.n("PITCH")
+    values = {**filled.values, "CREST": crest, "ROOT": root, "PASSES": 8.0, "INFEED": 29.0}
+    whole = _run_up(replace(filled, values=values), setting)
+    code.begin(filled.n("T"), filled.n("RPM"), crest / 2.0, whole.n("RUNUP"))
+    write_cycle97(whole, code)
+    code.away()
+
+
+def _bar_feed(filled: Filled, setting: Setting, code: Code) -> None:
+    many, long, stop, part = (filled.n(word) for word in ("COUNT", "LONG", "T", "SUB"))
+    rate = _BAR_RATE[setting.metric]
+    write_bars(code, Bars(int(many), long, True, stop, 0.0, rate, int(part)))
+
+
+def _bar_feed_checks(_filled: Filled, setting: Setting) -> Iterator[Refusal]:
+    return no_chuck(setting, "COUNT")
+
+
+SINUMERIK_SPEED = replace(SPEED, cut=_speed, says=_speed_says)
+SINUMERIK_THREADS = replace(THREADS, cut=_passes, says=_passes_say)
+SINUMERIK_START = replace(START, fields=SINUMERIK_HEAD.fields, cut=SINUMERIK_HEAD.cut)
+SINUMERIK_ROUGH = replace(ROUGH, name="CYCLE95 ROUGHING", cut=_sinumerik_rough, fields=(*ROUGH.fields, LABEL))
+SINUMERIK_THREADING = replace(
+    THREADING,
+    name="THREAD CYCLE97",
+    use="calls the tool, leads in, and cuts passes with a constant chip cross-section",
+    cut=_sinumerik_thread,
+)
+SINUMERIK_BAR_FEED = replace(BAR_FEED, cut=_bar_feed, checks=_bar_feed_checks, ends=SINUMERIK_LOOP.ends)

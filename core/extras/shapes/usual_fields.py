@@ -7,8 +7,7 @@ from collections.abc import Callable, Iterator
 from core.extras.shapes import cutting_data
 from core.extras.shapes.cutting_data import Work
 from core.extras.shapes.shape import Filled
-from core.extras.shapes.shape_fields import Field, Kind, Refusal, Value, Values, number
-from core.extras.shapes.shape_setting import Setting
+from core.extras.shapes.shape_fields import Field, Kind, Refusal, Setting, Value, Values, number
 from core.message import Message
 from core.part.tool_shape import ToolKind
 

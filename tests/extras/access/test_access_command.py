@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 import resources
-from app.extras.access import access_json_keys
+from app.extras.access import access_command
 from core.extras.access import pins
 from core.message import CodedError
 from core.store.store import Store
@@ -260,5 +260,5 @@ def test_the_reset_is_typed_at_the_machine(
 
 
 def test_access(turndesk: Turndesk, filled: Path) -> None:
-    declared_alone([whole(turndesk("access", "list", "--json"))], access_json_keys.ACCESS_LIST.keys)
-    declared_alone([whole(turndesk("access", "table", "--json"))], access_json_keys.ACCESS_TABLE.keys)
+    declared_alone([whole(turndesk("access", "list", "--json"))], access_command.ACCESS_LIST.keys)
+    declared_alone([whole(turndesk("access", "table", "--json"))], access_command.ACCESS_TABLE.keys)

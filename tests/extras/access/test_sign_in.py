@@ -9,8 +9,7 @@ import pytest
 
 from app.desk.access import Access
 from app.extras.access.access_levels import AccessLevels
-from app.extras.access.access_reset import WAIT
-from app.extras.access.sign_in import SignIn
+from app.extras.access.sign_in import WAIT, SignIn
 from app.programs.program_list import ProgramList
 from core.access.access_table import Act, Level
 from core.extras.access import pins

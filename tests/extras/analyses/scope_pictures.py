@@ -19,9 +19,8 @@ from PySide6.QtWidgets import QApplication
 from app.compose.runs.journal import Journal
 from app.extras.analyses.analyses import Analyses
 from app.scope.scope_model import Scope
-from app.screen.look import Look, dress, load_fonts
-from app.screen.main_window import MainWindow
-from app.screen.theme import DARK
+from app.screen.look import DARK, Look, dress, load_fonts
+from app.screen.window.main_window import MainWindow
 from core.executor.snapshot import State
 from tests.screen.pictures import Stage, _grab, _settle, press
 

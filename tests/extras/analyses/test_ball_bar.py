@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from core.extras.analyses.ball_bar import arcs_in, ball_bar, circle_of
+from core.extras.analyses.path_error import arcs_in, ball_bar, circle_of
 from core.records.record import AnalysisError
 from tests.coded import raises_code
 

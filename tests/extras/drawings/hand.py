@@ -14,7 +14,7 @@ from core.extras.drawings.drawing_file import read_drawing
 from core.extras.drawings.drawing_view import Profile, Side, View, axis_named, contours, profile
 from core.extras.drawings.profile_job import proposed_fields
 from core.extras.drawings.profile_program import ProfileProgram, profile_program
-from core.extras.shapes.shape_setting import Setting, Shop
+from core.extras.shapes.shape_fields import Setting, Shop
 from core.interpreter.job_setup import SecondaryOffset
 from core.language.source import Dialect
 from core.part.tool_shape import ToolKind, ToolShape

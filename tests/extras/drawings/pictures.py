@@ -11,7 +11,7 @@ from app.compose.runs.journal import Journal
 from app.desk.data_folder import data_folder
 from app.desk.desk import Desk
 from app.editor.editor_view import EditorPage
-from app.extras.drawings.added_drawing import AddedDrawing
+from app.extras.drawings.drawing_form import AddedDrawing
 from app.extras.shapes.shapes_view import ShapesView
 from app.screen.page_base import Page
 

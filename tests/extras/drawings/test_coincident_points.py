@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 
 from core.extras.drawings import dxf_reader
-from core.extras.drawings.arc_fitting import Place, arcs_of
 from core.extras.drawings.drawing_file import read_drawing
+from core.extras.drawings.reader_parts import Place, arcs_of
 from core.geometry.lines_and_arcs import Point
 from tests.extras.drawings.hand import dxf, profile_of
 

@@ -10,15 +10,14 @@ from typing import Any
 import pytest
 
 from app.desk.background_work import AbandonedError, Watch
-from app.extras.drawings.added_drawing import AddedDrawing
-from app.extras.drawings.drawing_form import DrawingForm
+from app.extras.drawings.drawing_form import AddedDrawing, DrawingForm
 from app.extras.drawings.drawing_plan import Planner
 from app.extras.drawings.drawings_desk import attempt
 from app.extras.shapes.shapes_model import Shapes
-from app.screen.language import speak_in
+from app.screen.look import speak_in
 from core.extras.drawings.drawing import Drawing
 from core.extras.drawings.drawing_file import read_drawing
-from core.extras.shapes.shape_setting import Setting, Shop
+from core.extras.shapes.shape_fields import Setting, Shop
 from tests.extras.drawings.hand import TOOLS, chain, dxf
 from tests.extras.shapes.hand import machine
 from tests.texts import pattern, text

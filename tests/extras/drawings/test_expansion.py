@@ -12,7 +12,7 @@ import svgelements
 from core.extras.drawings import dxf_reader
 from core.extras.drawings.drawing import MOST_ELEMENTS, DrawingError
 from core.extras.drawings.drawing_file import read_drawing
-from core.extras.drawings.expansion import Content, check_expansion
+from core.extras.drawings.reader_parts import Content, check_expansion
 
 LINE = "0\nLINE\n8\n0\n10\n0\n20\n0\n11\n1\n21\n1\n"
 

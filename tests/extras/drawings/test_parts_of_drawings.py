@@ -11,7 +11,7 @@ import pytest
 
 from app.extras.drawings.profile_trial_desk import TrialStock, tried
 from core.extras.drawings.drawing_view import Front, Side, Zero
-from core.extras.drawings.profile_words import is_corner
+from core.extras.drawings.profile_job import is_corner
 from core.extras.shapes.contour import points
 from core.language.source import Dialect
 from tests.extras.drawings.hand import BLADE, SLIM, chain, dxf, profile_of, program, radii, text_of

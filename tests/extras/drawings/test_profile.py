@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from app.extras.drawings import profile_json_keys
+from app.extras.drawings import profile_command
 from tests.cli.conftest import Turndesk
 from tests.cli.json_output import declared_alone, whole
 from tests.extras.drawings.hand import chain, dxf
@@ -209,7 +209,5 @@ def test_the_json_has_the_declared_keys(turndesk: Turndesk, tmp_path: Path) -> N
         whole(turndesk(*words, "--groove-tool", 1)),
         whole(turndesk(*words, "--out", tmp_path / "part.mpf")),
     ]
-    declared_alone(values, profile_json_keys.PROFILE.keys)
-    declared_alone(
-        [whole(turndesk("profile", path, "--list", "--json"))], profile_json_keys.PROFILE_LIST.keys
-    )
+    declared_alone(values, profile_command.PROFILE.keys)
+    declared_alone([whole(turndesk("profile", path, "--list", "--json"))], profile_command.PROFILE_LIST.keys)

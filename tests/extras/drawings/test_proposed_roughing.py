@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from app.extras.drawings.drawing_plan import Asked
-from core.extras.shapes.shape_setting import Setting, Shop
+from core.extras.shapes.shape_fields import Setting, Shop
 from core.part.tool_shape import ToolKind, ToolShape
 from tests.extras.drawings.hand import chain, dxf, planned
 

@@ -11,10 +11,10 @@ import pytest
 from app.cli.main import main
 from app.extras.drawings.profile_trial_desk import Trial, TrialStock, tried
 from core.extras.drawings.drawing_view import Profile, Side
+from core.extras.drawings.profile_job import in_json, in_words
 from core.extras.drawings.profile_program import ProfileProgram
-from core.extras.drawings.profile_words import in_json, in_words
 from core.extras.shapes.pieces import pieces
-from core.extras.shapes.shape_setting import Setting, Shop
+from core.extras.shapes.shape_fields import Setting, Shop
 from core.language.source import Dialect
 from core.tool_edges import TIP_DIRECTIONS
 from tests.coded import recorded_refusals

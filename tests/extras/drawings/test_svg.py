@@ -9,10 +9,10 @@ from unittest.mock import Mock
 import pytest
 
 from core.extras.drawings import svg_reader
-from core.extras.drawings.arc_fitting import Place
 from core.extras.drawings.drawing import DrawingError
 from core.extras.drawings.drawing_file import read_drawing
 from core.extras.drawings.drawing_view import Side, View, axis_named, contours, profile
+from core.extras.drawings.reader_parts import Place
 from core.geometry.lines_and_arcs import Arc, Line
 from tests.coded import raises_code
 from tests.extras.drawings.hand import SLIM, profile_of, program, radii

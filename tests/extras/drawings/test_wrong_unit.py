@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from app.extras.drawings.drawing_plan import Asked
-from core.extras.shapes.shape_setting import Setting, Shop
+from core.extras.shapes.shape_fields import Setting, Shop
 from tests.extras.drawings.hand import chain, dxf, planned
 
 INCH, FOOT, MM, METRE = 1, 2, 4, 6  # $INSUNITS

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from app.extras.jobs.jobs_json_keys import JOBS
+from app.extras.jobs.jobs_command import JOBS
 from core.access.access_table import Level
 from core.store import people
 from core.store.production import job_queue

@@ -10,8 +10,8 @@ from app.compose.stored_offsets import read_offsets, setup_with
 from app.compose.workshop import samples, thumbnails
 from app.desk.kept_part import kept_part
 from app.extras.office.office_desk import PICTURE
+from app.extras.office.office_pictures import png_of
 from app.extras.office.page_server import PageServer, listening_at
-from app.extras.office.png_file import png_of
 from app.extras.office.status_page import OtherDesk, StatusPage
 from app.shopfloor.status_file import Status
 from core.executor.job import make_job

@@ -10,7 +10,7 @@ from http.server import BaseHTTPRequestHandler, HTTPServer
 import pytest
 
 from app.compose.machine.machine_files import parse_machine
-from app.extras.office.agent_desk import asked_agent, current_address, streams_answer
+from app.extras.office.other_desks import asked_agent, current_address, streams_answer
 from core.extras.office.shop_network_tables import StatusPageTable
 from core.table_schema import MachineFileError
 from resources import machine_file

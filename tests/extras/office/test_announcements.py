@@ -28,8 +28,8 @@ from paho.mqtt.enums import CallbackAPIVersion
 from app.extras.office import mqtt_broker
 from app.extras.office.announcements import HELD, Announcement, Announcer, happened
 from app.extras.office.mqtt_broker import MqttBroker
-from app.extras.office.network_causes import Trouble, cause_of
 from app.extras.office.other_desks import asked
+from app.extras.office.timed_http import Trouble, cause_of
 from app.extras.office.web_hook import WebHook, posted
 from app.shopfloor.status_file import Status
 from core.extras.office.shop_network_tables import AnnounceTable

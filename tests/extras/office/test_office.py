@@ -23,16 +23,14 @@ from PySide6.QtGui import QImage
 from app.compose.backends.machine_answers import check_ports
 from app.compose.machine.machine_files import load_machine, parse_machine
 from app.extras.office import other_desks
-from app.extras.office.alarm_drawing import HIGH, alarm_drawing
-from app.extras.office.office_desk import AlarmDrawing, PartPicture
-from app.extras.office.office_status import STOPS, OfficeLook
+from app.extras.office.office_desk import STOPS, AlarmDrawing, OfficeLook, PartPicture
+from app.extras.office.office_pictures import HIGH, alarm_drawing, png_of
 from app.extras.office.other_desks import OtherDesks, asked, status_address
 from app.extras.office.page_connections import DEADLINE, MOST, MOST_OF_ONE
 from app.extras.office.page_server import PageServer, listening_at
-from app.extras.office.png_file import png_of
 from app.extras.office.status_page import OtherDesk, StatusPage
-from app.programs.preview import Thumbnail
-from app.screen.language import speak_in
+from app.programs.program_rows import Thumbnail
+from app.screen.look import speak_in
 from app.shopfloor.floor_reading import FloorReader
 from app.shopfloor.status_file import Status
 from core.executor.snapshot import Snapshot, State

@@ -7,8 +7,8 @@ from datetime import UTC, datetime
 
 from app.compose.machine.machine_files import shipped_machine
 from app.extras.office.announcements import Announcement
-from app.extras.office.office_json_keys import EVENT, OFFICE
-from app.extras.office.office_status import OfficeLook
+from app.extras.office.office_desk import OfficeLook
+from app.extras.office.office_reference import EVENT, OFFICE
 from app.shopfloor.floor_reading import FloorReader
 from app.shopfloor.status_file import Status
 from core.executor.snapshot import Snapshot

@@ -7,9 +7,8 @@ from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
-from app.extras.quality.shift_figures import shift_figures
+from app.extras.quality.shift_figures import Shift, shift_figures
 from app.extras.quality.shift_page import shift_html
-from app.extras.quality.shift_times import Shift
 from core.store.event_log import log
 from core.store.production import measured_parts, part_cycles, tool_lives
 from core.store.production.measured_parts import FeatureRow, ReadingRow

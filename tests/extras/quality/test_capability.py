@@ -6,8 +6,7 @@ import math
 
 import pytest
 
-from core.extras.quality.capability import LEAST, capability
-from core.extras.quality.quality_errors import QualityError
+from core.extras.quality.control_charts import LEAST, QualityError, capability
 from tests.coded import raises_code
 
 TEN = [9.99, 10.01] * 5

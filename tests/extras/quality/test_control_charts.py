@@ -7,8 +7,14 @@ import math
 import numpy as np
 import pytest
 
-from core.extras.quality.control_charts import CONSTANTS, Chart, average_and_range, charts_of, individuals
-from core.extras.quality.quality_errors import QualityError
+from core.extras.quality.control_charts import (
+    CONSTANTS,
+    Chart,
+    QualityError,
+    average_and_range,
+    charts_of,
+    individuals,
+)
 from tests.coded import raises_code
 
 

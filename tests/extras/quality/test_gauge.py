@@ -12,9 +12,17 @@ from dataclasses import dataclass
 
 import pytest
 
-from app.extras.quality.gauge_line import LONGEST, GaugeError, LineReader, NoGauge, Reading, reading_of
 from app.extras.quality.gauge_table import GaugeModel
-from app.extras.quality.gauge_wire import SILENT, GaugeWire
+from app.extras.quality.gauge_wire import (
+    LONGEST,
+    SILENT,
+    GaugeError,
+    GaugeWire,
+    LineReader,
+    NoGauge,
+    Reading,
+    reading_of,
+)
 from tests.coded import raises_code
 from tests.texts import pattern, text
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from app.extras.quality.parts_data import PartsData
-from app.extras.quality.readings_file import write_readings
+from app.extras.quality.parts_data import PartsData, write_readings
 from tests.power_cut import cut_everywhere
 
 OLD = b"part,value\n1,12.7\n"

@@ -12,9 +12,16 @@ from pathlib import Path
 import pytest
 
 from app.cli.main import main
-from app.extras.quality.shift_figures import ShiftFigures, shift_figures
+from app.extras.quality.shift_figures import (
+    Shift,
+    ShiftFigures,
+    ShiftTimesError,
+    between,
+    moment_of,
+    shift_figures,
+    shift_of,
+)
 from app.extras.quality.shift_page import shift_html
-from app.extras.quality.shift_times import Shift, ShiftTimesError, between, moment_of, shift_of
 from core.store.event_log import log
 from core.store.production import measured_parts, part_cycles, tool_lives
 from core.store.production.measured_parts import FeatureRow, ReadingRow

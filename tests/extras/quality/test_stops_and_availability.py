@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from core.extras.quality.quality_errors import QualityError
+from core.extras.quality.control_charts import QualityError
 from core.extras.quality.stops import Span, Stop, availability, pareto, times_between
 from tests.coded import raises_code
 

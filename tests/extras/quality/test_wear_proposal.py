@@ -7,9 +7,15 @@ from dataclasses import replace
 
 import pytest
 
-from core.extras.quality.measured_feature import CorrectedBy, Feature, FeatureKind, check_feature
-from core.extras.quality.quality_errors import QualityError
-from core.extras.quality.wear_proposal import CorrectionRule, propose
+from core.extras.quality.control_charts import QualityError
+from core.extras.quality.measured_feature import (
+    CorrectedBy,
+    CorrectionRule,
+    Feature,
+    FeatureKind,
+    check_feature,
+    propose,
+)
 from tests.coded import raises_code
 
 IN = 25.4

@@ -10,10 +10,8 @@ import pytest
 from app.extras.shapes.shapes_model import Shapes
 from core.extras.shapes.calculators import SPEED, THREADS, TRIANGLE, triangle
 from core.extras.shapes.shape import Filled, filled
-from core.extras.shapes.shape_fields import Value
-from core.extras.shapes.shape_setting import Setting, Shop
-from core.extras.shapes.threads.drill_sizes import drill_for
-from core.extras.shapes.threads.tapping import TAP
+from core.extras.shapes.shape_fields import Setting, Shop, Value
+from core.extras.shapes.threads.tapping import TAP, drill_for
 from core.part.tool_shape import ToolKind, ToolShape
 from tests.extras.shapes.hand import Programmer, bad, proved
 from tests.texts import text as wording

@@ -9,8 +9,7 @@ import pytest
 
 from core.extras.shapes.pieces import setting_at, with_shape
 from core.extras.shapes.shape import filled
-from core.extras.shapes.shape_fields import Value
-from core.extras.shapes.shape_setting import Shop
+from core.extras.shapes.shape_fields import Shop, Value
 from core.extras.shapes.shape_table import SHAPES
 from core.part.tool_shape import ToolKind, ToolShape
 from tests.extras.shapes.hand import proved

@@ -7,8 +7,7 @@ import pytest
 from core.extras.shapes.contour import Row
 from core.extras.shapes.pieces import Piece, pieces, renewed, setting_at, with_shape
 from core.extras.shapes.shape import Filled, filled
-from core.extras.shapes.shape_fields import Value
-from core.extras.shapes.shape_setting import Setting, Shop
+from core.extras.shapes.shape_fields import Setting, Shop, Value
 from core.extras.shapes.shape_table import SHAPES
 from core.part.tool_shape import ToolKind, ToolShape
 from tests.extras.shapes.hand import Programmer, bad, proved

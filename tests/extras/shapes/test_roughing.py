@@ -13,8 +13,7 @@ from core.extras.shapes.contour import Row
 from core.extras.shapes.cutting_data import MATERIALS
 from core.extras.shapes.cutting_depth import facing_depth, finish_depth, most_depth, rough_depth
 from core.extras.shapes.shape import Filled, filled
-from core.extras.shapes.shape_fields import Value
-from core.extras.shapes.shape_setting import Setting, Shop
+from core.extras.shapes.shape_fields import Setting, Shop, Value
 from core.extras.shapes.shape_table import HELPERS_OF, SHAPES_OF
 from core.language.source import Dialect
 from core.part.tool_shape import ToolKind, ToolShape

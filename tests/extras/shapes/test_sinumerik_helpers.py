@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from app.extras.shapes.shapes_model import Shapes
-from core.extras.shapes.shape_setting import Setting, Shop
+from core.extras.shapes.shape_fields import Setting, Shop
 from core.language.source import Dialect
 from tests.extras.shapes.test_sinumerik_shapes import NEAR, metal, strike
 from tests.texts import begins

@@ -12,8 +12,7 @@ from app.compose.machine.machine_files import shipped_machine
 from app.compose.machine.machine_setup import setup_for
 from core.extras.shapes.pieces import pieces, setting_at, with_shape
 from core.extras.shapes.shape import filled
-from core.extras.shapes.shape_fields import Value
-from core.extras.shapes.shape_setting import Setting, Shop
+from core.extras.shapes.shape_fields import Setting, Shop, Value
 from core.extras.shapes.shape_table import SINUMERIK_SHAPES
 from core.interpreter.actions import Collet, Output
 from core.interpreter.dialects import ReadProgram

@@ -13,8 +13,7 @@ from app.extras.shapes.shapes_model import Shapes
 from core.extras.shapes.contour import Row
 from core.extras.shapes.pieces import pieces, renewed, setting_at, with_shape
 from core.extras.shapes.shape import filled
-from core.extras.shapes.shape_fields import Value
-from core.extras.shapes.shape_setting import Setting, Shop
+from core.extras.shapes.shape_fields import Setting, Shop, Value
 from core.extras.shapes.shape_table import SHAPES_OF
 from core.interpreter.dialects import ReadProgram
 from core.interpreter.elementary_blocks import Kind

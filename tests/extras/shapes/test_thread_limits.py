@@ -7,10 +7,17 @@ import math
 import pytest
 
 from core.extras.shapes.shape import Filled, filled
-from core.extras.shapes.shape_setting import Setting, Shop
+from core.extras.shapes.shape_fields import Setting, Shop
 from core.extras.shapes.shape_table import SHAPES
-from core.extras.shapes.threads.thread_limits import Limits, classes, limits, pipe_length
-from core.extras.shapes.threads.thread_series import METRIC, Series, size_of
+from core.extras.shapes.threads.thread_series import (
+    METRIC,
+    Limits,
+    Series,
+    classes,
+    limits,
+    pipe_length,
+    size_of,
+)
 from core.interpreter.elementary_blocks import Kind
 from core.part.tool_shape import ToolKind, ToolShape
 from tests.extras.shapes.test_ten_parts import blocks_of

@@ -10,7 +10,7 @@ import pytest
 import resources
 from app.compose.backends.machine_answers import check_ports
 from app.compose.machine.machine_files import parse_machine
-from app.extras.sharing import share_json_keys
+from app.extras.sharing import share_command
 from core.store.store import Store
 from core.table_schema import MachineFileError
 from tests.cli.conftest import Told, Turndesk, home, turndesk
@@ -156,17 +156,17 @@ def test_machine_check_has_a_row_for_the_place(shop: Shop) -> None:
 
 def test_share(shop: Shop) -> None:
     begun = whole(shop.share(1, "begin", "--json"))
-    declared_alone([begun], share_json_keys.SHARE_BEGIN.keys)
+    declared_alone([begun], share_command.SHARE_BEGIN.keys)
     shop.program(1, "CAP.NC").write_text("G00 X1\nM30\n")
     shop.program(1, "LARGE.NC").write_bytes(b"(X)\n" * (9 * 2**20))
     shared = [whole(shop.share(1, "publish", "--json"))]
     (shop.folder / "shop" / "stray.txt").write_text("X")
     taken = whole(shop.share(2, "take", "CAP.NC", "--json"))
-    declared_alone([taken], share_json_keys.SHARE_TAKE.keys)
+    declared_alone([taken], share_command.SHARE_TAKE.keys)
     for number in (1, 2):
         shop.program(number, "CAP.NC").write_text(f"G00 X1{number}\nM30\n")
         shop.share(number, "publish")
     shared.append(whole(shop.share(1, "status", "--json")))
-    declared_alone(shared, share_json_keys.SHARE_STATUS.keys)
-    declared_alone([whole(shop.share(1, "compare", "CAP.NC", "--json"))], share_json_keys.SHARE_COMPARE.keys)
-    declared_alone([whole(shop.share(1, "keep", "CAP.NC", "--json"))], share_json_keys.SHARE_KEEP.keys)
+    declared_alone(shared, share_command.SHARE_STATUS.keys)
+    declared_alone([whole(shop.share(1, "compare", "CAP.NC", "--json"))], share_command.SHARE_COMPARE.keys)
+    declared_alone([whole(shop.share(1, "keep", "CAP.NC", "--json"))], share_command.SHARE_KEEP.keys)

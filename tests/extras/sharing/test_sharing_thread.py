@@ -5,8 +5,7 @@ from __future__ import annotations
 import threading
 from typing import cast
 
-from app.extras.sharing.sharing import Shared, Sharing
-from app.extras.sharing.sharing_thread import SharingThread
+from app.extras.sharing.sharing import Shared, Sharing, SharingThread
 
 
 class Dead:

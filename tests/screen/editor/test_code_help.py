@@ -6,7 +6,7 @@ import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 
-from app.editor.editor_view import Mode
+from app.editor.editor_parts_view import Mode
 from app.screen.panel import Panel
 from core.language.code_book import Entry
 from tests.screen.editor.writer import Writer

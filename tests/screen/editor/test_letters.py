@@ -9,7 +9,7 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
 from app.screen import page_table
-from app.screen.letter_keys import PROGRAMS
+from app.screen.entry_panel import PROGRAMS
 from app.screen.panel import Panel
 from app.screen.window_layout import FINGER
 from tests.screen.editor.writer import Writer

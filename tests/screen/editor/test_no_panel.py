@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 from PySide6.QtCore import Qt
 
-from app.editor.editor_view import Mode
+from app.editor.editor_parts_view import Mode
 from app.screen import page_table
-from app.screen.editor_panel import EditorPanel
+from app.screen.page_base import EditorPanel
 from tests.screen.editor.writer import Writer
 from tests.screen.hands import Key
 

@@ -17,10 +17,9 @@ from app.compose.stored_offsets import offsets_of
 from app.desk.desk import Desk
 from app.jog.jog_view import JogPage
 from app.offsets.offset_book import OffsetBook
-from app.screen.look import Look
-from app.screen.main_window import MainWindow
-from app.screen.theme import DARK
-from app.screen.window_frame import Frame
+from app.screen.look import DARK, Look
+from app.screen.window.main_window import MainWindow
+from app.screen.window.window_frame import Frame
 from core.executor.executor import Executor
 from core.executor.snapshot import Snapshot, State
 from core.store.store import Store

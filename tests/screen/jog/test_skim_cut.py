@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import pytest
 
-from app.jog.skim_cut import CutStep
+from app.jog.skim_and_setter import CutStep
 from core.executor.commands import JogStep
 from core.executor.snapshot import State
 from tests.screen.jog.bench import INCH, JogBench, Key

@@ -7,8 +7,7 @@ from collections.abc import Iterator
 from core.extras.shapes.cutting_data import Work
 from core.extras.shapes.lines.code_lines import Code
 from core.extras.shapes.shape import Filled, Shape
-from core.extras.shapes.shape_fields import Field, Kind, Refusal, Value, Values, number
-from core.extras.shapes.shape_setting import Setting
+from core.extras.shapes.shape_fields import Field, Kind, Refusal, Setting, Value, Values, number
 from core.extras.shapes.usual_fields import (
     around,
     feed_field,

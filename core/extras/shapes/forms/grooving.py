@@ -6,7 +6,8 @@ import math
 from collections.abc import Iterator
 from dataclasses import replace
 
-from core.extras.shapes.blade import (
+from core.extras.shapes.cutting_data import Work
+from core.extras.shapes.forms.bar_work import (
     BLADE_FIELD,
     CORNER_FIELD,
     FREE,
@@ -17,13 +18,10 @@ from core.extras.shapes.blade import (
     reach,
     side_of,
 )
-from core.extras.shapes.cutting_data import Work
 from core.extras.shapes.forms.turning import begin_spindle, end_spindle
-from core.extras.shapes.lines.code_lines import Code
-from core.extras.shapes.number_words import figure, plain
+from core.extras.shapes.lines.code_lines import Code, figure, plain
 from core.extras.shapes.shape import Filled, Shape
-from core.extras.shapes.shape_fields import Field, Kind, Refusal, Values, number
-from core.extras.shapes.shape_setting import Setting
+from core.extras.shapes.shape_fields import Field, Kind, Refusal, Setting, Values, number
 from core.extras.shapes.usual_fields import around, bar, feed_field, per_rev, rpm_field, too_fast, tool_field
 from core.message import Message
 from core.part.tool_shape import ToolKind

@@ -10,11 +10,9 @@ from core.extras.shapes import cutting_data
 from core.extras.shapes.cutting_data import Work
 from core.extras.shapes.forms.drilling import _across
 from core.extras.shapes.lines.code_lines import Code
-from core.extras.shapes.lines.live_lines import Faces, Holes, LiveLines, Slots
-from core.extras.shapes.lines.sinumerik_live_lines import SinumerikLiveLines
+from core.extras.shapes.lines.live_lines import Faces, Holes, LiveLines, SinumerikLiveLines, Slots
 from core.extras.shapes.shape import Filled, Shape
-from core.extras.shapes.shape_fields import Field, Kind, Proposal, Refusal, Value, Values, number
-from core.extras.shapes.shape_setting import Setting
+from core.extras.shapes.shape_fields import Field, Kind, Proposal, Refusal, Setting, Value, Values, number
 from core.extras.shapes.usual_fields import MOST_RPM, bar, too_deep, tool_field
 from core.language.source import Dialect
 from core.message import Message

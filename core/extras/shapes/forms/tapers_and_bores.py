@@ -21,8 +21,7 @@ from core.extras.shapes.forms.turning import (
 )
 from core.extras.shapes.lines.code_lines import Code
 from core.extras.shapes.shape import Filled, Shape
-from core.extras.shapes.shape_fields import Field, Kind, Refusal, Value, Values, number
-from core.extras.shapes.shape_setting import Setting
+from core.extras.shapes.shape_fields import Field, Kind, Refusal, Setting, Value, Values, number
 from core.extras.shapes.usual_fields import around, bar, feed_field, rpm_field, surface_field, tool_field
 from core.message import Message
 from core.part.tool_shape import ToolKind

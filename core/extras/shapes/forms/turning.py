@@ -11,8 +11,7 @@ from core.extras.shapes.cutting_data import Work
 from core.extras.shapes.cutting_depth import facing_depth, finish_depth, most_depth, rough_depth
 from core.extras.shapes.lines.code_lines import Along, Code
 from core.extras.shapes.shape import Filled, Shape
-from core.extras.shapes.shape_fields import Field, Kind, Refusal, Value, Values, number, text
-from core.extras.shapes.shape_setting import Setting
+from core.extras.shapes.shape_fields import Field, Kind, Refusal, Setting, Value, Values, number, text
 from core.extras.shapes.usual_fields import (
     around,
     bar,

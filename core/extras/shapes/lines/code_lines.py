@@ -1,14 +1,82 @@
-"""The lines of a shape: rapids, cuts and feeds as a programmer of this control writes them."""
+"""The lines of a shape and of a bar loop: numbers as words, rapids, cuts and feeds of this control."""
 
 from __future__ import annotations
 
+import math
+import re
 from collections.abc import Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
 from core.extras.shapes.contour import SAME, Row, points
-from core.extras.shapes.number_words import plain, rounded
-from core.extras.shapes.shape_setting import Setting
+from core.extras.shapes.shape_fields import Setting
+from core.language.source import Dialect
+
+
+class Bars(NamedTuple):
+    """``many`` parts of ``long``, fed by ``rate`` a minute to the tool ``stop``, which leaves ``stock``.
+
+    ``each``: the bar is fed for each part, else once. ``part`` is the number of its subroutine.
+    """
+
+    many: int
+    long: float
+    each: bool
+    stop: float
+    stock: float
+    rate: float
+    part: int
+
+    @property
+    def out(self) -> float:
+        """How far the bar comes out at a time."""
+        return self.long if self.each else self.many * self.long
+
+
+def write_bars(code: Code, bars: Bars) -> None:
+    """In the language of the program."""
+    (_sinumerik if code.setting.dialect is Dialect.SINUMERIK else _omniturn)(code, bars)
+
+
+def _omniturn(code: Code, bars: Bars) -> None:
+    """LS … LF. G97 changes nothing: it carries the comment, which has no place inside a loop."""
+    call, loop = f"P{bars.part}", f"LS{bars.many}"
+    code.write("G97", loop) if bars.each else code.write("G97")
+    code.write(f"T{bars.stop:.0f}")
+    _to_stop(code, bars)
+    code.write("M13", f"G94F{plain(bars.rate)}{code.z(bars.stock)}", "M12")
+    code.forget()
+    code.away()
+    if bars.each:
+        code.write(call, "LF")
+    else:
+        code.write(loop, call, f"G10{code.point(0.0, -bars.long)}", "LF", "T0")
+
+
+def _sinumerik(code: Code, bars: Bars) -> None:
+    """REPEAT between two labels; a bar that was fed once is gone along by ATRANS."""
+    opens, closes = code.setting.shop.chuck or (0, 0)
+    begin, end = f"BAR_{bars.part}", f"BAR_{bars.part}_END"
+    code.write(*([f"{begin}:"] if bars.each else []), f"T{bars.stop:.0f} D1", "M5")
+    code.forget()
+    _to_stop(code, bars)
+    code.write(f"M{opens}", f"G94 G1 {code.z(bars.stock)} F{plain(bars.rate)}", f"M{closes}")
+    code.forget()
+    code.away()
+    code.write(*([] if bars.each else [f"{begin}:"]), f"PART_{bars.part}")
+    if not bars.each:
+        code.write(" ".join(("ATRANS", code.z(-bars.long))))
+    code.write(f"{end}:")
+    if bars.many > 1:
+        code.write(" ".join(("REPEAT", begin, end, f"P={bars.many - 1}")))
+    if not bars.each:
+        code.write("TRANS")
+
+
+def _to_stop(code: Code, bars: Bars) -> None:
+    """The stop to the end of the bar."""
+    code.rapid(0.0, code.setting.clear)
+    code.rapid(z=bars.stock - bars.out)
 
 
 class Along(NamedTuple):
@@ -206,3 +274,68 @@ class Code:
 
 def _feed(value: float) -> str:
     return f"{value:.6f}".rstrip("0").replace("0.", ".", 1) if value < 1 else f"{value:g}"
+
+
+_STEPS = {False: 0.00005, True: 0.0005}  # by metric: what a word is rounded to; a diameter twice of it
+_NUMBER = re.compile(r"(M?)(\d+)(?:P(\d+))?(?:MM)?")
+_NO_ZERO = re.compile(r"(?<![\d.])\.(?=\d)")
+_NAME = str.maketrans({"/": "S", "-": "A", ".": "P", "#": "N"})
+_BACK = str.maketrans({"S": "/", "A": "-", "P": ".", "N": "#"})
+
+
+def plain(value: float, places: int = 5) -> str:
+    """``value`` as programs have it: no zero before the point nor behind it: .5, -.035, 2."""
+    text = f"{value:.{places}f}"
+    if "." in text:
+        text = text.rstrip("0").rstrip(".")
+    if text in {"-0", "-", ""}:
+        return "0"
+    return text.replace("0.", ".", 1) if text.startswith(("0.", "-0.")) else text
+
+
+def figure(value: float, places: int = 5) -> str:
+    """``value`` as SINUMERIK programs have it: 0.5, -0.035, 2."""
+    return with_zero(plain(value, places))
+
+
+def with_zero(word: str) -> str:
+    """A word of ``plain`` with the zero before its point."""
+    return _NO_ZERO.sub("0.", word)
+
+
+def rounded(value: float, *, metric: bool, twice: bool = False) -> float:
+    """A length on the step of the control; ``twice``: on that of a diameter."""
+    step = _STEPS[metric] * (2.0 if twice else 1.0)
+    return round(value / step) * step
+
+
+def rounded_up(radius: float, *, metric: bool) -> float:
+    """A depth on the step of the control or above it: in passes of equal chip a hair less is a pass more."""
+    step = _STEPS[metric]
+    return math.ceil(radius / step - 1e-6) * step
+
+
+def in_comment(value: float, places: int = 5) -> str:
+    """A number of a comment: P stands for the point, a leading M for minus: 0P5, M0P035."""
+    text = f"{abs(value):.{places}f}".rstrip("0").rstrip(".")
+    sign = "M" if value < 0 and text.strip("0.") else ""
+    return sign + text.replace(".", "P")
+
+
+def from_comment(text: str) -> float | None:
+    """The number of ``in_comment``; None where it is none."""
+    found = _NUMBER.fullmatch(text)
+    if found is None:
+        return None
+    value = float(f"{found[2]}.{found[3] or 0}")
+    return -value if found[1] else value
+
+
+def name_in_comment(name: str) -> str:
+    """The name of a size in letters and digits: 1/2 is 1S2, 1-1/8 is 1A1S8, M10X1.25 is M10X1P25."""
+    return name.translate(_NAME)
+
+
+def name_from_comment(text: str) -> str:
+    """The name that was written so."""
+    return text.translate(_BACK)

@@ -6,9 +6,8 @@ Grooves are cut by G1, or by CYCLE93 where the form is told the second cutting e
 from __future__ import annotations
 
 from core.extras.shapes.contour import points
-from core.extras.shapes.lines.code_lines import Along, Code, Tap
-from core.extras.shapes.number_words import figure, with_zero
-from core.extras.shapes.shape_setting import Setting
+from core.extras.shapes.lines.code_lines import Along, Code, Tap, figure, with_zero
+from core.extras.shapes.shape_fields import Setting
 from core.message import Message
 
 _TURNS = {"M03": "M3", "M04": "M4"}

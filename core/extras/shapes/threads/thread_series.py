@@ -1,11 +1,12 @@
-"""Thread series by name: diameter and pitch of UNC, UNF, UNEF, M, MF, NPT, BSP, BSPT and ACME.
+"""Thread series by name, and limits of a thread by its class from the formulas of the standards.
 
-Inch series are in inches, the others in mm: each as its standard gives it. ASME B1.1, B1.20.1 and B1.5,
-ISO 261, ISO 228-1 and ISO 7-1.
+Unified: ASME B1.1. Metric: ISO 965-1, whose tolerances are rounded to preferred numbers (R 40). Pipe:
+B1.20.1, ISO 7-1, ISO 228-1. ACME: B1.5, general purpose.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from enum import StrEnum
 from fractions import Fraction
@@ -48,7 +49,7 @@ def _fraction(name: str) -> float:
     return float(sum(Fraction(part) for part in name.split("-")))
 
 
-def _unified(listed: str) -> tuple[ThreadSize, ...]:
+def _unified_series(listed: str) -> tuple[ThreadSize, ...]:
     found = []
     for each in listed.split():
         name, _, turns = each.rpartition(":")
@@ -58,7 +59,7 @@ def _unified(listed: str) -> tuple[ThreadSize, ...]:
     return tuple(found)
 
 
-def _metric(listed: str, *, fine: bool) -> tuple[ThreadSize, ...]:
+def _metric_series(listed: str, *, fine: bool) -> tuple[ThreadSize, ...]:
     found = []
     for each in listed.split():
         across, _, pitch = each.partition("x")
@@ -79,24 +80,24 @@ def _listed(unit: float, listed: str) -> tuple[ThreadSize, ...]:
 
 
 SIZES: dict[Series, tuple[ThreadSize, ...]] = {
-    Series.UNC: _unified(
+    Series.UNC: _unified_series(
         "#1:64 #2:56 #3:48 #4:40 #5:40 #6:32 #8:32 #10:24 #12:24 1/4:20 5/16:18 3/8:16 7/16:14 1/2:13 "
         "9/16:12 5/8:11 3/4:10 7/8:9 1:8 1-1/8:7 1-1/4:7 1-3/8:6 1-1/2:6 1-3/4:5 2:4.5"
     ),
-    Series.UNF: _unified(
+    Series.UNF: _unified_series(
         "#0:80 #1:72 #2:64 #3:56 #4:48 #5:44 #6:40 #8:36 #10:32 #12:28 1/4:28 5/16:24 3/8:24 7/16:20 "
         "1/2:20 9/16:18 5/8:18 3/4:16 7/8:14 1:12 1-1/8:12 1-1/4:12 1-3/8:12 1-1/2:12"
     ),
-    Series.UNEF: _unified(
+    Series.UNEF: _unified_series(
         "#12:32 1/4:32 5/16:32 3/8:32 7/16:28 1/2:28 9/16:24 5/8:24 11/16:24 3/4:20 13/16:20 7/8:20 "
         "15/16:20 1:20 1-1/16:18 1-1/8:18 1-1/4:18 1-3/8:18 1-1/2:18"
     ),
-    Series.M: _metric(
+    Series.M: _metric_series(
         "1.6x0.35 2x0.4 2.5x0.45 3x0.5 3.5x0.6 4x0.7 5x0.8 6x1 7x1 8x1.25 10x1.5 12x1.75 14x2 16x2 18x2.5 "
         "20x2.5 22x2.5 24x3 27x3 30x3.5 33x3.5 36x4 39x4 42x4.5 48x5",
         fine=False,
     ),
-    Series.MF: _metric(
+    Series.MF: _metric_series(
         "4x0.5 5x0.5 6x0.75 8x0.75 8x1 10x0.75 10x1 10x1.25 12x1 12x1.25 12x1.5 14x1 14x1.5 16x1 16x1.5 "
         "18x1 18x1.5 20x1 20x1.5 20x2 22x1.5 24x1 24x1.5 24x2 27x1.5 27x2 30x1.5 30x2 33x2 36x1.5 36x3 "
         "39x3 42x2 42x3 48x2 48x3",
@@ -148,3 +149,275 @@ def _names(series: Series, size: ThreadSize) -> tuple[str, ...]:
         return size.name, f"{size.name.partition('X')[0]}X{size.pitch:g}"
     turns = (25.4 if series in METRIC else 1.0) / size.pitch
     return size.name, f"{size.name}-{round(turns, 2):g}"
+
+
+V60 = math.sqrt(3.0) / 2.0  # height of a sharp V of 60° in pitches
+_V55 = 0.960491  # the same of 55°
+_PIPE_HEIGHT = 0.8  # of an NPT thread, in pitches; ASME B1.20.1
+_WHITWORTH = 2.0 / 3.0 * _V55  # height of a 55° thread, a sixth rounded off at crest and root; ISO 228-1
+_TAPER = 1.0 / 16.0  # on the diameter
+
+CLASSES = {
+    "unified": (("2A", "1A", "3A"), ("2B", "1B", "3B")),
+    "metric": (("6g", "6h", "4h", "8g"), ("6H", "5H", "7H", "6G")),
+    "ACME": (("2G", "3G", "4G"), ("2G", "3G", "4G")),
+    "BSP": (("A", "B"), ()),
+}
+"""Classes outside and inside; the first is the usual one."""
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """Least and most of each diameter in the unit of the series; at the small end of a tapered thread.
+
+    ``root`` is where the point of a tool of the standard profile ends when the pitch diameter is in the
+    middle of its limits; ``crest`` is the diameter that is turned or bored before.
+    """
+
+    major: tuple[float, float]
+    pitch: tuple[float, float]
+    minor: tuple[float, float]
+    crest: float
+    root: float
+    angle: float = 60.0
+
+    @property
+    def height(self) -> float:
+        """From crest to root, of a radius."""
+        return abs(self.crest - self.root) / 2.0
+
+
+def classes(series: Series, *, inside: bool) -> tuple[str, ...]:
+    """The classes of a series, the usual one first; none where its standard has one only."""
+    if series in UNIFIED:
+        return CLASSES["unified"][inside]
+    if series in {Series.M, Series.MF}:
+        return CLASSES["metric"][inside]
+    return CLASSES[series.value][inside] if series.value in CLASSES else ()
+
+
+def angle_of(series: Series) -> float | None:
+    """The angle between both flanks, degrees; None where the series does not say it."""
+    if series is Series.OWN:
+        return None
+    return 29.0 if series is Series.ACME else 55.0 if series in {Series.BSP, Series.BSPT} else 60.0
+
+
+def limits(series: Series, size: ThreadSize, tolerance: str, *, inside: bool, nose: float = 0.0) -> Limits:
+    """What a thread measures. ``nose``: radius of the tool's point, 0: that of the standard profile."""
+    if series in UNIFIED:
+        return _unified(series, size, tolerance, nose, inside=inside)
+    if series in {Series.M, Series.MF}:
+        return _metric(size, tolerance, nose, inside=inside)
+    if series is Series.ACME:
+        return _acme(size, tolerance, inside=inside)
+    if series in TAPERED:
+        return _pipe(series, size, nose, inside=inside)
+    return _parallel_pipe(size, tolerance, nose, inside=inside)
+
+
+def _middle(pair: tuple[float, float]) -> float:
+    return (pair[0] + pair[1]) / 2.0
+
+
+def _v_root(pitch_diameter: float, pitch: float, nose: float, *, inside: bool) -> float:
+    """Where a point of radius ``nose`` ends: half the sharp V from the pitch line, less what the nose lacks.
+
+    The standard's own: H/6 outside (rounded root), a flat of P/8 inside, which lacks H/8.
+    """
+    high = V60 * pitch
+    lack = nose or high / (8.0 if inside else 6.0)
+    far = high - 2.0 * lack
+    return pitch_diameter + far if inside else pitch_diameter - far
+
+
+# --- ASME B1.1
+
+
+def _printed(value: float) -> float:
+    """B1.1 rounds each tolerance, the allowance and the basic diameters, half upwards, before adding them."""
+    return math.floor(value * 10_000.0 + 0.5 + 1e-9) / 10_000.0
+
+
+def _unified(series: Series, size: ThreadSize, tolerance: str, nose: float, *, inside: bool) -> Limits:
+    d, p = size.diameter, size.pitch
+    grade = int(tolerance[0])
+    engaged = 9.0 * p if series is Series.UNEF else d
+    pitch_2a = round(0.0015 * d ** (1 / 3) + 0.0015 * math.sqrt(engaged) + 0.015 * p ** (2 / 3), 6)
+    basic_pitch, basic_minor = _printed(d - 0.75 * V60 * p), d - 1.25 * V60 * p
+    if inside:
+        wide = _printed({1: 1.95, 2: 1.3, 3: 0.975}[grade] * pitch_2a)
+        pitch = basic_pitch, basic_pitch + wide
+        minor = basic_minor, basic_minor + _minor_tolerance(d, p, grade)
+        return Limits(
+            (d, math.inf), pitch, minor, _middle(minor), _v_root(_middle(pitch), p, nose, inside=True)
+        )
+    allowance = _printed(0.3 * pitch_2a) if grade < 3 else 0.0
+    wide = _printed({1: 1.5, 2: 1.0, 3: 0.75}[grade] * pitch_2a)
+    major_wide = _printed((0.09 if grade == 1 else 0.06) * p ** (2 / 3))
+    major = d - allowance - major_wide, d - allowance
+    pitch = basic_pitch - allowance - wide, basic_pitch - allowance
+    root = _v_root(_middle(pitch), p, nose, inside=False)
+    deepest = d - allowance - 17.0 / 12.0 * V60 * p  # UNR, reference
+    return Limits(major, pitch, (-math.inf, deepest), _middle(major), root)
+
+
+def _minor_tolerance(d: float, p: float, grade: int) -> float:
+    """Of an internal thread; B1.1 section 5.8, by size and class."""
+    formula = 0.05 * math.pow(p, 2 / 3) + 0.03 * p / d - 0.002
+    if grade < 3:
+        if d >= 0.25:
+            return 0.25 * p - 0.4 * p * p if 1.0 / p >= 4.0 else 0.15 * p
+        return min(max(formula, 0.25 * p - 0.4 * p * p), 0.394 * p)
+    least = 0.23 * p - 1.5 * p * p if 1.0 / p >= 13.0 else 0.12 * p
+    return min(max(formula, least), 0.394 * p)
+
+
+# --- ISO 965-1
+
+_R40 = (
+    *(100, 106, 112, 118, 125, 132, 140, 150, 160, 170, 180, 190, 200, 212, 224, 236, 250, 265, 280, 300),
+    *(315, 335, 355, 375, 400, 425, 450, 475, 500, 530, 560, 600, 630, 670, 710, 750, 800, 850, 900, 950),
+)
+_STEPS = (0.99, 1.4, 2.8, 5.6, 11.2, 22.4, 45.0, 90.0, 180.0)  # mm: ranges of diameters
+_GRADES = {3: 0.5, 4: 0.63, 5: 0.8, 6: 1.0, 7: 1.25, 8: 1.6}
+_MINOR_6 = {0.35: 100, 0.4: 112, 0.45: 125, 0.5: 140, 0.6: 160, 0.7: 180, 0.75: 190, 0.8: 200, 1.0: 236}
+_MINOR_6 |= {
+    1.25: 265,
+    1.5: 300,
+    1.75: 335,
+    2.0: 375,
+    2.5: 450,
+    3.0: 500,
+    3.5: 560,
+    4.0: 600,
+    4.5: 670,
+    5.0: 710,
+}
+
+# Where the table has others than the formula: pitch diameter by pitch and range, major diameter by pitch.
+_PITCH_6 = {(0.5, 2.8): 75.0, (5.0, 45.0): 250.0}
+_MAJOR_6 = {4.0: 475.0}
+_PLACE_G = {0.35: 19, 0.4: 19, 0.45: 20, 0.5: 20, 0.6: 21, 0.7: 22, 0.75: 22, 0.8: 24, 1.0: 26, 1.25: 28}
+_PLACE_G |= {1.5: 32, 1.75: 34, 2.0: 38, 2.5: 42, 3.0: 48, 3.5: 53, 4.0: 60, 4.5: 63, 5.0: 71}
+
+
+def _preferred(value: float, *, up: bool = False) -> float:
+    """The nearest preferred number of R 40; ``up``: the first that is not over 1 % less."""
+    scale = 10.0 ** math.floor(math.log10(value / 100.0))
+    numbers = [n * scale for n in (*_R40, 1000)]
+    if up:
+        return next(n for n in numbers if n >= 0.99 * value)
+    return min(numbers, key=lambda n: (abs(n - value), -n))
+
+
+def _metric(size: ThreadSize, tolerance: str, nose: float, *, inside: bool) -> Limits:
+    d, p = size.diameter, size.pitch
+    grade, place = int(tolerance[0]), tolerance[1]
+    low = max(step for step in _STEPS if step < d)
+    mean = math.sqrt(low * _STEPS[_STEPS.index(low) + 1])
+    pitch_6 = _PITCH_6.get((p, low)) or _preferred(90.0 * p**0.4 * mean**0.1)
+    away = _PLACE_G.get(p, round(15.0 + 11.0 * p)) / 1000.0
+    shift = {"g": -away, "G": away}.get(place, 0.0)
+    basic_pitch, basic_minor = d - 0.75 * V60 * p, d - 1.25 * V60 * p
+    if inside:
+        wide = _preferred(_preferred(1.32 * pitch_6, up=True) * _GRADES[grade]) / 1000.0
+        minor_wide = _preferred(_MINOR_6.get(p, 230.0 * p**0.7) * _GRADES[grade]) / 1000.0
+        pitch = basic_pitch + shift, basic_pitch + shift + wide
+        minor = basic_minor + shift, basic_minor + shift + minor_wide
+        root = _v_root(_middle(pitch), p, nose, inside=True)
+        return Limits((d + shift, math.inf), pitch, minor, _middle(minor), root)
+    wide = _preferred(pitch_6 * _GRADES[grade]) / 1000.0
+    major_6 = _MAJOR_6.get(p) or _preferred(180.0 * p ** (2 / 3) - 3.15 / math.sqrt(p))
+    major_wide = _preferred(major_6 * {4: 0.63, 6: 1.0, 8: 1.6}[grade]) / 1000.0
+    major = d + shift - major_wide, d + shift
+    pitch = basic_pitch + shift - wide, basic_pitch + shift
+    root = _v_root(_middle(pitch), p, nose, inside=False)
+    return Limits(major, pitch, (-math.inf, d + shift - 1.25 * V60 * p), _middle(major), root)
+
+
+# --- pipe threads, ACME
+
+
+_PIPE_PITCH = {28: 0.107, 19: 0.125, 14: 0.142, 11: 0.180}
+_PIPE_MINOR = {28: 0.282, 19: 0.445, 14: 0.541, 11: 0.640}
+"""ISO 228-1, mm, by turns an inch: pitch diameter inside and of class A (B: twice), minor diameter inside."""
+
+
+def _parallel_pipe(size: ThreadSize, tolerance: str, nose: float, *, inside: bool) -> Limits:
+    """ISO 228-1; inside there is one class."""
+    d, p, turns = size.diameter, size.pitch, round(25.4 / size.pitch)
+    wide, basic_pitch, basic_minor = _PIPE_PITCH[turns], d - _WHITWORTH * p, d - 2.0 * _WHITWORTH * p
+    if inside:
+        pitch = basic_pitch, basic_pitch + wide
+        minor = basic_minor, basic_minor + _PIPE_MINOR[turns]
+        root = _pipe_root(_middle(pitch), p, 55.0, nose, inside=True)
+        return Limits((d, math.inf), pitch, minor, _middle(minor), root, 55.0)
+    pitch, major = (
+        (basic_pitch - (wide if tolerance == "A" else 2.0 * wide), basic_pitch),
+        (d - 2.0 * wide, d),
+    )
+    root = _pipe_root(_middle(pitch), p, 55.0, nose, inside=False)
+    return Limits(major, pitch, (-math.inf, basic_minor), _middle(major), root, 55.0)
+
+
+def _pipe_root(pitch_diameter: float, pitch: float, angle: float, nose: float, *, inside: bool) -> float:
+    """Where a point of radius ``nose`` ends; 0: where the standard's own profile does."""
+    if nose:
+        sharp = _V55 if angle == 55.0 else V60
+        high = sharp * pitch - 2.0 * nose * (1.0 / math.sin(math.radians(angle / 2.0)) - 1.0)
+    else:
+        high = (_WHITWORTH if angle == 55.0 else _PIPE_HEIGHT) * pitch
+    return pitch_diameter + high if inside else pitch_diameter - high
+
+
+def _pipe(series: Series, size: ThreadSize, nose: float, *, inside: bool) -> Limits:
+    """At the small end outside; inside at the mouth, which is the large one."""
+    d, p = size.diameter, size.pitch
+    if series is Series.NPT:
+        small = d - (0.05 * d + 1.1) * p  # E0 of B1.20.1
+        high, angle = _PIPE_HEIGHT, 60.0
+    else:
+        small = d - size.gauge * _TAPER - _WHITWORTH * p
+        high, angle = _WHITWORTH, 55.0
+    pitch = small + size.gauge * _TAPER if inside else small
+    outer, inner = pitch + high * p, pitch - high * p
+    crest = inner if inside else outer
+    root = _pipe_root(pitch, p, angle, nose, inside=inside)
+    return Limits((outer, outer), (pitch, pitch), (inner, inner), crest, root, angle)
+
+
+def pipe_length(series: Series, size: ThreadSize) -> float:
+    """How long the full thread of a tapered pipe thread is; 0 where it is to be said.
+
+    L2 of B1.20.1; gauge length and fitting allowance of ISO 7-1.
+    """
+    if series is Series.NPT:
+        return (0.8 * size.diameter + 6.8) * size.pitch
+    turns = 2.75 if size.diameter < 50.0 else 3.25
+    return size.gauge + turns * size.pitch if series is Series.BSPT else 0.0
+
+
+def _acme(size: ThreadSize, tolerance: str, *, inside: bool) -> Limits:
+    """B1.5, general purpose: height P/2 and a clearance of .010 (over 10 an inch .005) at the root."""
+    d, p = size.diameter, size.pitch
+    clear = 0.020 if 1.0 / p <= 10.0 + 1e-9 else 0.010
+    grade = tolerance[0]
+    allowance = {"2": 0.008, "3": 0.006, "4": 0.004}[grade] * math.sqrt(d)
+    wide = {"2": 1.0, "3": 7.0 / 15.0, "4": 1.0 / 3.0}[grade] * (0.030 * math.sqrt(p) + 0.006 * math.sqrt(d))
+    basic_pitch, basic_minor = d - p / 2.0, d - p
+    if inside:
+        pitch = basic_pitch, basic_pitch + wide
+        minor = basic_minor, basic_minor + max(0.05 * p, 0.005)
+        return Limits((d + clear, math.inf), pitch, minor, _middle(minor), d + clear + 0.5 * wide, 29.0)
+    pitch = basic_pitch - allowance - wide, basic_pitch - allowance
+    major = d - max(0.05 * p, 0.005), d
+    deepest = basic_minor - clear
+    return Limits(major, pitch, (-math.inf, deepest), _middle(major), deepest - 0.5 * wide, 29.0)
+
+
+def in_unit(value: float, series: Series, *, metric: bool) -> float:
+    """A length of a series in the unit of a program."""
+    return value * (
+        1.0 / 25.4 if series in METRIC and not metric else 25.4 if metric and series not in METRIC else 1.0
+    )

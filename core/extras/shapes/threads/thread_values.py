@@ -1,15 +1,27 @@
-"""What is proposed for a thread by its series, size and class, by its tool and by the machine."""
+"""What is proposed for a thread by its size and tool, and what is refused of it."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 from core.extras.shapes.cutting_data import Work, rpm
 from core.extras.shapes.shape import Filled
-from core.extras.shapes.shape_fields import Proposal, Value, Values, number, text
-from core.extras.shapes.shape_setting import Setting
-from core.extras.shapes.threads.thread_limits import Limits, angle_of, classes, in_unit, limits, pipe_length
-from core.extras.shapes.threads.thread_series import TAPERED, Series, size_of
+from core.extras.shapes.shape_fields import Proposal, Refusal, Setting, Value, Values, number, text
+from core.extras.shapes.threads.thread_series import (
+    TAPERED,
+    Limits,
+    Series,
+    angle_of,
+    classes,
+    in_unit,
+    limits,
+    pipe_length,
+    size_of,
+)
+from core.extras.shapes.usual_fields import too_fast
+from core.language.source import Dialect
+from core.message import Message
 from core.part.tool_shape import ToolKind
 
 OUTSIDE, INSIDE = "OUTSIDE", "BORE"
@@ -133,3 +145,183 @@ def proposed_run_up(values: Values, setting: Setting) -> Value | None:
 def filled_depth(filled: Filled) -> float:
     """Of the thread, per side."""
     return abs(filled.n("CREST") - filled.n("ROOT")) / 2.0
+
+
+COARSE = (0.2, 1.0, 2.0)  # in/rev: without G35, under G35, under G35F2
+
+
+def thread_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
+    """Yield what is wrong with a thread, by figures, machine and tool."""
+    inside = filled.t("SIDE") == INSIDE
+    crest, root, pitch = filled.n("CREST"), filled.n("ROOT"), filled.n("PITCH")
+    if inside and root <= crest:
+        yield Refusal(
+            "ROOT",
+            Message(
+                "An internal thread is cut outward, so the diameter at the last pass, {root}, "
+                "must be larger than the diameter before threading, {crest}.",
+                root=f"{root:g}",
+                crest=f"{crest:g}",
+            ),
+        )
+    if not inside and root >= crest:
+        yield Refusal(
+            "ROOT",
+            Message(
+                "An external thread is cut inward, so the diameter at the last pass, {root}, "
+                "must be smaller than the diameter before threading, {crest}.",
+                root=f"{root:g}",
+                crest=f"{crest:g}",
+            ),
+        )
+    sharp = pitch / 2.0 / math.tan(math.radians(flank_angle(filled.values, setting) / 2.0))
+    if filled_depth(filled) > 1.02 * sharp:
+        yield Refusal(
+            "ROOT",
+            Message(
+                "The thread is {filled} deep, but at a pitch of {pitch} its flanks meet at a "
+                "depth of {sharp}. Check both diameters.",
+                filled=f"{filled_depth(filled):.4f}",
+                pitch=f"{pitch:.5g}",
+                sharp=f"{sharp:.4f}",
+            ),
+        )
+    if setting.dialect is Dialect.OMNITURN:
+        yield from _lead_checks(filled, setting)
+    pulls = filled.t("PULL") == YES or filled.shape.field("RELIEF") is None
+    if not pulls:
+        yield from _relief(filled)
+    yield from _flank_checks(filled, setting)
+    yield from _by_sheet(filled, setting)
+    yield from too_fast(filled, setting)
+
+
+def _flank_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
+    """Passes that come in flatter than the flank cut away what the last one leaves."""
+    angle, flank = filled.n("INFEED"), flank_angle(filled.values, setting) / 2.0
+    if angle > flank + 1e-9:
+        yield Refusal(
+            "INFEED",
+            Message(
+                "An infeed angle of {angle}° is more than the flank angle of {flank}°, so the "
+                "first passes would cut into the flank. Enter {limit} or less.",
+                angle=f"{angle:g}",
+                flank=f"{flank:g}",
+                limit=f"{math.floor(flank):g}",
+            ),
+        )
+
+
+def _lead_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
+    lead = filled.n("PITCH") * filled.n("STARTS")
+    inch = lead * setting.mm / 25.4
+    if inch > COARSE[2]:
+        yield Refusal(
+            "PITCH",
+            Message(
+                "A lead of {lead} is more than the maximum that the control can cut, {coarse}.",
+                lead=f"{lead:g}",
+                coarse=f"{COARSE[2] / setting.mm * 25.4:g}",
+            ),
+        )
+    speed = inch * filled.n("RPM")
+    if speed > 300.0:
+        slow = math.floor(300.0 / inch)
+        yield Refusal(
+            "RPM",
+            Message(
+                "At S{number} the axis needs {speed} in/min, but the axis limit is 300 in/min: "
+                "enter S{slow} or less.",
+                number=f"{filled.n('RPM'):g}",
+                speed=f"{speed:.0f}",
+                slow=slow,
+            ),
+        )
+
+
+def _relief(filled: Filled) -> Iterator[Refusal]:
+    """A pass that ends without pulling out while it goes on needs a groove to end in."""
+    lead = filled.n("PITCH") * filled.n("STARTS")
+    relief = filled.n("RELIEF")
+    if relief <= 0.0:
+        text_ = (
+            "Thread relief missing: the tool cuts a ring where it stops. Enter the relief width, "
+            "or set pull-out to YES."
+        )
+        if filled.t("PULL") != NO:  # of a language in which no pass pulls out
+            text_ = "Thread relief missing: the tool cuts a ring where it stops. Enter the relief width."
+        yield Refusal("RELIEF", text_)
+    elif relief < 1.5 * lead:
+        yield Refusal(
+            "RELIEF",
+            Message(
+                "A relief width of {relief} is less than {lead}, which is 1.5 times the lead.",
+                relief=f"{relief:g}",
+                lead=f"{1.5 * lead:.4g}",
+            ),
+        )
+
+
+def _by_sheet(filled: Filled, setting: Setting) -> Iterator[Refusal]:
+    shape, name = setting.tool(filled.n("T")), f"T{filled.n('T'):.0f}"
+    if shape is None:
+        return
+    angle = flank_angle(filled.values, setting)
+    if shape.kind is ToolKind.THREADING and shape.point and abs(shape.point - angle) > 0.5:
+        words = Message(
+            "{name} cuts a thread angle of {point}°, but this thread needs {angle}°: use another insert.",
+            name=name,
+            point=f"{shape.point:g}",
+            angle=f"{angle:g}",
+        )
+        yield Refusal("T", words)
+    if shape.pitch and abs(shape.pitch / setting.mm - filled.n("PITCH")) > 0.02 * filled.n("PITCH"):
+        yield Refusal(
+            "T",
+            Message(
+                "{name} is made for a pitch of {pitch}, not {needed}: use another insert.",
+                name=name,
+                pitch=f"{shape.pitch / setting.mm:.5g}",
+                needed=f"{filled.n('PITCH'):.5g}",
+            ),
+        )
+    if filled.t("SIDE") == INSIDE and shape.diameter and shape.diameter / setting.mm > filled.n("CREST"):
+        yield Refusal(
+            "T",
+            Message(
+                "The bar of {name} does not fit into a bore of {number}.",
+                name=name,
+                number=f"{filled.n('CREST'):g}",
+            ),
+        )
+
+
+def unknown_name(filled: Filled, _setting: Setting) -> Iterator[Refusal]:
+    """A size or a class that the series has not: nothing is proposed then."""
+    series, allowed = series_of(filled.values), class_choices(filled.values)
+    size, tolerance = filled.t("SIZE"), filled.t("CLASS")
+    if series is not Series.OWN and size and size_of(series, size) is None:
+        yield Refusal(
+            "SIZE",
+            Message(
+                "{series} does not include size {size}: choose a size with the arrows.",
+                series=series,
+                size=size,
+            ),
+        )
+    elif filled.shape.field("CLASS") is not None and allowed and tolerance not in allowed:
+        yield Refusal(
+            "CLASS",
+            Message(
+                "CLASS {tolerance} is not valid: choose one of {allowed}.",
+                tolerance=tolerance,
+                allowed=", ".join(allowed),
+            ),
+        )
+
+
+def coarse_step(filled: Filled, setting: Setting) -> float:
+    """Of the slide, in the unit of the program, under the G35 or G35F2 that a lead needs; 0 without."""
+    lead = filled.n("PITCH") * max(1.0, filled.n("STARTS")) * setting.mm / 25.4
+    inch = 0.0 if lead <= COARSE[0] else 0.00025 if lead <= COARSE[1] else 0.0005
+    return inch * 25.4 / setting.mm

@@ -6,15 +6,12 @@ import math
 from dataclasses import replace
 from functools import partial
 
-from core.extras.shapes.lines.code_lines import Code
-from core.extras.shapes.number_words import figure, plain, rounded_up
+from core.extras.shapes.lines.code_lines import Code, figure, plain, rounded_up
 from core.extras.shapes.shape import Filled, Shape
-from core.extras.shapes.shape_fields import Field, Kind, text
-from core.extras.shapes.shape_setting import Setting
-from core.extras.shapes.threads.thread_checks import COARSE, coarse_step, thread_checks, unknown_name
-from core.extras.shapes.threads.thread_limits import classes, in_unit
-from core.extras.shapes.threads.thread_series import TAPERED, Series
+from core.extras.shapes.shape_fields import Field, Kind, Setting, text
+from core.extras.shapes.threads.thread_series import TAPERED, Series, classes, in_unit
 from core.extras.shapes.threads.thread_values import (
+    COARSE,
     INSIDE,
     LEFT,
     NO,
@@ -22,6 +19,7 @@ from core.extras.shapes.threads.thread_values import (
     RIGHT,
     YES,
     class_choices,
+    coarse_step,
     filled_depth,
     from_limits,
     is_named,
@@ -35,6 +33,8 @@ from core.extras.shapes.threads.thread_values import (
     proposed_run_up,
     proposed_taper,
     series_of,
+    thread_checks,
+    unknown_name,
 )
 from core.extras.shapes.usual_fields import MOST_RPM, tool_field
 from core.message import Message

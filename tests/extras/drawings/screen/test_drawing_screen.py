@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 from PySide6.QtCore import Qt
 
-from app.editor.editor_view import Mode
-from app.extras.drawings.added_drawing import AddedDrawing
+from app.editor.editor_parts_view import Mode
+from app.extras.drawings.drawing_form import AddedDrawing
 from core.extras.drawings import drawing_process
 from tests.extras.drawings.hand import chain, dxf
 from tests.extras.shapes.screen.panel import shapes_of

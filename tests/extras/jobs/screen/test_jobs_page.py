@@ -9,10 +9,9 @@ from pathlib import Path
 import pytest
 from pytestqt.qtbot import QtBot
 
-from app.extras.jobs.job_setup import ProvedJob
 from app.extras.jobs.jobs_model import JobsModel
 from app.extras.jobs.jobs_view import JobsPage
-from app.extras.jobs.jobs_watch import JobsWatch
+from app.extras.jobs.jobs_watch import JobsWatch, ProvedJob
 from app.programs.programs_view import ProgramsPage
 from app.screen import page_table
 from app.screen.window_layout import FINGER

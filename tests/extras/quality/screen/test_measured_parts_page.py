@@ -12,8 +12,8 @@ import pytest
 from pytestqt.qtbot import QtBot
 
 from app.desk.pages.sheet import Sheet
-from app.extras.quality.gauge_line import NoGauge, Reading
-from app.extras.quality.quality_functions import QualityFunctions
+from app.extras.quality.gauge_wire import NoGauge, Reading
+from app.extras.quality.quality_desk import QualityFunctions
 from app.extras.quality.quality_view import MeasuredPartsPage
 from app.extras.quality.readings_section import ReadingsSection
 from app.production.parts_watch import PartsWatch

@@ -9,9 +9,9 @@ import pytest
 from app.compose.screen_desk import desk_and_executor
 from app.compose.stored_offsets import read_offsets
 from app.compose.workshop import samples
+from app.extras.quality.charts_and_trends import TrendsSection
 from app.extras.quality.features_section import FeaturesSection
-from app.extras.quality.quality_functions import QualityFunctions
-from app.extras.quality.trends_section import TrendsSection
+from app.extras.quality.quality_desk import QualityFunctions
 from app.screen.page_table import menu_keys
 from drivers.waiting import StepClock
 from tests.attached import attached

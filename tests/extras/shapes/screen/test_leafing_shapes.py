@@ -5,8 +5,7 @@ from __future__ import annotations
 from PySide6.QtWidgets import QWidget
 
 from app.extras.shapes.shapes_view import RowsPanel, _Line
-from app.screen.look import Look
-from app.screen.theme import DARK
+from app.screen.look import DARK, Look
 from tests.screen.test_leafing import MANY, SMALL, above, chosen_rows, leaf_keys
 
 __all__ = ["above"]

@@ -6,7 +6,7 @@ import pytest
 
 from app.desk.translation import tr
 from app.extras.shapes.shape_form import ShapeForm
-from core.extras.shapes.shape_setting import Setting
+from core.extras.shapes.shape_fields import Setting
 from core.extras.shapes.shape_table import SHAPES
 from tests.screen.hands import Hands
 from tests.screen.test_language import spanish

@@ -11,12 +11,11 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
-from app.editor.editor_view import Mode
+from app.editor.editor_parts_view import Mode
 from app.extras.shapes import shapes_view
 from app.extras.shapes.shapes_view import LinesPanel, RowsPanel, _Line
-from app.screen.look import Look, Painter
+from app.screen.look import DARK, Look, Painter
 from app.screen.panel import Panel
-from app.screen.theme import DARK
 from app.screen.window_layout import FINGER
 from tests.extras.shapes.screen.panel import shapes_of
 from tests.screen.editor.writer import Writer

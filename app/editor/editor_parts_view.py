@@ -1,0 +1,258 @@
+"""The parts of the page EDITOR: the line over the text, which parts are seen when, and where they stand."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from enum import StrEnum
+from functools import partial
+from typing import TYPE_CHECKING, NamedTuple
+
+from PySide6.QtCore import QRectF
+from PySide6.QtGui import QFontMetricsF, QResizeEvent
+from PySide6.QtWidgets import QWidget
+
+from app.desk.translation import tr
+from app.editor.code_help_view import CodeList, CodeStrip
+from app.editor.edited_path_view import EditedPath
+from app.editor.editor import Editor
+from app.editor.findings_view import FindingList
+from app.editor.question_view import AskLine
+from app.editor.text_view import TextField, TypedText
+from app.editor.versions_view import VersionList
+from app.screen.code_choices_view import CODE_LINE
+from app.screen.entry_panel import LetterPad, strike
+from app.screen.look import CENTRE, RIGHT, Look, Painter
+from app.screen.page_base import EditorPanel, HeadKey, Page
+from app.screen.panel import Panel, Shown
+from app.screen.window_layout import FINGER, Rect
+from app.working_plane.plane_instant import at_line, plane_words
+from app.working_plane.working_plane_view import WorkingPlaneView
+from core.language.source import dialect_of
+from core.message import Message
+
+if TYPE_CHECKING:
+    from app.path.path_picture import Picture
+
+
+KEYS = 14.0  # units: width of the place that shows the keyboard, and of those that open a panel
+
+
+class Heading(NamedTuple):
+    """``mark`` is CHANGED, SAMPLE or NEW, empty for what is as its file."""
+
+    name: str = ""
+    mark: str = ""
+    place: str = ""
+
+
+class HeadLine(Panel):
+    """The program being written, which need not be the one on the desk that the title line names."""
+
+    ground = "panel"
+    heading = Shown(Heading())
+    panel_keys: Shown[tuple[HeadKey, ...]] = Shown(())  # what optional features write into this program
+
+    def __init__(
+        self, look: Look, keys: Callable[[], None], panel: Callable[[str], None], parent: QWidget
+    ) -> None:
+        """``keys`` shows the drawn keyboard, or takes it away; ``panel`` is told the key that opens it."""
+        super().__init__(look, parent)
+        self._keys, self._panel = keys, panel
+
+    def draw(self, painter: Painter) -> None:
+        look, u, high, now = self.look, self.look.u, self.height(), self.heading
+        painter.write(QRectF(1.4 * u, 0, 41 * u, high), now.name, 2.3, "text", raw=True, margin=1.0)
+        left = 3.0 * u + min(40 * u, QFontMetricsF(painter.font()).horizontalAdvance(now.name))
+        if now.mark:
+            wide = QFontMetricsF(look.font(1.7, bold=True)).horizontalAdvance(now.mark) + 1.6 * u
+            box = QRectF(left, high / 2 - 1.4 * u, wide, 2.8 * u)
+            painter.fill(box, "mark")
+            painter.write(box, now.mark, 1.7, "on_mark", at=CENTRE, fit=False)
+        place = QRectF(self.width() - (40 + 3 * KEYS) * u, 0, 38.0 * u, high)
+        painter.write(place, now.place, 1.9, "soft", at=RIGHT, bold=False, fit=False)
+        key = QRectF(self.width() - KEYS * u, 0, KEYS * u, high)
+        self.key(painter, key, tr("KEYBOARD"), 1.9, self._keys, ink="accent", margin=1.0)
+        for label, name in self.panel_keys:
+            key = key.translated(-(KEYS + 0.6) * u, 0)  # a place of its own: the one before is kept
+            self.key(painter, key, label, 1.9, partial(self._panel, name), ink="accent", margin=1.0)
+
+
+# --- where everything stands on the page, in the unit of the Automatic page --------------------------------
+
+
+KEYBOARD = 29.0  # units: height of the drawn keyboard, four rows of a finger's height
+NOWHERE = Rect(0, 0, 0, 0)
+HEAD_LINE = 6.8  # units: a finger's height, for the place that shows the keyboard
+
+
+class EditorPlaces(NamedTuple):
+    """The parts of the page; ``ask`` is empty while nothing is asked, ``keys`` without the drawn keyboard.
+
+    ``code`` is the line that says what the code at the cursor means, ``codes`` what the list of codes takes;
+    ``path`` is the place of all pictures of the program: one of the part being cut is one more choice.
+    """
+
+    head: Rect
+    text: Rect
+    path: Rect
+    findings: Rect
+    code: Rect
+    codes: Rect
+    ask: Rect
+    keys: Rect
+    body: Rect  # text, path and findings together: the history takes it
+
+
+def editor_places(width: int, height: int, u: float, *, asking: bool, keys: float = 0.0) -> EditorPlaces:
+    """Divide the room that the frame leaves to its page; ``u`` is its unit.
+
+    ``keys`` units of it are the drawn keyboard's: the text then has the whole width over it.
+    """
+    gap = max(4, round(0.7 * u))
+    head = Rect(0, 0, width, round(HEAD_LINE * u))
+    keys_h = round(keys * u)
+    foot = height - keys_h
+    ask_h = round(6.2 * u) if asking else 0
+    low = foot - gap if keys_h else foot
+    ask = Rect(0, low - ask_h, width, ask_h)
+    top = head.bottom + gap
+    body = Rect(0, top, width, (ask.y - gap if asking else low) - top)
+    keyboard = Rect(0, foot, width, keys_h)
+    if keys_h:
+        return EditorPlaces(head, body, NOWHERE, NOWHERE, NOWHERE, NOWHERE, ask, keyboard, body)
+    text = Rect(0, top, round(0.56 * width), body.h)
+    x = text.right + gap
+    findings_h, code_h = round(min(0.34 * body.h, 24 * u)), max(FINGER, round(CODE_LINE * u))
+    path = Rect(x, top, width - x, body.h - findings_h - code_h - 2 * gap)
+    findings = Rect(x, path.bottom + gap, path.w, findings_h)
+    code = Rect(x, findings.bottom + gap, path.w, code_h)
+    codes = Rect(x, top, path.w, body.h)
+    return EditorPlaces(head, text, path, findings, code, codes, ask, keyboard, body)
+
+
+class Mode(StrEnum):
+    """What the keys are for."""
+
+    TEXT = "text"
+    FIND = "find"
+    GO_TO = "go to"
+    NAME = "name"
+    HISTORY = "history"
+    OFFER = "offer"
+    CODES = "codes"  # the list of codes is looked through
+    LOOK = "look"  # at the path: the keyboard measures in it
+    PANEL = "panel"  # a form of an optional feature writes the lines
+
+
+ASKING = frozenset({Mode.FIND, Mode.GO_TO, Mode.NAME})
+
+
+class EditorParts(Page):
+    """The page by its parts, which ``EditorPage`` makes; ``mode`` says which of them are seen."""
+
+    mode: Mode
+    editor: Editor
+    head: HeadLine
+    letters: LetterPad
+    field: TextField
+    path: EditedPath
+    space: WorkingPlaneView
+    findings: FindingList
+    code: CodeStrip
+    codes: CodeList
+    versions: VersionList
+    ask: AskLine
+    panel: EditorPanel
+    typed_text: TypedText
+    _with_letters = False
+
+    def show_text(self) -> None:
+        """Heading, findings and picture of what is in the field now."""
+        editor = self.editor
+        line, column, count = self.field.line, self.field.column, self.field.blockCount()
+        if self.mode is Mode.PANEL:  # of the text with what the form writes
+            line, count = self.panel.model.line, self.panel.model.text.count("\n") + 1
+        place = Message("LINE {line} OF {count}  ·  COL {column}", line=line, count=count, column=column)
+        self.head.heading = Heading(editor.name, self.typed_text.mark, place)
+        self.head.panel_keys = tuple(self.panel.head_keys(editor.name))
+        self.codes.dialect = dialect_of(editor.name)
+        findings = editor.proof.now
+        self.field.show_findings(findings.by_line)
+        self.findings.show_findings(findings, line)
+        if self.mode is Mode.TEXT:
+            self.code.entry = self.codes.follow()
+        self._show_path(findings.picture, line)
+
+    def _show_path(self, picture: Picture | None, line: int) -> None:
+        """The path up to the line of the cursor; on a mill the plane of that line in space."""
+        scene = picture.scene if picture is not None else None
+        self.space.show_scene(scene)
+        self.space.setVisible(scene is not None and self.mode is not Mode.OFFER and not self.lettered)
+        self.path.show_picture(picture if scene is None else None)
+        if scene is not None:
+            here = at_line(scene, line)
+            self.space.show_instant(here, plane_words(here.swivel))
+            return
+        self.path.follow(line)
+        self.path.advance()
+
+    def show_mode(self) -> None:
+        """The parts that this mode has."""
+        self.path.measure(on=self.mode is Mode.LOOK)
+        self.versions.setVisible(self.mode is Mode.HISTORY)
+        self.codes.setVisible(self.mode is Mode.CODES)
+        self.panel.setVisible(self.mode is Mode.PANEL)
+        self.field.setVisible(
+            self.mode not in {Mode.OFFER, Mode.PANEL}
+        )  # what was edited last is not what is offered
+        for part in (self.path, self.findings, self.code):
+            part.setVisible(self.mode is not Mode.OFFER and not self.lettered)
+        self.letters.setVisible(self.lettered)
+        self.letters.write_into(self.ask.first if self.mode in ASKING else self.field)
+        self._lay_out()
+
+    # --- the drawn keyboard --------------------------------------------------------------------------
+
+    @property
+    def lettered(self) -> bool:
+        """Whether the keyboard is drawn: where something is written, if a finger has asked for it."""
+        return self._with_letters and self.mode in ASKING | {Mode.TEXT}
+
+    def turn_letters(self) -> None:
+        """Show the keyboard, or take it away."""
+        self._with_letters = not self._with_letters
+        self.show_mode()
+
+    def _strike(self, key: str) -> None:
+        strike(key, self.letters.focusProxy() or self.field)
+
+    def resizeEvent(self, _event: QResizeEvent) -> None:
+        """Everything again, in the new unit."""
+        self._lay_out()
+        self.dress()
+
+    def _lay_out(self) -> None:
+        keys = KEYBOARD if self.lettered else 0.0
+        asking = self.mode in ASKING
+        at = editor_places(self.width(), self.height(), self.look.u, asking=asking, keys=keys)
+        for part, rect in (
+            (self.head, at.head),
+            (self.field, at.text),
+            (self.path, at.path),
+            (self.space, at.path),
+            (self.findings, at.findings),
+            (self.code, at.code),
+            (self.codes, at.codes),
+            (self.panel, at.text),
+            (self.versions, at.body),
+            (self.ask, at.ask),
+            (self.letters, at.keys),
+        ):
+            part.setGeometry(*rect)
+            part.update()
+
+    def dress(self) -> None:
+        """Everything in the colours and sizes that are in force now."""
+        self.field.dress()
+        self.ask.dress()
+        self.path.restart()

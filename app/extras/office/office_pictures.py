@@ -1,0 +1,95 @@
+"""Pictures for the office's page: following errors about an alarm as SVG, and a picture in memory as PNG."""
+
+from __future__ import annotations
+
+import struct
+import zlib
+from html import escape
+
+import numpy as np
+
+from core.records.record import FloatArray, Record
+
+WIDE, HIGH = 640, 220  # pixels
+_LEFT, _TOP, _FOOT = 8, 24, 22
+_INKS = ("#0b5cad", "#b5651d", "#6a1b9a", "#2e7d32", "#b3261e")
+_POINTS = 600  # columns of a curve
+_ERROR = " following error"
+
+
+def alarm_drawing(record: Record) -> bytes:
+    """Each axis' following error over time, all in one scale, with the alarm's words and a line at it."""
+    curves = _curves(record)
+    times = record.times - record.times[0] if len(record.times) else record.times
+    lasts = float(times[-1]) if len(times) else 0.0
+    most = max((float(np.nanmax(np.abs(error))) for error in curves.values()), default=0.0)
+    if not curves or lasts <= 0.0 or most <= 0.0:
+        return b""
+    parts = [_text(_LEFT, 16, record.about.get("alarm", ""), "#b3261e")]
+    for place, (name, error) in enumerate(curves.items()):
+        ink = _INKS[place % len(_INKS)]
+        parts.append(_curve(times / lasts, error / most, ink))
+        parts.append(_text(_LEFT + 40 * place, HIGH - 6, name, ink))
+    alarm = record.about.get("alarm time")
+    if alarm is not None:
+        x = _LEFT + (float(alarm) - float(record.times[0])) / lasts * (WIDE - 2 * _LEFT)
+        parts.append(f'<line x1="{x:.1f}" x2="{x:.1f}" y1="{_TOP}" y2="{HIGH - _FOOT}" stroke="#b3261e"/>')
+    parts.append(
+        _text(
+            WIDE - 220,
+            HIGH - 6,
+            f"±{most:.4f} mm, {lasts:.1f} s",
+            "#5b626b",
+        )
+    )
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDE} {HIGH}" width="{WIDE}" height="{HIGH}">'
+        f'<rect width="{WIDE}" height="{HIGH}" fill="#fbfcfd"/>{"".join(parts)}</svg>'
+    ).encode()
+
+
+def _curves(record: Record) -> dict[str, FloatArray]:
+    """By the letters of the slides; an axis of which nothing is known has none, nor a rotary one."""
+    found = {
+        each.name.removesuffix(_ERROR): record.columns[each.name]
+        for each in record.channels
+        if each.name.endswith(_ERROR) and each.unit == "mm" and each.name in record.columns
+    }
+    return {name: error for name, error in found.items() if np.isfinite(error).any()}
+
+
+def _curve(at: FloatArray, height: FloatArray, ink: str) -> str:
+    """The least and the greatest of each column, so that no peak is lost."""
+    known = np.isfinite(height)
+    at, height = at[known], height[known]
+    chunks = np.array_split(np.arange(len(at)), min(_POINTS, len(at)))
+    middle, room = (_TOP + HIGH - _FOOT) / 2, (HIGH - _FOOT - _TOP) / 2
+    points = " ".join(
+        f"{_LEFT + at[i] * (WIDE - 2 * _LEFT):.1f},{middle - height[i] * room:.1f}"
+        for chunk in chunks
+        for i in sorted({int(chunk[np.argmin(height[chunk])]), int(chunk[np.argmax(height[chunk])])})
+    )
+    return f'<polyline fill="none" stroke="{ink}" stroke-width="1.2" points="{points}"/>'
+
+
+def _text(x: float, y: float, text: str, ink: str) -> str:
+    return f'<text x="{x}" y="{y}" font-family="sans-serif" font-size="12" fill="{ink}">{escape(text)}</text>'
+
+
+_SIGNATURE = b"\x89PNG\r\n\x1a\n"
+_BITS, _RGBA = 8, 6  # a sample; the colour type
+
+
+def png_of(pixels: bytes, width: int, height: int) -> bytes:
+    """32 bits a pixel, alpha, red, green, blue from the highest; rows from the top."""
+    argb = np.frombuffer(pixels, dtype=np.uint32).reshape(height, width)
+    rgba = np.stack([argb >> 16, argb >> 8, argb, argb >> 24], axis=-1).astype(np.uint8)
+    rows = np.zeros((height, 1 + 4 * width), dtype=np.uint8)  # each begins with its filter: none
+    rows[:, 1:] = rgba.reshape(height, -1)
+    head = struct.pack(">IIBBBBB", width, height, _BITS, _RGBA, 0, 0, 0)
+    body = _chunk(b"IHDR", head) + _chunk(b"IDAT", zlib.compress(rows.tobytes())) + _chunk(b"IEND", b"")
+    return _SIGNATURE + body
+
+
+def _chunk(name: bytes, data: bytes) -> bytes:
+    return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))

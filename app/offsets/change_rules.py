@@ -1,0 +1,212 @@
+"""The rules on changes of offsets, for screen and command line: which are doubtful, and which act each is.
+
+The rule compares the new value with the value in use. Its limits are TurnDesk's own. They are larger than
+the usual correction of a size between two parts and smaller than most slips of a digit, a sign or a decimal
+point. Datums (G54 to G59, presets) are not questioned, because each new setup moves them by any distance;
+the proof checks the resulting path against the travel.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from enum import StrEnum
+from typing import NamedTuple
+
+from core.access.access_table import Act
+from core.machine.machine_model import Machine
+from core.store.offsets.touch_off import Touch
+from core.store.store_rows import FIELDS, Kind, MillRow, Row, SecondaryRow, ToolRow, Value, with_fields
+
+LARGE_MM = 0.5  # geometry: about .02 in
+LARGE_CORRECTION_MM = 0.254  # wear: .010 in as it is entered, X on the diameter; a slipped .002 is .020
+_NEAR = 1e-6  # mm: rounding
+
+Travel = Mapping[str, tuple[float, float]]  # of x and z, mm from home
+
+
+class Doubt(StrEnum):
+    """Why a change is questioned; the most serious doubt first."""
+
+    TRAVEL = "travel"  # the tip could not reach part zero
+    SIDE = "side"  # the tool would work on the other side of the part
+    LARGE = "large"  # far from the value in use
+    MASTER = "master"  # other tools will follow this tool
+
+
+class Suspicion(NamedTuple):
+    """One questionable field of one offset: its value before (None: not set) and after, mm."""
+
+    doubt: Doubt
+    number: int
+    name: str
+    old: Value | None
+    new: Value
+
+
+def travel_of(machine: Machine | None) -> Travel:
+    """Return the travel of the axes that the tool offsets of a lathe refer to; none for a mill.
+
+    The length of a mill's tool is no machine position, so it is not compared with the travel.
+    """
+    if machine is None or machine.kind != "lathe":
+        return {}
+    return {a.name.lower(): a.reach for a in machine.axes if a.name in {"X", "Z"} and a.travel is not None}
+
+
+def suspicions_of(
+    kind: Kind, table: Mapping[int, Row], changes: Mapping[int, Mapping[str, Value]], travel: Travel
+) -> tuple[Suspicion, ...]:
+    """Return what is questionable about setting these fields of rows of a table.
+
+    Rows with a value out of its range are left out: the store refuses them.
+    """
+    new = {n: row for n, values in changes.items() if (row := _changed(kind, table.get(n), values))}
+    found = [
+        each for number, row in new.items() for each in suspicions(number, table.get(number), row, travel)
+    ]
+    found += _new_masters(table, new)
+    return tuple(found)
+
+
+def _changed(kind: Kind, old: Row | None, values: Mapping[str, Value]) -> Row | None:
+    """Return the row with these values; None if it is not questioned or a value is out of its range."""
+    fields = FIELDS[kind]
+    if not all(name in fields and fields[name].takes(value) for name, value in values.items()):
+        return None
+    if kind is Kind.TOOL:
+        return with_fields(old if isinstance(old, ToolRow) else ToolRow(), values)
+    if kind is Kind.SECONDARY:
+        return with_fields(old if isinstance(old, SecondaryRow) else SecondaryRow(), values)
+    if kind is Kind.MILL_TOOL:
+        return with_fields(old if isinstance(old, MillRow) else MillRow(), values)
+    return None
+
+
+def suspicions(number: int, old: Row | None, new: Row, travel: Travel) -> tuple[Suspicion, ...]:
+    """Return what is questionable about replacing ``old`` by ``new``, the most serious doubt first."""
+    found: list[Suspicion] = []
+    if isinstance(new, ToolRow):
+        found = list(_of_tool(number, old if isinstance(old, ToolRow) else None, new, travel))
+    elif isinstance(new, SecondaryRow):
+        before = old if isinstance(old, SecondaryRow) else SecondaryRow()
+        found = list(_of_corrections(number, before, new, ("x", "z"), doubled="x"))
+    elif isinstance(new, MillRow):
+        found = list(_of_mill(number, old if isinstance(old, MillRow) else MillRow(), new))
+    order = list(Doubt)
+    return tuple(sorted(found, key=lambda each: order.index(each.doubt)))
+
+
+def _of_tool(number: int, old: ToolRow | None, new: ToolRow, travel: Travel) -> Iterator[Suspicion]:
+    yield from _beyond(number, old, new, travel)
+    if old is None:
+        yield from _of_corrections(number, ToolRow(), new, ("wear_x", "wear_z"), doubled="wear_x")
+        return
+    if old.x * new.x < -_NEAR:
+        yield Suspicion(Doubt.SIDE, number, "x", old.x, new.x)
+    for at, name in enumerate("xz"):
+        before, after = getattr(old, name), getattr(new, name)
+        # A touch-off includes the wear in the new geometry: the tip moves by the difference of the sums.
+        if before != after and abs(new.offset[at] - old.offset[at]) > LARGE_MM + _NEAR:
+            yield Suspicion(Doubt.LARGE, number, name, before, after)
+    worn = tuple(f"wear_{name}" for name in "xz" if getattr(old, name) == getattr(new, name))
+    yield from _of_corrections(number, old, new, worn, doubled="wear_x")
+
+
+def _of_mill(number: int, old: MillRow, new: MillRow) -> Iterator[Suspicion]:
+    measured = tuple(name for name in ("length", "radius", "corner") if getattr(old, name))  # 0: not entered
+    yield from _moved(number, old, new, measured, LARGE_MM)
+    yield from _of_corrections(number, old, new, ("dl", "dr", "dr2"), doubled="")
+
+
+def _beyond(number: int, old: ToolRow | None, new: ToolRow, travel: Travel) -> Iterator[Suspicion]:
+    for at, name in enumerate("xz"):
+        low, high = travel.get(name, (new.offset[at], new.offset[at]))
+        moved = old is None or old.offset[at] != new.offset[at]
+        if moved and not low <= new.offset[at] <= high:
+            before = getattr(old, name) if old is not None else None
+            yield Suspicion(Doubt.TRAVEL, number, name, before, getattr(new, name))
+
+
+def _of_corrections(
+    number: int, old: Row, new: Row, names: tuple[str, ...], doubled: str
+) -> Iterator[Suspicion]:
+    """``doubled`` is the field that is entered as a diameter."""
+    for name in names:
+        limit = LARGE_CORRECTION_MM / (2.0 if name == doubled else 1.0)
+        yield from _moved(number, old, new, (name,), limit)
+
+
+def _moved(number: int, old: Row, new: Row, names: tuple[str, ...], limit: float) -> Iterator[Suspicion]:
+    for name in names:
+        before, after = getattr(old, name), getattr(new, name)
+        if abs(after - before) > limit + _NEAR:
+            yield Suspicion(Doubt.LARGE, number, name, before, after)
+
+
+def _new_masters(table: Mapping[int, Row], new: Mapping[int, Row]) -> Iterator[Suspicion]:
+    """Yield the rows that become the master while the table already has tools that will follow."""
+    for number, row in new.items():
+        old = table.get(number)
+        was = isinstance(old, ToolRow) and old.master
+        if isinstance(row, ToolRow) and row.master and not was and followers(table, number):
+            yield Suspicion(Doubt.MASTER, number, "master", False, True)
+
+
+# --- several tools at once -------------------------------------------------------------------------------
+
+
+def touched(tools: Mapping[int, ToolRow], number: int, touch: Touch) -> ToolRow:
+    """Return the row of the tool after this touch-off, as the store will save it."""
+    geometry = {name: value for name, value in (("x", touch.x), ("z", touch.z)) if value is not None}
+    values: dict[str, Value] = {**geometry, **{f"wear_{name}": 0.0 for name in geometry}}
+    return with_fields(tools.get(number, ToolRow()), values)
+
+
+def followers(tools: Iterable[int], master: int) -> tuple[int, ...]:
+    """Return the tools that follow when this tool is the master and is touched off."""
+    return tuple(number for number in sorted(tools) if number != master)
+
+
+def of_followers(
+    tools: Mapping[int, ToolRow], master: int, new: ToolRow, travel: Travel
+) -> tuple[Suspicion, ...]:
+    """Return the followers that a touch-off of the master would move beyond the travel."""
+    old = tools[master]
+    x, z = (after - before for before, after in zip(old.offset, new.offset, strict=True))
+    found: list[Suspicion] = []
+    for number in followers(tools, master):
+        row = tools[number]
+        found += _beyond(number, row, with_fields(row, {"x": row.x + x, "z": row.z + z}), travel)
+    return tuple(found)
+
+
+def described(
+    found: tuple[Suspicion, ...], name: Callable[[Suspicion], str], reason: Callable[[Suspicion], str]
+) -> str:
+    """Return one text for all suspicions: each field once, with the most serious reason of its doubts."""
+    fields: dict[tuple[int, str], Suspicion] = {}
+    for each in found:
+        fields.setdefault((each.number, each.name), each)
+    return ", ".join(f"{name(each)} ({reason(each)})" for each in fields.values())
+
+
+CORRECTIONS = {
+    Kind.TOOL: frozenset({"wear_x", "wear_z", "remark"}),
+    Kind.MILL_TOOL: frozenset({"dl", "dr", "dr2"}),
+}
+"""Fields of a tool that are corrections; of a secondary offset all are."""
+
+_ACTS = {
+    Kind.TOOL: Act.TOOLS,
+    Kind.SECONDARY: Act.WEAR,
+    Kind.ZERO: Act.ZEROS,
+    Kind.SHAPE: Act.SHAPES,
+    Kind.MILL_TOOL: Act.TOOLS,
+    Kind.PRESET: Act.PRESETS,
+}
+
+
+def act_of(kind: Kind, fields: Collection[str] = ()) -> Act:
+    """What it is to change these fields; without fields: to clear, or to take a change back."""
+    only = CORRECTIONS.get(kind, frozenset())
+    return Act.WEAR if fields and only.issuperset(fields) else _ACTS[kind]
