@@ -311,30 +311,32 @@ class Flow(ControlFlow[Frame[Structure]]):
 
     def steer(self, statement: Statement) -> None:
         """Follow a line of LS, LF or M99."""
-        here, structure = statement.line - 1, self.here.routine
-        self.at = here + 1
-        if statement.flow == "LS" and here in structure.loop_ends:
-            self.here.left[here] = int(statement.value("LS") or 1) - 1
-        elif statement.flow == "LF":
-            self._loop_end(structure.loop_starts.get(here))
-        elif statement.flow == "M99" and self.called:
+        flow, self.at = statement.flow, statement.line
+        frame, here = self.here, statement.line - 1
+        if flow == "LF":
+            self._loop_end(frame.left, frame.routine.loop_starts.get(here))
+        elif flow == "LS" and here in frame.routine.loop_ends:
+            frame.left[here] = int(statement.value("LS") or 1) - 1
+        elif flow == "M99" and len(self.frames) > 1:
             self.leave()
-        self._bound()
+        if self._stop is not None:
+            self._bound()
 
     def call(self, statement: Statement) -> None:
         """Go to the subroutine that the line names. Raises ProgramError for calls nested too deep."""
         number, structure = call_target(statement), self.here.routine
         self.at = statement.line
-        if number not in structure.subroutines:
+        start = structure.subroutines.get(number)
+        if start is None:
             return  # told when the program was read
         if len(self.frames) > DEEPEST_CALL:
             text = Message(
                 "Subroutine calls are nested more than {deepest_call} levels deep.", deepest_call=DEEPEST_CALL
             )
             raise statement.refuse("P", "recursion", text, "A subroutine must not call itself.")
-        start = structure.subroutines[number]
         self.enter(Frame(structure, start + 1, structure.subroutine_ends.get(number, start) + 1))
-        self._bound()
+        if self._stop is not None:
+            self._bound()
 
     def contour(self, statement: Statement) -> range | None:
         """Indices of the lines that describe the contour of a G75 or G78, which the flow passes by.
@@ -352,9 +354,8 @@ class Flow(ControlFlow[Frame[Structure]]):
         start = structure.subroutines.get(number)
         return None if start is None else range(start + 1, structure.subroutine_ends.get(number, start))
 
-    def _loop_end(self, start: int | None) -> None:
+    def _loop_end(self, left: dict[int, int], start: int | None) -> None:
         """Back to the line behind LS, as often as it says; only from the LF of the inner loop."""
-        left = self.here.left
         if start is None or next(reversed(left), None) != start:
             return
         if left[start] > 0:
