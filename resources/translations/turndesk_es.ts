@@ -21655,6 +21655,11 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/older_cycles.py" />
+      <source>The slot of cycle 3 has no length.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/older_cycles.py" />
       <source>The tool is wider than the pocket.</source>
       <translation>La herramienta es más ancha que la cajera.</translation>
     </message>
@@ -21672,6 +21677,11 @@
       <location filename="core/interpreter/klartext/older_cycles.py" />
       <source>Write F in CYCL DEF.</source>
       <translation>Escriba F en CYCL DEF.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/older_cycles.py" />
+      <source>Write the length of the slot in line 3.4.</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="core/interpreter/klartext/path_elements.py" />

@@ -115,6 +115,8 @@ def _slot(told: Told, tool: CycleTool) -> Iterator[Block]:
     first, second = _sides(told, 4), _sides(told, 5)
     (x, y), clear = tool.here, tool.height
     end = x + first[0], y + first[1]
+    text = "The slot of cycle 3 has no length."
+    tool.check(math.hypot(*first) > _SMALLEST, text, "Write the length of the slot in line 3.4.")
     width = (abs(second[0]) + abs(second[1])) / 2.0 - tool.radius
     tool.check(width >= -_SMALLEST, "The tool is wider than the slot.", "Use a smaller tool.")
     surface, feed = clear - told.length(1), told.cutting_feed(6)
