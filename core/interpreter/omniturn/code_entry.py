@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum, auto
+from functools import partial
 from math import inf
 from typing import NamedTuple
 
@@ -231,3 +232,16 @@ class Code:
 def names(text: str) -> frozenset[str]:
     """Names with blanks between them, as a set."""
     return frozenset(text.split())
+
+
+PLAIN_WORDS = names("X Z C CA CI R F S T D")
+"""Words of a line without a code of its own, and beside modes and M codes."""
+
+# What the entries of a kind have in common: beside modes and M codes stand the words of a plain line.
+mode = partial(Code, acts=Acts.MODE, words=PLAIN_WORDS, f=FWord.FEED)
+m_code = partial(Code, words=PLAIN_WORDS, f=FWord.FEED)
+letter = partial(Code, acts=Acts.WORD, f=FWord.NONE)
+flow = partial(Code, acts=Acts.FLOW, f=FWord.NONE)
+
+Chapter = tuple[str, tuple[Code, ...]]
+"""A title and its codes, in the order of the page."""
