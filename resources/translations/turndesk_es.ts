@@ -20999,192 +20999,192 @@
       <translation>{parameter} del ciclo {number} no es un avance válido.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycle_calls.py" />
       <source> (cylinder surface, {kind})</source>
       <translation> (superficie cilíndrica, {kind})</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycle_calls.py" />
       <source>A cycle with M136 active (write M137 first)</source>
       <translation>Un ciclo con M136 activo (escriba antes M137)</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycle_calls.py" />
       <source>CYCL CALL PAT needs a preceding cycle with a number of 200 or higher.</source>
       <translation>CYCL CALL PAT necesita antes un ciclo con número 200 o mayor.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycle_calls.py" />
       <source>CYCL CALL POS with a Z other than +0 is not supported.</source>
       <translation>No se admite CYCL CALL POS con una Z distinta de +0.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycle_calls.py" />
       <source>CYCL CALL POS with cycle {number}</source>
       <translation>CYCL CALL POS con el ciclo {number}</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycle_calls.py" />
       <source>CYCL DEF {number}{kind}</source>
       <translation>CYCL DEF {number}{kind}</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycle_calls.py" />
       <source>Combine some of the contours.</source>
       <translation>Una algunos de los contornos.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycle_calls.py" />
       <source>Complete the CYCL DEF.</source>
       <translation>Complete el CYCL DEF.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycle_calls.py" />
       <source>Cycle 14 does not list any label.</source>
       <translation>El ciclo 14 no contiene ninguna etiqueta.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycle_calls.py" />
       <source>Cycle 14 lists {contours_count} contours; the maximum is {most_contours}.</source>
       <translation>El ciclo 14 contiene {contours_count} contornos; el máximo es {most_contours}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycle_calls.py" />
       <source>Cycle {number}</source>
       <translation>Ciclo {number}</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycle_calls.py" />
       <source>Cycle {number} is a machine-builder cycle, and this machine does not have machine-builder cycles.</source>
       <translation>El ciclo {number} es un ciclo del fabricante de la máquina, y esta máquina no tiene ciclos del fabricante.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycle_calls.py" />
       <source>Cycle {number} needs a preceding machining cycle.</source>
       <translation>El ciclo {number} necesita antes un ciclo de mecanizado.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycle_calls.py" />
       <source>Enter a time above 0.</source>
       <translation>Indique un tiempo mayor que 0.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycle_calls.py" />
       <source>Line {number}.{missing} of the cycle is missing.</source>
       <translation>Falta la línea {number}.{missing} del ciclo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycle_calls.py" />
       <source>List the contour labels in cycle 14 before this block.</source>
       <translation>Indique las etiquetas de los contornos en el ciclo 14 antes de este bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycle_calls.py" />
       <source>M103 does not change the feed rates of a cycle.</source>
       <translation>M103 no cambia los avances de un ciclo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycle_calls.py" />
       <source>Neither PATTERN DEF nor SEL PATTERN has defined any points.</source>
       <translation>Ni PATTERN DEF ni SEL PATTERN ha definido puntos.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycle_calls.py" />
       <source>No angle is programmed in cycle 13.</source>
       <translation>No hay ningún ángulo programado en el ciclo 13.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycle_calls.py" />
       <source>No contour is defined for cycle {number}.</source>
       <translation>No hay ningún contorno definido para el ciclo {number}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycle_calls.py" />
       <source>No machining cycle is defined.</source>
       <translation>No hay ningún ciclo de mecanizado definido.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycle_calls.py" />
       <source>Preset {number} is not in the preset table.</source>
       <translation>El preset {number} no está en la tabla de presets.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycle_calls.py" />
       <source>Preset {number} rotates the workpiece and cannot be activated while a tilted plane is active.</source>
       <translation>El preset {number} gira la pieza y no se puede activar con un plano inclinado activo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycle_calls.py" />
       <source>Remove this text from the program.</source>
       <translation>Quite este texto del programa.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycle_calls.py" />
       <source>SET UP</source>
       <translation>SET UP</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycle_calls.py" />
       <source>Set the preset on the PRESETS page, or correct Q339.</source>
       <translation>Fije el preset en la página PRESETS o corrija Q339.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycle_calls.py" />
       <source>Set the preset on the PRESETS page.</source>
       <translation>Fije el preset en la página PRESETS.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycle_calls.py" />
       <source>The dwell time of {seconds} s is negative.</source>
       <translation>El tiempo de espera de {seconds} s es negativo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycle_calls.py" />
       <source>This machine has no preset table, so preset {number} uses the zero from the machine file.</source>
       <translation>Esta máquina no tiene tabla de presets, así que el preset {number} usa el cero del archivo de máquina.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycle_calls.py" />
       <source>Use only A, B and C in cycle 19.</source>
       <translation>Use sólo A, B y C en el ciclo 19.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycle_calls.py" />
       <source>Write ANGLE with a value in degrees.</source>
       <translation>Escriba ANGLE con un valor en grados.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycle_calls.py" />
       <source>Write CYCL DEF before this block.</source>
       <translation>Escriba CYCL DEF antes de este bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycle_calls.py" />
       <source>Write PATTERN DEF before this block.</source>
       <translation>Escriba PATTERN DEF antes de este bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycle_calls.py" />
       <source>Write PLANE RESET STAY before this block.</source>
       <translation>Escriba PLANE RESET STAY antes de este bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycle_calls.py" />
       <source>Write Z+0, and enter the surface coordinate in Q203.</source>
       <translation>Escriba Z+0 e indique la coordenada de la superficie en Q203.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycle_calls.py" />
       <source>Write the CYCL DEF of a machining cycle before this block.</source>
       <translation>Escriba el CYCL DEF de un ciclo de mecanizado antes de este bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycle_calls.py" />
       <source>Write the labels, for example CONTOUR LABEL1 /2.</source>
       <translation>Escriba las etiquetas, por ejemplo CONTOUR LABEL1 /2.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycle_calls.py" />
       <source>{node} is not an axis.</source>
       <translation>{node} no es un eje.</translation>
     </message>

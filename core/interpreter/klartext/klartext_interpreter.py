@@ -22,7 +22,7 @@ from core.interpreter.klartext.blocks_without_motion import Reckoned, go_on, rec
 from core.interpreter.klartext.consequent_faults import Consequences, ends_the_pass
 from core.interpreter.klartext.contour_figures import ContourFigure, FigureRunner, copy_of
 from core.interpreter.klartext.coordinate_transformations import datum, transform
-from core.interpreter.klartext.cycles import Cycles
+from core.interpreter.klartext.cycle_calls import Cycles
 from core.interpreter.klartext.klartext_program import Flow, Program
 from core.interpreter.klartext.klartext_state import State
 from core.interpreter.klartext.mid_program_startup import Parts

@@ -12,7 +12,7 @@ from core.interpreter.actions import SpindleRun, SpindleStop
 from core.interpreter.checkpoint import AxesLeg, Begin, Checkpoint, FunctionStep
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.kept_pass import KeptPass, StateLine
-from core.interpreter.klartext.cycles import Cycles
+from core.interpreter.klartext.cycle_calls import Cycles
 from core.interpreter.klartext.klartext_program import Flow
 from core.interpreter.klartext.klartext_state import ORIGIN, SLIDES, State
 from core.interpreter.klartext.path_functions import PathRunner
