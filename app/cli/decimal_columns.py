@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 if TYPE_CHECKING:
-    from core.interpreter.elementary_blocks import Floats, Ints
+    from core.interpreter.shared.elementary_blocks import Floats, Ints
 
 _SURE = 1e12  # a number of steps up to which it is a whole one, with digits to spare
 _HALF = 1e-3  # nearer than that to the half of a step it is rounded by its decimals

@@ -19,7 +19,7 @@ from app.cli.figures import (
 )
 
 if TYPE_CHECKING:
-    from core.interpreter.elementary_blocks import Block, TimedSeries
+    from core.interpreter.shared.elementary_blocks import Block, TimedSeries
 
 _VARIES = "\0"  # no text in JSON holds it
 HEAD = "    n  line  kind        X radius          Z         feed      rpm       t  block\n"

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from app.cli.proof_job import OtherOffsets, ProofJob
     from app.cli.proof_work import Findings
     from app.cli.report_file import ReportFile
-    from core.interpreter.job_setup import Setup
+    from core.interpreter.shared.job_setup import Setup
     from core.language.source import Source
     from core.proving.proof_report import PartReport, Report
 

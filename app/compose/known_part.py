@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from app.desk.kept_part import KeptPart
-from core.interpreter.job_setup import ToolOffset
+from core.interpreter.shared.job_setup import ToolOffset
 from core.machine.machine_model import Machine
 from core.part.stock import Clamping
 from core.part.tool_shape import ToolShape

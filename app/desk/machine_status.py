@@ -26,7 +26,7 @@ from app.desk.translation import tr
 from app.desk.waiting import waits_for
 from core.alarms import CATALOGUE, Reaction
 from core.executor.snapshot import Alarm, Snapshot, State
-from core.interpreter.modal_state import Modal
+from core.interpreter.shared.modal_state import Modal
 from core.message import Message
 from core.tool_edges import edge_name, tool_of
 

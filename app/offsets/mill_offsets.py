@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
-from core.interpreter.job_setup import MillTool, Setup, ToolOffset
+from core.interpreter.shared.job_setup import MillTool, Setup, ToolOffset
 from core.store.store_rows import MillRow, PresetRow, ToolRow
 
 if TYPE_CHECKING:

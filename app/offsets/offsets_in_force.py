@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from core.interpreter.job_setup import SecondaryOffset, ToolOffset
+from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
 from core.language.sinumerik.sinumerik_words import MOST_R
 from core.store.store_rows import PresetRow, SecondaryRow, ToolRow
 

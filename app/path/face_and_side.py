@@ -20,7 +20,7 @@ from core.geometry.virtual_mill import Face, Side
 
 if TYPE_CHECKING:
     from core.geometry.virtual_mill import PlaneMove, Spot
-    from core.interpreter.elementary_blocks import Block
+    from core.interpreter.shared.elementary_blocks import Block
 
 STILL = 1e-9  # mm, degrees
 LEAST = 1.0  # mm: the radius that a side is unrolled at when nothing tells one

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from app.report.svg_drawing import Drawing, Point, window
-from core.interpreter.elementary_blocks import Kind
+from core.interpreter.shared.elementary_blocks import Kind
 from core.part.insert_codes import InsertCodeError
 from core.part.stock import Clamping, Stock
 from core.part.tool_outline import ToolOutline, outline

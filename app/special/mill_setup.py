@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from app.desk.readouts import rotary_angle
 from app.desk.translation import tr
 from core.geometry.rotary_axes import DatumPreset
-from core.interpreter.job_setup import MillTool, Setup, ToolOffset
-from core.interpreter.working_plane import Corners
+from core.interpreter.shared.job_setup import MillTool, Setup, ToolOffset
+from core.interpreter.shared.working_plane import Corners
 from core.message import Message
 
 Length = Callable[[float], str]

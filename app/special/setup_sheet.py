@@ -10,7 +10,7 @@ from app.report.run_record import RunRecord, Stop, ToolTime
 from app.special.mill_setup import MillSetup, mill_setup
 from app.special.mill_setup import offset_words as mill_offset_words
 from core.interpreter.dialects import ReadProgram
-from core.interpreter.job_setup import SecondaryOffset, Setup, ToolOffset, ZeroOffset
+from core.interpreter.shared.job_setup import SecondaryOffset, Setup, ToolOffset, ZeroOffset
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Dialect
 from core.machine.machine_model import Machine

@@ -18,7 +18,7 @@ from app.compose.extra import extras
 from core.access.access_table import Act, Level
 from core.alarms import CATALOGUE
 from core.interpreter.dialects import code_book
-from core.interpreter.omniturn.code_table import CHAPTERS
+from core.interpreter.omniturn.codes.code_table import CHAPTERS
 from core.language.klartext import klartext_faults
 from core.language.sinumerik.cycle_names import CYCLES_OUTSIDE
 from core.language.sinumerik.outside_words import OUTSIDE

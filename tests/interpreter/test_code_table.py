@@ -12,11 +12,7 @@ import pytest
 
 from app.compose.machine_files import load_machine
 from app.compose.machine_setup import setup_for
-from core.interpreter.actions import Dwell
-from core.interpreter.elementary_blocks import Block
-from core.interpreter.job_setup import SecondaryOffset, ToolOffset
-from core.interpreter.omniturn import dwell
-from core.interpreter.omniturn.code_entry import (
+from core.interpreter.omniturn.codes.code_entry import (
     HEAD,
     TAIL,
     Acts,
@@ -28,7 +24,7 @@ from core.interpreter.omniturn.code_entry import (
     WordRule,
     names,
 )
-from core.interpreter.omniturn.code_table import (
+from core.interpreter.omniturn.codes.code_table import (
     CHAPTERS,
     FLOW_CODES,
     G_CODES,
@@ -36,9 +32,13 @@ from core.interpreter.omniturn.code_table import (
     M_CODES,
     carry_out,
 )
-from core.interpreter.omniturn.language_page import page
+from core.interpreter.omniturn.codes.language_page import page
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
+from core.interpreter.omniturn.setup import dwell
+from core.interpreter.shared.actions import Dwell
+from core.interpreter.shared.elementary_blocks import Block
+from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
 from core.language.diagnostics import Severity
 from core.language.omniturn.omniturn_words import RANGES
 from core.language.source import Source
@@ -151,7 +151,7 @@ def test_a_rule_in_the_entry_is_what_is_asked(monkeypatch: pytest.MonkeyPatch) -
 
 def test_the_page_is_written_from_the_table() -> None:
     assert PAGE.read_text(encoding="utf-8") == page(), (
-        "python -m core.interpreter.omniturn.language_page > docs/language.md"
+        "python -m core.interpreter.omniturn.codes.language_page > docs/language.md"
     )
 
 
@@ -165,7 +165,7 @@ def wait_in_turns(state: State, made: Statement) -> Iterator[Block]:
 
 
 TRIAL = Code(
-    "G05", "G05Fn", "Waits for n turns.", "G05F2", acts=Acts.MOTION, handler="dwell.wait_in_turns",
+    "G05", "G05Fn", "Waits for n turns.", "G05F2", acts=Acts.MOTION, handler="setup.dwell:wait_in_turns",
     words=names("F S T D"), f=FWord.SECONDS, least_blocks=1, not_in_mdi="{code} is a trial.",
 )  # fmt: skip
 
@@ -196,7 +196,7 @@ def test_a_code_whose_f_means_nothing_is_none() -> None:
     with raises_code(CodeEntryError, "f-word", "G05"):
         replace(TRIAL, words=names("S T D"))
     with pytest.raises(TypeError):
-        Code("G05", "G05Fn", "Waits.", "G05F2", acts=Acts.MOTION, handler="dwell.dwell")  # type: ignore[call-arg]
+        Code("G05", "G05Fn", "Waits.", "G05F2", acts=Acts.MOTION, handler="setup.dwell:dwell")  # type: ignore[call-arg]
     with raises_code(CodeEntryError, "rule-without-word", "G05"):
         replace(TRIAL, rules={"K": WordRule("a lead")})
     with raises_code(CodeEntryError, "no-group", "G05"):
@@ -205,4 +205,4 @@ def test_a_code_whose_f_means_nothing_is_none() -> None:
 
 def test_a_handler_that_is_nowhere_is_an_error() -> None:
     with pytest.raises(AttributeError):
-        carry_out(replace(TRIAL, handler="dwell.nowhere"))
+        carry_out(replace(TRIAL, handler="setup.dwell:nowhere"))

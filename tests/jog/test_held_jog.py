@@ -11,7 +11,7 @@ from app.jog.held_jog import HeldJog
 from app.jog.jog_speeds import CONTINUOUS, JogSpeeds
 from core.executor.commands import Command, Jog, JogStep, JogStop
 from core.executor.snapshot import Snapshot, State
-from core.interpreter.modal_state import Modal
+from core.interpreter.shared.modal_state import Modal
 from tests.texts import shows, text
 
 INCH = 25.4

@@ -13,7 +13,7 @@ from app.jog.jog_handwheel import JogHandwheel
 from app.jog.jog_speeds import CONTINUOUS, JogSpeeds
 from core.executor.commands import Command, Jog, JogStop, Wheel, WheelOff
 from core.executor.snapshot import Snapshot, State
-from core.interpreter.modal_state import Modal
+from core.interpreter.shared.modal_state import Modal
 from core.machine.hardware_model import AnalogModel
 from core.machine.machine_model import InputModel
 from tests.texts import shows, text

@@ -7,8 +7,8 @@ from itertools import pairwise
 
 import pytest
 
-from core.interpreter.actions import SpindleRun
-from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.shared.actions import SpindleRun
+from core.interpreter.shared.elementary_blocks import Block, Kind
 from core.language.klartext.klartext_faults import INPUT_VALUE
 from tests.klartext.running import Ran, run
 from tests.klartext.test_klartext_cycles import ran_of

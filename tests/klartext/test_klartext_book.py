@@ -10,9 +10,9 @@ from app.compose.machine_files import shipped_machine
 from app.compose.machine_setup import setup_for
 from core.interpreter.code_book_page import page
 from core.interpreter.dialects import code_book
-from core.interpreter.job_setup import ToolOffset
-from core.interpreter.klartext import contour_cycles, m_functions, older_cycles
-from core.interpreter.klartext import cycle_calls
+from core.interpreter.klartext.cycles import contour_cycles, cycle_calls, older_cycles
+from core.interpreter.klartext.setup import m_functions
+from core.interpreter.shared.job_setup import ToolOffset
 from core.language.code_book import Entry
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.klartext import klartext_line, path_block, plane_block, q_parameters

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from core.interpreter.elementary_blocks import Kind
+from core.interpreter.shared.elementary_blocks import Kind
 from core.language.called_files import with_called_files
 from core.language.klartext import read_line
 from core.language.klartext.called_programs import called_programs

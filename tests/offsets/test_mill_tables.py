@@ -19,7 +19,7 @@ from app.offsets.mill_tools import MillTools
 from app.offsets.mill_touch import MillTouch
 from app.offsets.presets import Presets
 from core.executor.snapshot import State
-from core.interpreter.job_setup import ToolOffset
+from core.interpreter.shared.job_setup import ToolOffset
 from core.production.tool_life import ToolLife
 from core.store.store_rows import Kind, MillRow, PresetRow
 from tests.offsets.conftest import LIMIT, Room

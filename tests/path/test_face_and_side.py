@@ -13,9 +13,9 @@ from app.path.face_and_side import face_point
 from app.path.path_picture import Picture, PictureBuilder, picture_of
 from app.path.polyline import CHORD_ERROR, Polyline, Stroke
 from core.geometry.virtual_mill import Face, PlaneMove, Side
-from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.job_setup import ToolOffset
-from core.interpreter.modal_state import Modal
+from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.job_setup import ToolOffset
+from core.interpreter.shared.modal_state import Modal
 from core.language.source import load_source
 from core.proving.program_timeline import Timeline, timed_blocks
 from tests.path.made import LOCKED, turned

@@ -17,7 +17,7 @@ from app.screen.look import Look
 from app.screen.main_window import MainWindow
 from app.screen.theme import DARK
 from core.executor.snapshot import State
-from core.interpreter.job_setup import SecondaryOffset, ToolOffset
+from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import load_source
 from core.proving.proof_report import Report
 from core.proving.prove_program import prove

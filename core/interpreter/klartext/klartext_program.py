@@ -7,11 +7,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 from core.geometry.rotation_frames import Vector
-from core.interpreter.control_flow import ControlFlow, Frame
-from core.interpreter.diagnostic_log import MOST_OF_A_KIND
 from core.interpreter.klartext.consequent_faults import told_once
-from core.interpreter.units import MM_PER_INCH
-from core.interpreter.working_plane import Corners
+from core.interpreter.shared.control_flow import ControlFlow, Frame
+from core.interpreter.shared.diagnostic_log import MOST_OF_A_KIND
+from core.interpreter.shared.units import MM_PER_INCH
+from core.interpreter.shared.working_plane import Corners
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.klartext import read_line
 from core.language.klartext.called_programs import file_name

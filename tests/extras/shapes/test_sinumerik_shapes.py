@@ -17,8 +17,8 @@ from core.extras.shapes.shape_fields import Value
 from core.extras.shapes.shape_setting import Setting, Shop
 from core.extras.shapes.shape_table import SHAPES_OF
 from core.interpreter.dialects import ReadProgram
-from core.interpreter.elementary_blocks import Kind
-from core.interpreter.job_setup import Setup, ToolOffset
+from core.interpreter.shared.elementary_blocks import Kind
+from core.interpreter.shared.job_setup import Setup, ToolOffset
 from core.language.source import Dialect, Source
 from core.part.stock_spec import stock_spec
 from core.part.tool_shape import ToolKind, ToolShape

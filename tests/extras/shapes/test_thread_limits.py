@@ -11,7 +11,7 @@ from core.extras.shapes.shape_setting import Setting, Shop
 from core.extras.shapes.shape_table import SHAPES
 from core.extras.shapes.threads.thread_limits import Limits, classes, limits, pipe_length
 from core.extras.shapes.threads.thread_series import METRIC, Series, size_of
-from core.interpreter.elementary_blocks import Kind
+from core.interpreter.shared.elementary_blocks import Kind
 from core.part.tool_shape import ToolKind, ToolShape
 from tests.extras.shapes.test_ten_parts import blocks_of
 from tests.texts import text as wording
