@@ -1,4 +1,4 @@
-"""Errors that only follow from a refused line, and are not reported.
+"""Errors that only follow from a refused line, of the text or of the run, and are not reported.
 
 The control stops at the first error. The interpreter continues, so that one pass reports all independent
 errors. A refused line may have started the spindle or set the feed. Errors about what it may have set are

@@ -1,4 +1,4 @@
-"""Everything that changes while a program is gone through, kept flat because every move reads it."""
+"""Everything that changes while a program is gone through, flat as every move reads it; its checkpoint."""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Where a pass begins: at the first line, with a line of MDI, or at a checkpoint in the middle (restart)."""
+"""Where a pass begins: at the first line, or going on from a pass that was kept (MDI, restart, block search).
+
+What a language has in force lies in the parts of its interpreter. They are copied whole, so that nothing that
+a family of codes adds can be forgotten here.
+"""
 
 from __future__ import annotations
 

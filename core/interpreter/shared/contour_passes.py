@@ -1,4 +1,4 @@
-"""Roughing beside a contour: passes parallel to an axis, the run along it, as the start point sees it."""
+"""Passes of cycles: of equal depth, and parallel to an axis beside a contour, as the start point sees it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One pass through a program in any language: what every interpreter is asked for, and what it reports."""
+"""One pass through a program in any language: what is asked for and reported, and its lines one by one."""
 
 from __future__ import annotations
 

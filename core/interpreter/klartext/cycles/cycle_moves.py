@@ -1,4 +1,4 @@
-"""What cycles are made of: the tool above a place of the working plane, its ways, dwells, the spindle."""
+"""What cycles are made of: the tool above the plane, its ways and rings, dwells, the spindle."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""From words to numbers: Q parameters, input ranges, lengths in mm."""
+"""From words to numbers: Q parameters and their formulas, input ranges, lengths in mm."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""PLANE blocks, in the order of events: everything is checked, then retract, then swivel, then the frame."""
+"""Tilted planes (PLANE: check, retract, swivel, then the frame), and tip control (M128, FUNCTION TCPM)."""
 
 from __future__ import annotations
 

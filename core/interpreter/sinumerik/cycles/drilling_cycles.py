@@ -1,4 +1,4 @@
-"""CYCLE81 to 83 and 85 to 89: a hole along Z under G17, in one go or in pecks, with dwells and feeds.
+"""CYCLE81 to 83 and 85 to 89: a hole along Z under G17, with dwells and feeds; HOLES1, HOLES2: its places.
 
 CYCLE86, 87 and 88 bore, and end with the spindle held, or stopped for the operator.
 """

@@ -1,8 +1,12 @@
-"""CYCLE93: a groove with square or slanted flanks, outside or inside, as wide as the tool or wider.
+"""CYCLE93, CYCLE92: a groove with square or slanted flanks, outside or inside; the part parted off.
 
 WIDG is the width of the bottom, and SPL the corner of the surface at which the groove begins: slanted flanks
 make it wider outwards. The tool's width is the way between its two cutting edges, D and _DN of the table, or
 D+1, as on the control.
+
+Parting off is slower near the axis; the edge in force goes down at SPL. What the parameters of CYCLE92 mean
+is told by the maker's operating manuals, their names and order by public lists of them; what the digits of
+``_DMODE`` and ``_AMODE`` mean is told nowhere, so that only depths as diameters are taken.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Variables: R parameters of all programs; numbers, arrays and texts that DEF and PROC name in one."""
+"""R parameters of all programs, variables that DEF and PROC name in one, and system variables to read."""
 
 from __future__ import annotations
 

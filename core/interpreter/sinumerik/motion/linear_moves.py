@@ -1,4 +1,4 @@
-"""G0 and G1, with C or without: where the words of a block lead, at which feed, and the block of the move."""
+"""G0 and G1, with C or without: where they lead, at which feed, and their blocks, cut at corners or not."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""S, LIMS, G25, G26, the speeds of G96 and G97, M3, M4, M5, M19, M70, SPOS, SETMS, and dwells."""
+"""S, LIMS, G25, G26, G96, G97, M3, M4, M5, M19, M70, SPOS, SETMS, the live tool as spindle 2, and dwells."""
 
 from __future__ import annotations
 
