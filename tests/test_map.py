@@ -45,7 +45,7 @@ SENTENCES = (
     ("The queue always ends at rest", "setpoint queue", "drivers/setpoint_queue.py"),
     ("A dead thread stops the machine", "watchdog", "core/executor/safety/watchdog.py"),
     ("Whether a part is counted", "part count", "core/executor/control_status.py"),
-    ("Speed by the radius", "constant surface speed", "core/interpreter/omniturn/setup/spindle_speed.py"),
+    ("Speed by the radius", "constant surface speed", "core/interpreter/omniturn/setup/spindle_and_dwell.py"),
     (
         "The nose's path beside the contour",
         "nose compensation",

@@ -21,10 +21,9 @@ from core.interpreter.shared.actions import (
     SpindleRun,
     SpindleStop,
 )
-from core.interpreter.shared.elementary_blocks import Block, Kind, Series, TimedSeries
+from core.interpreter.shared.elementary_blocks import Block, Kind, SectionEnds, Series, TimedSeries
 from core.interpreter.shared.interpretation import Interpretation
 from core.interpreter.shared.job_setup import Setup
-from core.interpreter.shared.path_sections import SectionEnds
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Source
 from core.machine.machine_model import Machine

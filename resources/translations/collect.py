@@ -78,7 +78,7 @@ APART = frozenset(
             "access_table.py",
             "code_entry.py",
             "code_table.py",
-            *("move_codes.py", "spindle_codes.py", "cycle_codes.py", "flow_codes.py"),
+            *("move_codes.py", "cycle_codes.py", "flow_codes.py"),
             "language_page.py",
             "keys.py",
             "run_without_screen.py",

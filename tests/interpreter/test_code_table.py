@@ -35,7 +35,7 @@ from core.interpreter.omniturn.codes.code_table import (
 from core.interpreter.omniturn.codes.language_page import page
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
-from core.interpreter.omniturn.setup import dwell
+from core.interpreter.omniturn.setup import spindle_and_dwell
 from core.interpreter.shared.actions import Dwell
 from core.interpreter.shared.elementary_blocks import Block
 from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
@@ -97,7 +97,7 @@ def test_each_refusal_of_a_family_stands_in_an_entry(family: str) -> None:
 
 
 def test_no_entry_names_a_refusal_that_is_none() -> None:
-    tables = {"move_codes.py", "spindle_codes.py", "cycle_codes.py", "flow_codes.py"}
+    tables = {"move_codes.py", "cycle_codes.py", "flow_codes.py"}
     files = [*(file for file in ROOM.rglob("*.py") if file.name not in tables), SHARED]
     text = "".join(file.read_text(encoding="utf-8") for file in files)
     further = frozenset().union(*(code.further for code in CODES))
@@ -168,7 +168,8 @@ def wait_in_turns(state: State, made: Statement) -> Iterator[Block]:
 
 
 TRIAL = Code(
-    "G05", "G05Fn", "Waits for n turns.", "G05F2", acts=Acts.MOTION, handler="setup.dwell:wait_in_turns",
+    "G05", "G05Fn", "Waits for n turns.", "G05F2", acts=Acts.MOTION,
+    handler="setup.spindle_and_dwell:wait_in_turns",
     words=names("F S T D"), f=FWord.SECONDS, least_blocks=1, not_in_mdi="{code} is a trial.",
 )  # fmt: skip
 
@@ -183,7 +184,7 @@ def test_a_code_without_an_entry_does_not_exist() -> None:
 
 def test_one_entry_makes_a_code(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(G_CODES, 5, TRIAL)
-    monkeypatch.setattr(dwell, "wait_in_turns", wait_in_turns, raising=False)
+    monkeypatch.setattr(spindle_and_dwell, "wait_in_turns", wait_in_turns, raising=False)
     result = passed(program("Z0", "G05F2", "Z-.1"))
     assert result.errors == []
     waits, cut = result.blocks[-3], result.blocks[-2]
@@ -199,7 +200,7 @@ def test_a_code_whose_f_means_nothing_is_none() -> None:
     with raises_code(CodeEntryError, "f-word", "G05"):
         replace(TRIAL, words=names("S T D"))
     with pytest.raises(TypeError):
-        Code("G05", "G05Fn", "Waits.", "G05F2", acts=Acts.MOTION, handler="setup.dwell:dwell")  # type: ignore[call-arg]
+        Code("G05", "G05Fn", "Waits.", "G05F2", acts=Acts.MOTION, handler="setup.spindle_and_dwell:dwell")  # type: ignore[call-arg]
     with raises_code(CodeEntryError, "rule-without-word", "G05"):
         replace(TRIAL, rules={"K": WordRule("a lead")})
     with raises_code(CodeEntryError, "no-group", "G05"):
@@ -208,4 +209,4 @@ def test_a_code_whose_f_means_nothing_is_none() -> None:
 
 def test_a_handler_that_is_nowhere_is_an_error() -> None:
     with pytest.raises(AttributeError):
-        carry_out(replace(TRIAL, handler="setup.dwell:nowhere"))
+        carry_out(replace(TRIAL, handler="setup.spindle_and_dwell:nowhere"))

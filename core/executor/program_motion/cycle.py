@@ -20,9 +20,8 @@ from core.executor.program_motion.standstill import Next, Standstill, Wait, at_s
 from core.executor.raised_alarm import AlarmError, code_of_hold
 from core.executor.snapshot import State
 from core.interpreter.shared.actions import ProgramEnd, ProgramStop, SpindleLock, SpindleOrient, SpindleStop
-from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.elementary_blocks import Block, Kind, needs_speed
 from core.interpreter.shared.modal_state import Modal
-from core.interpreter.shared.path_sections import needs_speed
 
 PathMotion = SetpointMotion | ControllerMotion
 """What moves the blocks from rest to rest: our own setpoints, or a controller that plans by itself."""

@@ -27,8 +27,7 @@ from core.interpreter.shared.actions import (
     SpindleStop,
     WaitInput,
 )
-from core.interpreter.shared.elementary_blocks import Block, Kind
-from core.interpreter.shared.path_sections import needs_speed
+from core.interpreter.shared.elementary_blocks import Block, Kind, needs_speed
 from core.message import Message
 
 # --- waits and actions ----------------------------------------------------------------------------------

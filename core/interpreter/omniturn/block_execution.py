@@ -16,7 +16,7 @@ from core.interpreter.omniturn.motion.straight_moves import geometry_modes, stat
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import ReadyLine, Statement
 from core.interpreter.omniturn.setup.m_codes import after_motion, before_motion
-from core.interpreter.omniturn.setup.spindle_speed import run_block, speed_word, spindle_modes
+from core.interpreter.omniturn.setup.spindle_and_dwell import run_block, speed_word, spindle_modes
 from core.interpreter.omniturn.setup.tools_and_offsets import secondary, tool_change
 from core.interpreter.shared.elementary_blocks import Block
 from core.interpreter.shared.interpretation import ToolUse

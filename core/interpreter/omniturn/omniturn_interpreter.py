@@ -11,7 +11,7 @@ from core.interpreter.omniturn.consequent_faults import Consequences
 from core.interpreter.omniturn.flow.loops_and_subroutines import Flow, takes_call, terminal
 from core.interpreter.omniturn.flow.program_size import refuse_too_large
 from core.interpreter.omniturn.motion.coarse_feeds import looks_ahead
-from core.interpreter.omniturn.motion.contour_modification import ContourModifier
+from core.interpreter.omniturn.motion.corners import ContourModifier
 from core.interpreter.omniturn.motion.nose_compensation import nose_code, switch
 from core.interpreter.omniturn.motion.straight_moves import go, on_step, plain_move
 from core.interpreter.omniturn.omniturn_program import Program
@@ -23,9 +23,8 @@ from core.interpreter.shared.actions import AskInput, ProgramEnd
 from core.interpreter.shared.checkpoint import Checkpoint
 from core.interpreter.shared.diagnostic_log import Log
 from core.interpreter.shared.elementary_blocks import Block, Series
-from core.interpreter.shared.interpretation import MOST_BLOCKS, MOST_LINES, Interpretation
+from core.interpreter.shared.interpretation import MOST_BLOCKS, MOST_LINES, Interpretation, approach_blocks
 from core.interpreter.shared.job_setup import Setup
-from core.interpreter.shared.lathe_approach import approach_blocks
 from core.interpreter.shared.modal_state import Modal
 from core.language.diagnostics import ProgramError, refusal
 from core.language.omniturn import lex_line

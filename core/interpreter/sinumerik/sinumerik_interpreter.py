@@ -12,9 +12,8 @@ from core.interpreter.shared.checkpoint import Begin, Checkpoint
 from core.interpreter.shared.control_flow import ENDLESS
 from core.interpreter.shared.diagnostic_log import Log
 from core.interpreter.shared.elementary_blocks import Block
-from core.interpreter.shared.interpretation import MOST_BLOCKS, MOST_LINES, LinePass
+from core.interpreter.shared.interpretation import MOST_BLOCKS, MOST_LINES, LinePass, approach_blocks
 from core.interpreter.shared.job_setup import Setup
-from core.interpreter.shared.lathe_approach import approach_blocks
 from core.interpreter.shared.modal_state import Modal
 from core.interpreter.sinumerik.cycles.cycle_calls import cycle_blocks
 from core.interpreter.sinumerik.cycles.drilling_cycles import PATTERNS, no_cycle, places

@@ -1,10 +1,10 @@
 """The codes of the OmniTurn control, each in one entry: form, words, what F means, group, bounds, refusals.
 
-The entries stand by subject in ``move_codes``, ``spindle_codes``, ``cycle_codes`` and ``flow_codes``. A code
-without an entry does not exist. ``handler`` names the function that carries it out, as ``folder.file:name``
-in the package of this dialect; what a line does before and behind it is told by ``acts``. Where the entry is
-wrong or lacks something, making it raises, or ``tests/interpreter/test_code_table.py`` fails.
-``docs/language.md`` is the page of this table (``language_page``), and its examples are proved.
+The entries stand by subject in ``move_codes``, ``cycle_codes`` and ``flow_codes``. A code without an entry
+does not exist. ``handler`` names the function that carries it out, as ``folder.file:name`` in the package of
+this dialect; what a line does before and behind it is told by ``acts``. Where the entry is wrong or lacks
+something, making it raises, or ``tests/interpreter/test_code_table.py`` fails. ``docs/language.md`` is the
+page of this table (``language_page``), and its examples are proved.
 """
 
 from __future__ import annotations
@@ -18,14 +18,13 @@ from core.interpreter.omniturn.codes.code_entry import PLAIN_WORDS, Acts, Code, 
 from core.interpreter.omniturn.codes.cycle_codes import CYCLE_CHAPTERS
 from core.interpreter.omniturn.codes.flow_codes import FLOW_CHAPTERS
 from core.interpreter.omniturn.codes.move_codes import MOVE_CHAPTERS
-from core.interpreter.omniturn.codes.spindle_codes import SPINDLE_CHAPTERS
 
 PLAIN = Code(
     "", "", "", "", acts=Acts.PLAIN, handler="motion.straight_moves:statement_move",
     words=PLAIN_WORDS, f=FWord.FEED
 )  # fmt: skip
 
-CHAPTERS = (*MOVE_CHAPTERS, *SPINDLE_CHAPTERS, *CYCLE_CHAPTERS, *FLOW_CHAPTERS)
+CHAPTERS = (*MOVE_CHAPTERS, *CYCLE_CHAPTERS, *FLOW_CHAPTERS)
 """All codes in the order of the page: the title of each chapter, and its codes."""
 
 G_CODES = {int(code.name[1:]): code for _, codes in CHAPTERS for code in codes if code.name[0] == "G"}

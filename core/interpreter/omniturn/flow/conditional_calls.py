@@ -7,7 +7,7 @@ from copy import copy
 from typing import Protocol
 
 from core.interpreter.omniturn.flow.loops_and_subroutines import called_when, takes_call, terminal
-from core.interpreter.omniturn.motion.contour_modification import ContourModifier
+from core.interpreter.omniturn.motion.corners import ContourModifier
 from core.interpreter.omniturn.omniturn_interpreter import Interpreter
 from core.interpreter.omniturn.omniturn_program import Program
 from core.interpreter.omniturn.omniturn_state import ContourState

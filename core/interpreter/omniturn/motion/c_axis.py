@@ -12,7 +12,7 @@ from core.interpreter.omniturn.motion.feeds import check_move
 from core.interpreter.omniturn.motion.straight_moves import check_tool, go, on_step, warn_of_title_rapid
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
-from core.interpreter.omniturn.setup.dwell import expect_arrival, warn_of_short_dwell
+from core.interpreter.omniturn.setup.spindle_and_dwell import expect_arrival, warn_of_short_dwell
 from core.interpreter.shared.actions import SpindleLock
 from core.interpreter.shared.elementary_blocks import Block, Kind
 from core.language.omniturn import Word

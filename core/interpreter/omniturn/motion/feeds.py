@@ -9,7 +9,7 @@ from core.interpreter.omniturn.codes.code_rules import check_when, limit
 from core.interpreter.omniturn.codes.code_table import G_CODES, LETTERS
 from core.interpreter.omniturn.omniturn_state import HIGH_FEED, State
 from core.interpreter.omniturn.omniturn_statement import ReadyLine, Statement
-from core.interpreter.omniturn.setup.dwell import warn_of_short_dwell
+from core.interpreter.omniturn.setup.spindle_and_dwell import warn_of_short_dwell
 from core.interpreter.shared import units
 from core.interpreter.shared.modal_state import Modal
 from core.language.diagnostics import program_error

@@ -16,7 +16,7 @@ from core.interpreter.omniturn.motion.feeds import out_of_range
 from core.interpreter.omniturn.motion.straight_moves import mill_step
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
-from core.interpreter.omniturn.setup.dwell import warn_of_short_dwell
+from core.interpreter.omniturn.setup.spindle_and_dwell import warn_of_short_dwell
 from core.interpreter.shared import units
 from core.interpreter.shared.elementary_blocks import Block, Kind
 from core.interpreter.shared.modal_state import Mill

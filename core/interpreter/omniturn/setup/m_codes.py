@@ -10,7 +10,7 @@ from core.interpreter.omniturn.codes.code_table import carry_out
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.omniturn.setup.carry_over import after_end
-from core.interpreter.omniturn.setup.dwell import warn_of_short_dwell
+from core.interpreter.omniturn.setup.spindle_and_dwell import warn_of_short_dwell
 from core.interpreter.shared import actions
 from core.interpreter.shared.elementary_blocks import Block
 from core.language.diagnostics import Diagnostic, ProgramError, Severity, refusal
