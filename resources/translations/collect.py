@@ -321,7 +321,9 @@ def _of_books() -> list[str]:
     shown = chapters | {entry.what for book in books for entry in book.entries}
     shown |= {what for book in books for entry in book.entries for _, what in book.words_of(entry)}
     refused = {*OUTSIDE.values(), *CYCLES_OUTSIDE.values()}
-    refused |= {name for key, name in vars(klartext_faults).items() if key.isupper()}
+    refused |= {
+        name for key, name in vars(klartext_faults).items() if key.isupper() and isinstance(name, str)
+    }
     return sorted(shown | refused | {*FUNCTIONS.values(), *IDLE.values()})
 
 

@@ -18830,6 +18830,11 @@
     </message>
     <message>
       <location filename="core/extras/drawings/contour_walk.py" />
+      <source>the drawing has too many parallel lines. Save only the contour of the part.</source>
+      <translation>el dibujo tiene demasiadas líneas paralelas. Guarde sólo el contorno de la pieza.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/contour_walk.py" />
       <source>the foremost point of the contour is in the middle of an arc. End the arc at this point.</source>
       <translation>el punto más adelantado del contorno está en medio de un arco. Termine el arco en ese punto.</translation>
     </message>
@@ -18917,6 +18922,16 @@
       <location filename="core/extras/drawings/drawing_view.py" />
       <source>{drawing}: line {number} is an arc. Choose a straight line as the axis.</source>
       <translation>{drawing}: la línea {number} es un arco. Elija una recta como eje.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/drawing_view.py" />
+      <source>{size} {unit} across</source>
+      <translation>{size} {unit} de diámetro</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/drawing_view.py" />
+      <source>{size} {unit} long</source>
+      <translation>{size} {unit} de largo</translation>
     </message>
     <message>
       <location filename="core/extras/drawings/dxf_reader.py" />
@@ -19072,21 +19087,6 @@
       <location filename="core/extras/drawings/turning_contour.py" />
       <source>the contour slopes too steeply for the tool</source>
       <translation>el contorno tiene una pendiente demasiado fuerte para el útil</translation>
-    </message>
-    <message>
-      <location filename="core/extras/drawings/unit_check.py" />
-      <source>{size} {unit} across</source>
-      <translation>{size} {unit} de diámetro</translation>
-    </message>
-    <message>
-      <location filename="core/extras/drawings/unit_check.py" />
-      <source>{size} {unit} long</source>
-      <translation>{size} {unit} de largo</translation>
-    </message>
-    <message>
-      <location filename="core/extras/drawings/work_limit.py" />
-      <source>the drawing has too many parallel lines. Save only the contour of the part.</source>
-      <translation>el dibujo tiene demasiadas líneas paralelas. Guarde sólo el contorno de la pieza.</translation>
     </message>
     <message>
       <location filename="core/extras/quality/capability.py" />
@@ -26519,39 +26519,29 @@
       <translation>{name} PGM</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/contour_blocks.py" />
+      <location filename="core/language/klartext/cycle_blocks.py" />
+      <source>A rotation needs ROT and an angle</source>
+      <translation>Un giro necesita ROT y un ángulo</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_blocks.py" />
+      <source>After PATTERN DEF, write, for example, POS1 (X+0 Y+0 Z+0).</source>
+      <translation>Después de PATTERN DEF, escriba, por ejemplo, POS1 (X+0 Y+0 Z+0).</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_blocks.py" />
       <source>CONTOUR DEF accepts only pockets (P) and islands (I)</source>
       <translation>CONTOUR DEF acepta sólo cajeras (P) e islas (I)</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/contour_blocks.py" />
+      <location filename="core/language/klartext/cycle_blocks.py" />
       <source>CONTOUR DEF does not name a contour</source>
       <translation>CONTOUR DEF no nombra ningún contorno</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/contour_blocks.py" />
+      <location filename="core/language/klartext/cycle_blocks.py" />
       <source>CONTOUR DEF with a separate depth for one contour</source>
       <translation>CONTOUR DEF con una profundidad aparte para un contorno</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/contour_blocks.py" />
-      <source>Expected a contour: LBL n, or a program name in quotes</source>
-      <translation>Se esperaba un contorno: LBL n o un nombre de programa entre comillas</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/contour_blocks.py" />
-      <source>Write, for example, P1 = LBL 1 I2 = LBL 2.</source>
-      <translation>Escriba, por ejemplo, P1 = LBL 1 I2 = LBL 2.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/contour_blocks.py" />
-      <source>Write, for example, P1 = LBL 1.</source>
-      <translation>Escriba, por ejemplo, P1 = LBL 1.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_blocks.py" />
-      <source>A rotation needs ROT and an angle</source>
-      <translation>Un giro necesita ROT y un ángulo</translation>
     </message>
     <message>
       <location filename="core/language/klartext/cycle_blocks.py" />
@@ -26575,8 +26565,18 @@
     </message>
     <message>
       <location filename="core/language/klartext/cycle_blocks.py" />
+      <source>Close the parenthesis after the last word.</source>
+      <translation>Cierre el paréntesis después de la última palabra.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_blocks.py" />
       <source>Expected a Q parameter of the cycle</source>
       <translation>Se esperaba un parámetro Q del ciclo</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_blocks.py" />
+      <source>Expected a contour: LBL n, or a program name in quotes</source>
+      <translation>Se esperaba un contorno: LBL n o un nombre de programa entre comillas</translation>
     </message>
     <message>
       <location filename="core/language/klartext/cycle_blocks.py" />
@@ -26592,6 +26592,16 @@
       <location filename="core/language/klartext/cycle_blocks.py" />
       <source>Mirroring accepts only the axes X, Y and Z</source>
       <translation>La simetría acepta sólo los ejes X, Y y Z</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_blocks.py" />
+      <source>PATTERN DEF accepts only POS1 (…), ROW1, PAT1, FRAME1, CIRC1 or PITCHCIRC1</source>
+      <translation>PATTERN DEF acepta sólo POS1 (…), ROW1, PAT1, FRAME1, CIRC1 o PITCHCIRC1</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_blocks.py" />
+      <source>PATTERN DEF has no points</source>
+      <translation>PATTERN DEF no tiene puntos</translation>
     </message>
     <message>
       <location filename="core/language/klartext/cycle_blocks.py" />
@@ -26630,6 +26640,11 @@
     </message>
     <message>
       <location filename="core/language/klartext/cycle_blocks.py" />
+      <source>Unexpected word in {form}</source>
+      <translation>Palabra inesperada en {form}</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_blocks.py" />
       <source>Write CYCL DEF {number}.0.</source>
       <translation>Escriba CYCL DEF {number}.0.</translation>
     </message>
@@ -26640,13 +26655,48 @@
     </message>
     <message>
       <location filename="core/language/klartext/cycle_blocks.py" />
+      <source>Write, for example, P1 = LBL 1 I2 = LBL 2.</source>
+      <translation>Escriba, por ejemplo, P1 = LBL 1 I2 = LBL 2.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_blocks.py" />
+      <source>Write, for example, P1 = LBL 1.</source>
+      <translation>Escriba, por ejemplo, P1 = LBL 1.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_blocks.py" />
+      <source>{form} needs {missing}</source>
+      <translation>{form} necesita {missing}</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_blocks.py" />
       <source>{total} with a string parameter (QS)</source>
       <translation>{total} con un parámetro de texto (QS)</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_faults.py" />
+      <source>A contour formula (QC, DECLARE CONTOUR, SEL CONTOUR)</source>
+      <translation>Una fórmula de contorno (QC, DECLARE CONTOUR, SEL CONTOUR)</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_faults.py" />
+      <source>A freely definable table (FN 26, FN 27, FN 28)</source>
+      <translation>Una tabla de libre definición (FN 26, FN 27, FN 28)</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_faults.py" />
+      <source>A string (QS, DECLARE STRING, TOCHAR, SUBSTR, SYSSTR, TONUMB, INSTR, STRLEN, STRCOMP)</source>
+      <translation>Una cadena (QS, DECLARE STRING, TOCHAR, SUBSTR, SYSSTR, TONUMB, INSTR, STRLEN, STRCOMP)</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_faults.py" />
       <source>Arithmetical error</source>
       <translation>Error aritmético</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_faults.py" />
+      <source>Assign the values to Q parameters in the program.</source>
+      <translation>Asigne los valores a parámetros Q en el programa.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_faults.py" />
@@ -26720,8 +26770,23 @@
     </message>
     <message>
       <location filename="core/language/klartext/klartext_faults.py" />
+      <source>List the pockets and islands with CONTOUR DEF or cycle 14.</source>
+      <translation>Enumere las cajeras y las islas con CONTOUR DEF o el ciclo 14.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_faults.py" />
       <source>M function not defined</source>
       <translation>Función M no definida</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_faults.py" />
+      <source>Mill the face with L moves, and repeat them with CALL LBL and REP.</source>
+      <translation>Frese la cara con movimientos L y repítalos con CALL LBL y REP.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_faults.py" />
+      <source>Mill the thread along a helix (CP with IPA and IZ), or cut it with a tapping cycle.</source>
+      <translation>Frese la rosca en una hélice (CP con IPA e IZ) o tállela con un ciclo de roscado.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_faults.py" />
@@ -26797,6 +26862,26 @@
       <location filename="core/language/klartext/klartext_faults.py" />
       <source>Use L moves and PLANE instead, or run the program on a control that supports this function.</source>
       <translation>Use en su lugar movimientos L y PLANE, o corra el programa en un control que admita esta función.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_faults.py" />
+      <source>Use cycle 21 with the data of cycle 20.</source>
+      <translation>Use el ciclo 21 con los datos del ciclo 20.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_faults.py" />
+      <source>Use cycle 22 with the data of cycle 20.</source>
+      <translation>Use el ciclo 22 con los datos del ciclo 20.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_faults.py" />
+      <source>Use cycle 24 with the data of cycle 20.</source>
+      <translation>Use el ciclo 24 con los datos del ciclo 20.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_faults.py" />
+      <source>Write names in quotes, and use Q parameters for numbers.</source>
+      <translation>Escriba los nombres entre comillas y use parámetros Q para los números.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_faults.py" />
@@ -27189,36 +27274,6 @@
       <translation>{form} no acepta DR.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/path_block.py" />
-      <source>{form} needs {missing}</source>
-      <translation>{form} necesita {missing}</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/pattern_block.py" />
-      <source>After PATTERN DEF, write, for example, POS1 (X+0 Y+0 Z+0).</source>
-      <translation>Después de PATTERN DEF, escriba, por ejemplo, POS1 (X+0 Y+0 Z+0).</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/pattern_block.py" />
-      <source>Close the parenthesis after the last word.</source>
-      <translation>Cierre el paréntesis después de la última palabra.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/pattern_block.py" />
-      <source>PATTERN DEF accepts only POS1 (…), ROW1, PAT1, FRAME1, CIRC1 or PITCHCIRC1</source>
-      <translation>PATTERN DEF acepta sólo POS1 (…), ROW1, PAT1, FRAME1, CIRC1 o PITCHCIRC1</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/pattern_block.py" />
-      <source>PATTERN DEF has no points</source>
-      <translation>PATTERN DEF no tiene puntos</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/pattern_block.py" />
-      <source>Unexpected word in {form}</source>
-      <translation>Palabra inesperada en {form}</translation>
-    </message>
-    <message>
       <location filename="core/language/klartext/plane_block.py" />
       <source>A PLANE block cannot contain both {first} and {second}.</source>
       <translation>Un bloque PLANE no puede contener a la vez {first} y {second}.</translation>
@@ -27437,61 +27492,6 @@
       <location filename="core/language/klartext/q_parameters.py" />
       <source>{kind} parameters go up to {kind2}{highest}.</source>
       <translation>Los parámetros {kind} llegan hasta {kind2}{highest}.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/refused_codes.py" />
-      <source>A contour formula (QC, DECLARE CONTOUR, SEL CONTOUR)</source>
-      <translation>Una fórmula de contorno (QC, DECLARE CONTOUR, SEL CONTOUR)</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/refused_codes.py" />
-      <source>A freely definable table (FN 26, FN 27, FN 28)</source>
-      <translation>Una tabla de libre definición (FN 26, FN 27, FN 28)</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/refused_codes.py" />
-      <source>A string (QS, DECLARE STRING, TOCHAR, SUBSTR, SYSSTR, TONUMB, INSTR, STRLEN, STRCOMP)</source>
-      <translation>Una cadena (QS, DECLARE STRING, TOCHAR, SUBSTR, SYSSTR, TONUMB, INSTR, STRLEN, STRCOMP)</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/refused_codes.py" />
-      <source>Assign the values to Q parameters in the program.</source>
-      <translation>Asigne los valores a parámetros Q en el programa.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/refused_codes.py" />
-      <source>List the pockets and islands with CONTOUR DEF or cycle 14.</source>
-      <translation>Enumere las cajeras y las islas con CONTOUR DEF o el ciclo 14.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/refused_codes.py" />
-      <source>Mill the face with L moves, and repeat them with CALL LBL and REP.</source>
-      <translation>Frese la cara con movimientos L y repítalos con CALL LBL y REP.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/refused_codes.py" />
-      <source>Mill the thread along a helix (CP with IPA and IZ), or cut it with a tapping cycle.</source>
-      <translation>Frese la rosca en una hélice (CP con IPA e IZ) o tállela con un ciclo de roscado.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/refused_codes.py" />
-      <source>Use cycle 21 with the data of cycle 20.</source>
-      <translation>Use el ciclo 21 con los datos del ciclo 20.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/refused_codes.py" />
-      <source>Use cycle 22 with the data of cycle 20.</source>
-      <translation>Use el ciclo 22 con los datos del ciclo 20.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/refused_codes.py" />
-      <source>Use cycle 24 with the data of cycle 20.</source>
-      <translation>Use el ciclo 24 con los datos del ciclo 20.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/refused_codes.py" />
-      <source>Write names in quotes, and use Q parameters for numbers.</source>
-      <translation>Escriba los nombres entre comillas y use parámetros Q para los números.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/structure_blocks.py" />
@@ -27774,14 +27774,39 @@
       <translation>{what} necesita un palpador, pero esta máquina no lo tiene.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/foreign_program.py" />
-      <source>Rewrite the program with the codes of this control; each message below names the code to use.</source>
-      <translation>Reescriba el programa con los códigos de este control; cada mensaje siguiente indica el código que debe usar.</translation>
+      <location filename="core/language/line_reading.py" />
+      <source>Type a decimal point.</source>
+      <translation>Escriba un punto decimal.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/foreign_program.py" />
-      <source>This program was written for a {control} control. TurnDesk runs OmniTurn programs.</source>
-      <translation>Este programa se escribió para un control {control}. TurnDesk ejecuta programas OmniTurn.</translation>
+      <location filename="core/language/line_reading.py" />
+      <source>a quotation mark, which this control does not allow</source>
+      <translation>unas comillas, que este control no permite</translation>
+    </message>
+    <message>
+      <location filename="core/language/line_reading.py" />
+      <source>a special decimal point, not the one on the keyboard</source>
+      <translation>un punto decimal especial, no el del teclado</translation>
+    </message>
+    <message>
+      <location filename="core/language/line_reading.py" />
+      <source>a special minus sign, not the one on the keyboard</source>
+      <translation>un signo menos especial, no el del teclado</translation>
+    </message>
+    <message>
+      <location filename="core/language/line_reading.py" />
+      <source>a special parenthesis, not the one on the keyboard</source>
+      <translation>un paréntesis especial, no el del teclado</translation>
+    </message>
+    <message>
+      <location filename="core/language/line_reading.py" />
+      <source>a special plus sign, not the one on the keyboard</source>
+      <translation>un signo más especial, no el del teclado</translation>
+    </message>
+    <message>
+      <location filename="core/language/line_reading.py" />
+      <source>an invisible character</source>
+      <translation>un carácter invisible</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/intended_code.py" />
@@ -28085,6 +28110,11 @@
     </message>
     <message>
       <location filename="core/language/omniturn/other_controls.py" />
+      <source>Rewrite the program with the codes of this control; each message below names the code to use.</source>
+      <translation>Reescriba el programa con los códigos de este control; cada mensaje siguiente indica el código que debe usar.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>This control has no boring cycle; boring is programmed as separate moves.</source>
       <translation>Este control no tiene ciclo de mandrinado; se programa con movimientos separados.</translation>
     </message>
@@ -28115,8 +28145,8 @@
     </message>
     <message>
       <location filename="core/language/omniturn/other_controls.py" />
-      <source>Type a decimal point.</source>
-      <translation>Escriba un punto decimal.</translation>
+      <source>This program was written for a {control} control. TurnDesk runs OmniTurn programs.</source>
+      <translation>Este programa se escribió para un control {control}. TurnDesk ejecuta programas OmniTurn.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/other_controls.py" />
@@ -28549,22 +28579,22 @@
       <translation>{word}: {letter} debe tener exactamente dos cifras.</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/array_values.py" />
+      <location filename="core/language/sinumerik/block_reader.py" />
       <source>REP accepts only a value and a number of elements</source>
       <translation>REP acepta sólo un valor y un número de elementos</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/array_values.py" />
+      <location filename="core/language/sinumerik/block_reader.py" />
       <source>The closing parenthesis of the list of values is missing</source>
       <translation>Falta el paréntesis de cierre de la lista de valores</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/array_values.py" />
+      <location filename="core/language/sinumerik/block_reader.py" />
       <source>Write ) after the last value.</source>
       <translation>Escriba ) después del último valor.</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/array_values.py" />
+      <location filename="core/language/sinumerik/block_reader.py" />
       <source>Write, for example, REP(0).</source>
       <translation>Escriba, por ejemplo, REP(0).</translation>
     </message>
@@ -29187,36 +29217,6 @@
       <location filename="core/language/source.py" />
       <source>{name} is stored as UTF-16.</source>
       <translation>{name} está guardado como UTF-16.</translation>
-    </message>
-    <message>
-      <location filename="core/language/typography.py" />
-      <source>a quotation mark, which this control does not allow</source>
-      <translation>unas comillas, que este control no permite</translation>
-    </message>
-    <message>
-      <location filename="core/language/typography.py" />
-      <source>a special decimal point, not the one on the keyboard</source>
-      <translation>un punto decimal especial, no el del teclado</translation>
-    </message>
-    <message>
-      <location filename="core/language/typography.py" />
-      <source>a special minus sign, not the one on the keyboard</source>
-      <translation>un signo menos especial, no el del teclado</translation>
-    </message>
-    <message>
-      <location filename="core/language/typography.py" />
-      <source>a special parenthesis, not the one on the keyboard</source>
-      <translation>un paréntesis especial, no el del teclado</translation>
-    </message>
-    <message>
-      <location filename="core/language/typography.py" />
-      <source>a special plus sign, not the one on the keyboard</source>
-      <translation>un signo más especial, no el del teclado</translation>
-    </message>
-    <message>
-      <location filename="core/language/typography.py" />
-      <source>an invisible character</source>
-      <translation>un carácter invisible</translation>
     </message>
     <message>
       <location filename="core/motion/axis_limits.py" />

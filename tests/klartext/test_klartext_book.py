@@ -16,7 +16,7 @@ from core.interpreter.shared.job_setup import ToolOffset
 from core.language.code_book import Entry
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.klartext import klartext_line, path_block, plane_block, q_parameters
-from core.language.klartext.refused_codes import INSTEAD_OF_CYCLE
+from core.language.klartext.klartext_faults import INSTEAD_OF_CYCLE
 from core.language.source import Dialect, Source
 from core.proving.prove_program import prove
 

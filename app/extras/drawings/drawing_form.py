@@ -10,10 +10,9 @@ from pathlib import Path
 
 from app.extras.drawings.drawing_plan import ALL, OWN, Asked, Plan, pictured
 from app.extras.shapes.shape_form import ShapeForm
-from core.extras.drawings.drawing_view import Front, Side, Zero
+from core.extras.drawings.drawing_view import UNITS, Front, Side, Zero
 from core.extras.drawings.part_against_drawing import Comparison
 from core.extras.drawings.profile_words import in_words
-from core.extras.drawings.unit_check import UNITS
 from core.extras.shapes.cutting_data import MATERIALS
 from core.extras.shapes.lines.code_lines import Code
 from core.extras.shapes.shape import Filled, Shape

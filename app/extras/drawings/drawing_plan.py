@@ -10,9 +10,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.desk.latest import Watch
-from core.extras.drawings.contour_walk import Net
+from core.extras.drawings.contour_walk import Net, limited_work
 from core.extras.drawings.drawing import Drawing, DrawingError
 from core.extras.drawings.drawing_view import (
+    UNITS,
     Front,
     Profile,
     Side,
@@ -23,11 +24,10 @@ from core.extras.drawings.drawing_view import (
     contours,
     on_lathe,
     profile,
+    wrong_unit,
 )
 from core.extras.drawings.profile_job import proposed_fields
 from core.extras.drawings.profile_program import ProfileProgram, profile_program
-from core.extras.drawings.unit_check import UNITS, wrong_unit
-from core.extras.drawings.work_limit import limited_work
 from core.extras.shapes.shape_fields import Value, Values
 from core.extras.shapes.shape_setting import Setting
 from core.geometry.lines_and_arcs import Arc, Element, Line

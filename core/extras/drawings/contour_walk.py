@@ -1,20 +1,58 @@
 """A contour picked out of a drawing: ends that nearly meet are joined, and its outer or inner side is walked.
 
-All points are (r, z) from the axis and the zero of Z, mm, as a lathe has them.
+All points are (r, z) from the axis and the zero of Z, mm, as a lathe has them. The processor time of the work
+on one drawing is limited.
 """
 
 from __future__ import annotations
 
 import math
+import time
 from bisect import bisect_right
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
 from core.extras.drawings.drawing import DrawingError
-from core.extras.drawings.work_limit import check_work
 from core.geometry.lines_and_arcs import Arc, Element, Line, Point, arc_between, intersections
 from core.message import Message
+
+MOST_SECONDS = 30.0  # of the processor, for one program out of a drawing
+
+
+@dataclass(frozen=True, slots=True)
+class _Limit:
+    begun: float
+    seconds: float
+    watch: Callable[[float], None]
+
+
+_limit: ContextVar[_Limit | None] = ContextVar("drawing_work", default=None)
+
+
+@contextmanager
+def limited_work(watch: Callable[[float], None], seconds: float = MOST_SECONDS) -> Iterator[None]:
+    """Limit the processor time that this thread spends in the block; ``watch`` gets the seconds spent."""
+    token = _limit.set(_Limit(time.thread_time(), seconds, watch))
+    try:
+        yield
+    finally:
+        _limit.reset(token)
+
+
+def check_work() -> None:
+    """Raise DrawingError at the limit, or what the watch raises; called in each loop over lines."""
+    limit = _limit.get()
+    if limit is None:
+        return
+    spent = time.thread_time() - limit.begun
+    limit.watch(spent)
+    if spent > limit.seconds:
+        words = "the drawing has too many parallel lines. Save only the contour of the part."
+        raise DrawingError(words, "too-slow")
+
 
 GAP = 0.02
 """mm: ends nearer than this are joined."""

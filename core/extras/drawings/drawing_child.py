@@ -13,8 +13,7 @@ import sys
 import warnings
 from pathlib import Path
 
-from core.extras.drawings.drawing import DrawingError
-from core.extras.drawings.drawing_data import drawing_data, error_data
+from core.extras.drawings.drawing import DrawingError, drawing_data, error_data
 from core.extras.drawings.drawing_file import read_drawing
 
 

@@ -11,8 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from core.extras.drawings.drawing import Drawing, DrawingError
-from core.extras.drawings.drawing_data import drawing_of
+from core.extras.drawings.drawing import Drawing, DrawingError, drawing_of
 from core.input_file import failures_as
 from core.message import Message
 

@@ -9,8 +9,14 @@ from typing import NamedTuple
 
 from core.extras.drawings.drawing import DrawingError
 from core.extras.drawings.drawing_view import Profile, Side
-from core.extras.drawings.nose_reach import reached_by_nose
-from core.extras.drawings.turning_contour import Groove, TurningContour, joined, reach_of, turning_contour
+from core.extras.drawings.turning_contour import (
+    Groove,
+    TurningContour,
+    joined,
+    reach_of,
+    reached_by_nose,
+    turning_contour,
+)
 from core.extras.shapes.contour import Row
 from core.extras.shapes.pieces import setting_at
 from core.extras.shapes.shape import Filled, Shape, filled

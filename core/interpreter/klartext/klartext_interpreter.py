@@ -31,7 +31,7 @@ from core.language.diagnostics import ProgramError
 from core.language.klartext import klartext_nodes as nodes
 from core.language.klartext.canonical_text import name_text
 from core.language.klartext.klartext_faults import FILE_MISSING, LABEL, unsupported
-from core.language.klartext.table_file import Row
+from core.language.klartext.named_files import Row
 from core.message import Message
 
 

@@ -18,7 +18,7 @@ from core.interpreter.shared.units import MM_PER_INCH
 from core.interpreter.shared.working_plane import Angles, Corners, PlaneSystem, Swivel
 from core.language.diagnostics import AT_THE_STOP, Diagnostic, ProgramError, Severity, resting_on
 from core.language.klartext.klartext_faults import fault
-from core.language.klartext.table_file import Row
+from core.language.klartext.named_files import Row
 from core.message import Message, worded
 
 ORIGIN: Vector = (0.0, 0.0, 0.0)

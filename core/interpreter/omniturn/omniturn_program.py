@@ -21,7 +21,7 @@ from core.interpreter.omniturn.omniturn_statement import (
 from core.interpreter.shared.diagnostic_log import without_repeats
 from core.language.diagnostics import Diagnostic, ProgramError, Severity, refusal
 from core.language.omniturn import Line, lex_line
-from core.language.omniturn.foreign_program import recognize
+from core.language.omniturn.other_controls import recognize
 from core.language.omniturn.plane_switching_lines import (
     PlaneLine,
     ends_program,

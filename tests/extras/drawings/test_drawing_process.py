@@ -10,8 +10,7 @@ from pathlib import Path
 import pytest
 
 from core.extras.drawings import drawing_child, drawing_process
-from core.extras.drawings.drawing import Drawing, DrawingError, Drawn
-from core.extras.drawings.drawing_data import drawing_data, drawing_of, error_data
+from core.extras.drawings.drawing import Drawing, DrawingError, Drawn, drawing_data, drawing_of, error_data
 from core.extras.drawings.drawing_file import read_drawing
 from core.extras.drawings.drawing_process import Limits, read_in_process
 from core.geometry.lines_and_arcs import Arc, Line

@@ -9,11 +9,10 @@ import pytest
 
 from app.desk.latest import AbandonedError
 from app.extras.drawings.drawing_plan import Asked, Planner
-from core.extras.drawings.contour_walk import nets, outer_side
+from core.extras.drawings.contour_walk import check_work, limited_work, nets, outer_side
 from core.extras.drawings.drawing import Drawing, DrawingError, Drawn
 from core.extras.drawings.drawing_file import read_drawing
 from core.extras.drawings.drawing_view import Side, View, axis_named, contours, profile
-from core.extras.drawings.work_limit import check_work, limited_work
 from core.extras.shapes.shape_setting import Setting
 from core.geometry.lines_and_arcs import Line
 from tests.coded import raises_code

@@ -28,6 +28,7 @@ from core.language.klartext.klartext_faults import (
     CYCLE_MISSING,
     CYCLE_UNKNOWN,
     INPUT_VALUE,
+    INSTEAD_OF_CYCLE,
     syntax,
     unsupported,
 )
@@ -43,8 +44,7 @@ from core.language.klartext.klartext_nodes import (
     Positioning,
     Value,
 )
-from core.language.klartext.refused_codes import INSTEAD_OF_CYCLE
-from core.language.klartext.table_file import Row
+from core.language.klartext.named_files import Row
 from core.message import Message
 
 _PRESET, _CIRCLE, _ROWS = 247, 220, 221

@@ -17,8 +17,7 @@ from core.interpreter.sinumerik.sinumerik_state import NO_OFFSET, State, motion_
 from core.language.diagnostics import Diagnostic, refusal
 from core.language.sinumerik.program_jumps import Steering
 from core.language.sinumerik.sinumerik_lexer import lex_line
-from core.language.sinumerik.sinumerik_words import CORNERS, Line
-from core.language.sinumerik.third_axis_name import OWN
+from core.language.sinumerik.sinumerik_words import CORNERS, OWN, Line
 from core.language.source import Source
 from core.message import Message
 from core.tool_edges import edge_name

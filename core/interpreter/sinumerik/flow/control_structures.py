@@ -12,8 +12,7 @@ from core.language.formulas import Formula, Parameter
 from core.language.sinumerik.program_jumps import Defined, Jump, Steering
 from core.language.sinumerik.sinumerik_alarms import FIRST_INDEX, NESTING, NO_TARGET, NOT_DEFINED
 from core.language.sinumerik.sinumerik_lexer import lex_line
-from core.language.sinumerik.sinumerik_words import Line
-from core.language.sinumerik.third_axis_name import OWN
+from core.language.sinumerik.sinumerik_words import OWN, Line
 from core.language.source import Source
 from core.message import Message
 

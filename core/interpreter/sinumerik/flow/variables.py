@@ -11,7 +11,7 @@ from core.interpreter.shared.job_setup import ToolOffset
 from core.interpreter.shared.modal_state import Modal
 from core.language.diagnostics import ProgramError
 from core.language.formulas import Formula, Parameter, indices_of
-from core.language.sinumerik.array_values import Values
+from core.language.sinumerik.block_reader import Values
 from core.language.sinumerik.sinumerik_alarms import FIRST_INDEX, NOT_DEFINED, OTHER_INDEX
 from core.language.sinumerik.sinumerik_words import MOST_R
 from core.message import Message

@@ -1,13 +1,13 @@
-"""Tables of the control, their rows by number: datums (.D), points (.PNT).
+"""Files that a Klartext program names: other programs, and tables of datums (.D) and points (.PNT).
 
-``BEGIN NAME.D MM``, a line with the names of the columns, a line a row below their names, ``[END]``. A cell
-stands from under its column's name to the next one; an empty one tells nothing.
+A table has ``BEGIN NAME.D MM``, a line with the names of the columns, a line a row below their names, and
+``[END]``. A cell stands from under its column's name to the next one; an empty one tells nothing.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from core.language.source import Source
 
@@ -59,3 +59,35 @@ def _number(cell: str) -> float | None:
         return float(cell.replace(",", "."))
     except ValueError:
         return None
+
+
+ENDING = ".H"
+_CALL = re.compile(
+    r"(?:CALL\s+PGM|SEL\s+(?:PGM|TABLE|PATTERN))\s+(.+)|CYCL\s+DEF\s+12\.1\s+(?:PGM\s*|%\s*)?(.+)",
+    re.IGNORECASE,
+)
+_IN_TEXT = re.compile(r'"([^"]*\.(?:H|D|PNT))"', re.IGNORECASE)  # of a text that may name a file
+_OF_CONTOURS = re.compile(r"CONTOUR\s+DEF\s", re.IGNORECASE)
+_QUOTED = re.compile(r'"([^"]+)"')
+_HINTS = ("PGM", "TABLE", "PATTERN", "12.1", "CONTOUR")
+
+
+def called_programs(source: Source) -> Iterator[str]:
+    """Names of the files that the program calls or selects, in capitals."""
+    for text in source.lines:
+        if not any(hint in text.upper() for hint in _HINTS):
+            continue
+        code = text.split(";", 1)[0]
+        if match := _CALL.search(code):
+            yield file_name(next(filter(None, match.groups())))
+        if _OF_CONTOURS.search(code):
+            yield from (file_name(quoted) for quoted in _QUOTED.findall(code))
+            continue
+        for quoted in _IN_TEXT.findall(code):
+            yield file_name(quoted)
+
+
+def file_name(named: str) -> str:
+    r"""The file of a name as written: ``TNC:\PARTS\HOLE`` is HOLE.H."""
+    name = named.strip().strip('"').replace("\\", "/").rsplit("/", 1)[-1].rsplit(":", 1)[-1].strip().upper()
+    return name if "." in name else name + ENDING
