@@ -21151,7 +21151,7 @@
     <message>
       <location filename="core/interpreter/klartext/cycles/older_cycles.py" />
       <source>The slot of cycle 3 has no length.</source>
-      <translation type="unfinished" />
+      <translation>La ranura del ciclo 3 no tiene longitud.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycles/older_cycles.py" />
@@ -21176,7 +21176,7 @@
     <message>
       <location filename="core/interpreter/klartext/cycles/older_cycles.py" />
       <source>Write the length of the slot in line 3.4.</source>
-      <translation type="unfinished" />
+      <translation>Escriba la longitud de la ranura en la línea 3.4.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycles/pocket_cycles.py" />
