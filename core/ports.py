@@ -80,9 +80,9 @@ class BlockState(NamedTuple):
 class BlockSink(Protocol):
     """A controller with a planner of its own. Nothing here waits.
 
-    ``caps`` tells what it can do of ``core.interpreter.machine_requirements``; what it cannot is refused
-    before the start. ``ahead`` is how many seconds of motion it may be given beyond the block that it
-    moves: it goes on by itself when the host is lost.
+    ``caps`` tells what it can do of ``core.interpreter.shared.machine_requirements``; what it cannot is
+    refused before the start. ``ahead`` is how many seconds of motion it may be given beyond the block that
+    it moves: it goes on by itself when the host is lost.
     """
 
     ahead: float

@@ -53,7 +53,7 @@ def _texts(
     timeline: Timeline, source: Source, figures: ModuleType, *, json_wanted: bool
 ) -> Iterator[tuple[int, str]]:
     """What is written, and the number of its last block; many moves at once where the program has such."""
-    from core.interpreter.elementary_blocks import TimedSeries
+    from core.interpreter.shared.elementary_blocks import TimedSeries
     from core.proving.program_timeline import timed_series
 
     for each in timed_series(timeline):

@@ -14,7 +14,7 @@ from core.language.source import Dialect, dialect_of
 from core.message import CodedError, Message, error_code
 
 if TYPE_CHECKING:
-    from core.interpreter.job_setup import Setup
+    from core.interpreter.shared.job_setup import Setup
     from core.language.source import Source
     from core.machine.machine_model import Machine
 

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from app.cli.proofs.proof_job import FittingJobs, OtherOffsets, ProofJob
     from app.cli.proofs.proof_work import Findings
     from app.cli.proofs.report_file import ReportFile
-    from core.interpreter.job_setup import Setup
+    from core.interpreter.shared.job_setup import Setup
     from core.language.source import Source
     from core.proving.proof_report import PartReport, Report
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from app.desk.command_errors import as_command_error
 from app.desk.data_folder import data_folder
 from app.desk.kept_part import NOTHING_KEPT, KeptPart, kept_part
-from core.interpreter.job_setup import ToolOffset
+from core.interpreter.shared.job_setup import ToolOffset
 from core.machine.machine_model import Machine
 from core.part.stock import Clamping
 from core.part.tool_shape import ToolShape

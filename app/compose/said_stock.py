@@ -14,7 +14,7 @@ from core.message import Message
 from core.part.stock_spec import StockError, profile_stock, stock_spec
 
 if TYPE_CHECKING:
-    from core.interpreter.job_setup import Setup
+    from core.interpreter.shared.job_setup import Setup
     from core.language.source import Source
     from core.machine.machine_model import Machine
     from core.part.stock import Stock

@@ -50,7 +50,7 @@ from core.executor.executor import Executor
 from core.executor.recorder import Recorder, recorded_of
 from core.executor.safety.watchdog import WATCHDOG, ExecutorThread, Watchdog
 from core.executor.snapshot import Event, InterruptedJob, Snapshot
-from core.interpreter.modal_state import Modal
+from core.interpreter.shared.modal_state import Modal
 from core.language.source import Dialect, usual_ending
 from core.machine.desk_tables import BackupTable
 from core.machine.machine_model import Machine

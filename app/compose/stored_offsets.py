@@ -22,7 +22,7 @@ from app.offsets.offsets_in_force import (
     tool_offsets,
     with_mill,
 )
-from core.interpreter.job_setup import SecondaryOffset, Setup, ToolOffset, ZeroOffset
+from core.interpreter.shared.job_setup import SecondaryOffset, Setup, ToolOffset, ZeroOffset
 from core.message import Message
 from core.store.store_file import has_store
 from core.store.store_rows import SecondaryRow, ToolRow, ZeroRow

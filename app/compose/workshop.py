@@ -25,11 +25,11 @@ from app.part.part_sheet import PartSheet
 from app.searchto.searchto_model import SearchtoModel
 from core.executor.job import Job, Proof, make_job
 from core.executor.snapshot import Snapshot
-from core.interpreter.checkpoint import Begin, Checkpoint
 from core.interpreter.dialects import code_book
-from core.interpreter.job_setup import ToolOffset
-from core.interpreter.modal_state import Modal
 from core.interpreter.restart.restart_approach import Choices
+from core.interpreter.shared.checkpoint import Begin, Checkpoint
+from core.interpreter.shared.job_setup import ToolOffset
+from core.interpreter.shared.modal_state import Modal
 from core.language.diagnostics import Diagnostic
 from core.language.source import Dialect, Source, SourceError, load_source
 from core.machine.machine_model import Machine

@@ -10,7 +10,7 @@ from core.executor.hand_motion.jog_line import Direction
 from core.executor.snapshot import BY_HAND, Snapshot
 from core.geometry.rotary_axes import Kinematics, Rotary
 from core.geometry.rotation_frames import Matrix, product, turned
-from core.interpreter.working_plane import PlaneSystem
+from core.interpreter.shared.working_plane import PlaneSystem
 from core.message import Message
 
 SLIDES = "XYZ"

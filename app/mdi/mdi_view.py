@@ -26,7 +26,7 @@ from app.screen.look import RIGHT, Look, Painter
 from app.screen.page_base import Host, KeyActions, ModelPage
 from app.screen.panel import Panel, Press, Shown
 from core.executor.snapshot import CYCLE, Snapshot, Starts, State
-from core.interpreter.checkpoint import Checkpoint
+from core.interpreter.shared.checkpoint import Checkpoint
 from core.language.diagnostics import Diagnostic, Severity
 
 # --- the line -----------------------------------------------------------------------------------------

@@ -11,7 +11,7 @@ from app.offsets.offsets_in_force import MillOffsets, with_mill
 from core.executor.snapshot import Snapshot, State
 from core.geometry.rotary_axes import DatumPreset, Kinematics
 from core.geometry.rotation_frames import Vector
-from core.interpreter.job_setup import Setup
+from core.interpreter.shared.job_setup import Setup
 from core.message import Message
 from core.production.tool_life import ToolLife
 

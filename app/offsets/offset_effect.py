@@ -19,7 +19,7 @@ from app.desk.translation import tr
 from app.offsets.offset_table import OffsetTable
 from app.offsets.offsets_in_force import secondary_offsets, tool_offsets
 from core.executor.job import Job
-from core.interpreter.job_setup import SecondaryOffset, ToolOffset
+from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
 from core.message import Message
 from core.store.store_rows import Change, Kind, SecondaryRow, ToolRow
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
-from core.interpreter.job_setup import MillTool, SecondaryOffset, Setup, ToolOffset
+from core.interpreter.shared.job_setup import MillTool, SecondaryOffset, Setup, ToolOffset
 from core.language.sinumerik.sinumerik_words import MOST_R
 from core.store.store_rows import MillRow, PresetRow, SecondaryRow, ToolRow
 

@@ -29,7 +29,7 @@ from app.path.polyline import (
 from app.working_plane.plane_scene import Scene, SceneBuilder
 from core.geometry.lines_and_arcs import arc_sweep
 from core.geometry.virtual_mill import Face, Side
-from core.interpreter.elementary_blocks import Block, Kind, Series, TimedSeries
+from core.interpreter.shared.elementary_blocks import Block, Kind, Series, TimedSeries
 
 if TYPE_CHECKING:
     from core.geometry.virtual_mill import PlaneMove, Spot

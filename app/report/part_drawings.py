@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from html import escape
 
-from core.interpreter.elementary_blocks import Kind
+from core.interpreter.shared.elementary_blocks import Kind
 from core.part.insert_codes import InsertCodeError
 from core.part.stock import Clamping, Stock
 from core.part.tool_outline import ToolOutline, outline

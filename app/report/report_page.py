@@ -20,7 +20,7 @@ from core.part.tool_shape import ToolShape
 from core.tool_edges import edge_name
 
 if TYPE_CHECKING:
-    from core.interpreter.job_setup import Setup
+    from core.interpreter.shared.job_setup import Setup
     from core.machine.machine_model import Machine
     from core.proving.proof_report import PartReport, Report
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import dataclass, field
 
-from core.interpreter.actions import ProgramStop
-from core.interpreter.elementary_blocks import Block, TimedSeries
-from core.interpreter.working_plane import Corners
+from core.interpreter.shared.actions import ProgramStop
+from core.interpreter.shared.elementary_blocks import Block, TimedSeries
+from core.interpreter.shared.working_plane import Corners
 from core.part.turned_part import Piece
 from core.proving.part_proof import PartProof
 from core.proving.program_timeline import MotionSpan, RestSpan

@@ -15,8 +15,6 @@ from app.path.path_aspects import DrawnLeg as Drawn
 from core.executor.job import Job
 from core.executor.snapshot import CONTROL_LOST, Snapshot
 from core.geometry.rotary_axes import Kinematics
-from core.interpreter.actions import Coolant, Output, SpindleLock, SpindleOrient, SpindleRun
-from core.interpreter.checkpoint import ApproachStep, AxesLeg, Begin, Checkpoint, FunctionStep, Leg
 from core.interpreter.restart.cut_record import CutRecord
 from core.interpreter.restart.mill_approach import begin_on_mill, goal_of, why_no_way
 from core.interpreter.restart.restart_approach import (
@@ -29,6 +27,8 @@ from core.interpreter.restart.restart_approach import (
 )
 from core.interpreter.restart.restart_point import Called, Interruption, LoopPass, RestartPoint
 from core.interpreter.restart.restart_retract import Retract, ToolPlace
+from core.interpreter.shared.actions import Coolant, Output, SpindleLock, SpindleOrient, SpindleRun
+from core.interpreter.shared.checkpoint import ApproachStep, AxesLeg, Begin, Checkpoint, FunctionStep, Leg
 from core.message import Message
 
 # --- the way out of the part --------------------------------------------------------------------------

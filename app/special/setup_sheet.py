@@ -10,8 +10,8 @@ from app.desk.translation import tr
 from app.report.run_record import RunRecord, Stop, ToolTime
 from core.geometry.rotary_axes import DatumPreset
 from core.interpreter.dialects import ReadProgram
-from core.interpreter.job_setup import MillTool, SecondaryOffset, Setup, ToolOffset, ZeroOffset
-from core.interpreter.working_plane import Corners
+from core.interpreter.shared.job_setup import MillTool, SecondaryOffset, Setup, ToolOffset, ZeroOffset
+from core.interpreter.shared.working_plane import Corners
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Dialect
 from core.machine.machine_model import Machine

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from app.working_plane.plane_scene import Scene
     from core.executor.snapshot import Snapshot
     from core.geometry.rotary_axes import Kinematics
-    from core.interpreter.working_plane import Swivel
+    from core.interpreter.shared.working_plane import Swivel
 
 _AXES = ("A", "B", "C")
 

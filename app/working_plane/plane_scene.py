@@ -17,13 +17,13 @@ import numpy.typing as npt
 
 from core.geometry.rotation_frames import applied, plus
 from core.geometry.working_plane import HelixMove
-from core.interpreter.elementary_blocks import Kind
+from core.interpreter.shared.elementary_blocks import Kind
 
 if TYPE_CHECKING:
     from core.geometry.rotary_axes import Kinematics
     from core.geometry.rotation_frames import Vector
-    from core.interpreter.elementary_blocks import Block
-    from core.interpreter.working_plane import Corners, Swivel
+    from core.interpreter.shared.elementary_blocks import Block
+    from core.interpreter.shared.working_plane import Corners, Swivel
 
 FloatArray = npt.NDArray[np.float64]
 _CHORD = 6.0  # degrees of an arc that are drawn as one line

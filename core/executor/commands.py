@@ -14,7 +14,7 @@ from core.executor.hand_motion.drive_test import DriveTestPath
 from core.executor.hand_motion.jog_line import Direction
 from core.executor.job import Job, Proof
 from core.executor.snapshot import InterruptedJob, Starts
-from core.interpreter.job_setup import SecondaryOffset, ToolOffset
+from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
 
 SAME: Final = 0.01  # mm: a verdict for a position farther away than this does not count
 

@@ -10,10 +10,10 @@ from core.executor.commands import Clearance
 from core.executor.job import Job, Proof
 from core.executor.machine_context import MachineContext
 from core.executor.snapshot import Alarm, Event, InterruptedJob, Starts, State
-from core.interpreter.job_setup import SecondaryOffset, ToolOffset
-from core.interpreter.kept_pass import KeptPass
-from core.interpreter.modal_state import Modal
-from core.interpreter.omniturn.carry_over import after_end
+from core.interpreter.omniturn.setup.carry_over import after_end
+from core.interpreter.shared.checkpoint import KeptPass
+from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
+from core.interpreter.shared.modal_state import Modal
 from core.message import Message
 
 

@@ -38,7 +38,7 @@ from core.executor.snapshot_publisher import Publisher
 from core.executor.spindle_control import SpindleControl
 from core.executor.start_conditions import guard_open
 from core.faults import TrippedError
-from core.interpreter.job_setup import Setup
+from core.interpreter.shared.job_setup import Setup
 from core.machine.machine_model import Machine
 from core.message import Message
 from core.motion.axis_limits import MotionError

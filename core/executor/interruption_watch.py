@@ -11,8 +11,8 @@ from core.executor.job import Job
 from core.executor.machine_context import MachineContext
 from core.executor.program_motion.cycle import Cycle
 from core.executor.snapshot import CONTROL_LOST, STOPPED, InterruptedJob, Starts, State, utc_now
-from core.interpreter.checkpoint import Begin
-from core.interpreter.elementary_blocks import Block
+from core.interpreter.shared.checkpoint import Begin
+from core.interpreter.shared.elementary_blocks import Block
 from core.language.source import Dialect
 from core.message import Message
 from core.tool_edges import edge_name

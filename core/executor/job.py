@@ -14,14 +14,13 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from core.executor.raised_alarm import AlarmError
-from core.interpreter.checkpoint import Checkpoint
 from core.interpreter.dialects import ReadProgram, line_alone
-from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.job_setup import Setup
-from core.interpreter.machine_requirements import Need
-from core.interpreter.modal_state import Modal
-from core.interpreter.omniturn.carry_over import RAPID, UNITS, inherited_settings
-from core.interpreter.path_sections import SectionEnds
+from core.interpreter.omniturn.setup.carry_over import RAPID, UNITS, inherited_settings
+from core.interpreter.shared.checkpoint import Checkpoint
+from core.interpreter.shared.elementary_blocks import Block, Kind, SectionEnds
+from core.interpreter.shared.job_setup import Setup
+from core.interpreter.shared.machine_requirements import Need
+from core.interpreter.shared.modal_state import Modal
 from core.language.diagnostics import Diagnostic, ProgramError, Severity
 from core.language.source import Source
 from core.machine.machine_model import Machine

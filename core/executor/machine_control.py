@@ -34,8 +34,8 @@ from core.executor.snapshot import (
     demand_allowed,
 )
 from core.executor.start_conditions import SPINDLE, Announcement, Starting
-from core.interpreter.job_setup import Setup
-from core.interpreter.modal_state import Modal
+from core.interpreter.shared.job_setup import Setup
+from core.interpreter.shared.modal_state import Modal
 from core.message import Message
 from core.ports import Unknown
 

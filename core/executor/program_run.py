@@ -24,9 +24,9 @@ from core.executor.program_motion.controller_motion import ControllerMotion
 from core.executor.program_motion.cycle import Cycle, PathMotion
 from core.executor.program_motion.setpoint_motion import SetpointMotion
 from core.executor.snapshot import GIVEN_UP, LINES, InterruptedJob, Starts, State
-from core.interpreter.actions import ProgramEnd
-from core.interpreter.job_setup import Setup
-from core.interpreter.modal_state import Modal
+from core.interpreter.shared.actions import ProgramEnd
+from core.interpreter.shared.job_setup import Setup
+from core.interpreter.shared.modal_state import Modal
 from core.language.source import Dialect
 from core.message import Message
 from core.tool_edges import tool_of

@@ -15,9 +15,9 @@ from operator import attrgetter
 from typing import Any, NamedTuple
 
 from core.alarms import Code
-from core.interpreter.kept_pass import KeptPass
-from core.interpreter.modal_state import Modal
-from core.interpreter.working_plane import Swivel
+from core.interpreter.shared.checkpoint import KeptPass
+from core.interpreter.shared.modal_state import Modal
+from core.interpreter.shared.working_plane import Swivel
 from core.message import Message
 from core.ports import FloatArray, Unknown
 from core.tool_edges import edge_name

@@ -10,10 +10,10 @@ from core.executor.machine_context import MachineContext
 from core.executor.machine_control import MachineControl
 from core.executor.program_motion.cycle import Cycle
 from core.executor.snapshot import Snapshot, Starts, State
-from core.interpreter.actions import ProgramEnd, ProgramStop
-from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.modal_state import Modal
-from core.interpreter.working_plane import Swivel
+from core.interpreter.shared.actions import ProgramEnd, ProgramStop
+from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.modal_state import Modal
+from core.interpreter.shared.working_plane import Swivel
 from core.ports import AxisSample
 
 

@@ -15,7 +15,7 @@ from core.executor.raised_alarm import AlarmError
 from core.executor.spindle_orientation import Orientation
 from core.faults import code_of
 from core.geometry.surface_speed import surface_rpm
-from core.interpreter.elementary_blocks import Block
+from core.interpreter.shared.elementary_blocks import Block
 from core.machine.machine_model import SpindleModel
 from core.message import Message
 from core.ports import Spindle, SpindleHold, SpindleOrientation

@@ -15,9 +15,9 @@ from core.executor.control_status import ControlStatus, modal_as_machine
 from core.executor.job import Job, Proof, outdated
 from core.executor.machine_context import MachineContext
 from core.executor.snapshot import Starts, State
-from core.interpreter.checkpoint import Begin
-from core.interpreter.machine_requirements import ORIENT, THREAD
-from core.interpreter.modal_state import Modal
+from core.interpreter.shared.checkpoint import Begin
+from core.interpreter.shared.machine_requirements import ORIENT, THREAD
+from core.interpreter.shared.modal_state import Modal
 from core.message import Message
 from core.tool_edges import edge_name
 

@@ -6,12 +6,12 @@ from collections.abc import Callable, Mapping
 from functools import cache, cached_property
 from typing import TYPE_CHECKING
 
-from core.interpreter.interpretation import Interpretation, RefusedPass
-from core.interpreter.job_setup import Setup
+from core.interpreter.shared.interpretation import Interpretation, RefusedPass
+from core.interpreter.shared.job_setup import Setup
 from core.language.source import Dialect, Source
 
 if TYPE_CHECKING:
-    from core.interpreter.omniturn.conditional_calls import Branching, Guide
+    from core.interpreter.omniturn.flow.conditional_calls import Branching, Guide
     from core.interpreter.omniturn.omniturn_program import Program
     from core.language.code_book import CodeBook
 
@@ -121,7 +121,7 @@ NAMES = {Dialect.OMNITURN: "OmniTurn", Dialect.SINUMERIK: "SINUMERIK", Dialect.K
 def code_book(dialect: Dialect) -> CodeBook:
     """All codes of a language, with examples; read from its files when it is first needed."""
     if dialect is Dialect.OMNITURN:
-        from core.interpreter.omniturn.omniturn_book import book
+        from core.interpreter.omniturn.codes.omniturn_book import book
 
         return book()
     from core.language.code_book_files import BOOKS, read_book
@@ -164,7 +164,7 @@ class ReadProgram:
         read = self._begin
         if not isinstance(read, _OmniTurn) or not read.program.asks:
             return None
-        from core.interpreter.omniturn.conditional_calls import Branching
+        from core.interpreter.omniturn.flow.conditional_calls import Branching
 
         return Branching(read.program.for_one_pass(), setup, guide)
 

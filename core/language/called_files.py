@@ -37,7 +37,7 @@ def _calls_of(dialect: Dialect) -> Callable[[Source], Iterator[str]] | None:
 
         return called_files
     if dialect is Dialect.KLARTEXT:
-        from core.language.klartext.called_programs import called_programs
+        from core.language.klartext.named_files import called_programs
 
         return called_programs
     return None

@@ -1,7 +1,7 @@
 """Formulas of a program: numbers, parameters, operators with their precedence, functions.
 
 Each language states its own ``Grammar``; what comes of the text is the same for all, and is worked out by
-``core.interpreter.formula_values``.
+``core.interpreter.shared.formula_values``.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What the readers of all languages share: a place in a line, blanks, comments, the form of numbers."""
+"""What the readers of all languages share: a place in a line, blanks, comments, numbers, typed characters."""
 
 from __future__ import annotations
 
@@ -60,3 +60,32 @@ def after_signs(text: str, at: int, signs: int) -> int:
         signs -= not text[at].isspace()
         at += 1
     return at
+
+
+_SIGNS: dict[str, tuple[str, str]] = {
+    **dict.fromkeys("−–—‐‑‒﹣－", ("a special minus sign, not the one on the keyboard", "Type -.")),
+    **dict.fromkeys("＋﹢", ("a special plus sign, not the one on the keyboard", "Type +.")),
+    **dict.fromkeys(
+        "．·‧", ("a special decimal point, not the one on the keyboard", "Type a decimal point.")
+    ),
+    **dict.fromkeys(
+        "‘’‚“”„\"'",
+        ("a quotation mark, which this control does not allow", ("Remove this text from the program.")),
+    ),
+    **dict.fromkeys("（［【", ("a special parenthesis, not the one on the keyboard", "Type (.")),
+    **dict.fromkeys("）］】", ("a special parenthesis, not the one on the keyboard", "Type ).")),
+    **dict.fromkeys(
+        "\u200b\u200c\u200d\u2060\ufeff\u00ad",
+        ("an invisible character", ("Remove this text from the program.")),
+    ),
+}
+
+
+def typed(sign: str) -> tuple[str, str] | None:
+    """What a character is, and what to type instead; None where it is none of these."""
+    return _SIGNS.get(sign)
+
+
+def ascii_upper(text: str) -> str:
+    """In capitals, of the same length: ``ß`` and ``ı`` are nothing that could turn into words."""
+    return text.upper() if text.isascii() else "".join(s.upper() if s.isascii() else s for s in text)

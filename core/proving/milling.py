@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from core.interpreter.elementary_blocks import Block
+from core.interpreter.shared.elementary_blocks import Block
 from core.part.milled_part import MilledPart
 from core.part.polar_field import PolarField, Taken, in_order, turned_field
 from core.part.ray_cuts import FloatArray, axial_path, locked_path, plane_path, radial_path

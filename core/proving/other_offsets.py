@@ -17,7 +17,7 @@ from itertools import pairwise
 from typing import NamedTuple
 
 from core.interpreter.dialects import ReadProgram
-from core.interpreter.job_setup import Setup
+from core.interpreter.shared.job_setup import Setup
 from core.language.diagnostics import Diagnostic
 from core.language.source import Source
 from core.machine.machine_model import Machine

@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from core.interpreter.actions import Collet
+from core.interpreter.shared.actions import Collet
 from core.message import Message
 from core.part.solid_bodies import Round, ToolBody, chuck_solid
 from core.part.solid_picture import Scene

@@ -8,8 +8,8 @@ from functools import partial
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from core.interpreter.actions import AskInput, Collet, Output, ProgramStop, ToolChange, WaitInput
-from core.interpreter.modal_state import Modal
+from core.interpreter.shared.actions import AskInput, Collet, Output, ProgramStop, ToolChange, WaitInput
+from core.interpreter.shared.modal_state import Modal
 from core.message import Message
 from core.part.cutter import Cutter, Neighbours
 from core.part.polar_field import NOTHING

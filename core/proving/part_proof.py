@@ -9,7 +9,7 @@ from collections.abc import Callable, Collection, Iterable
 from dataclasses import replace
 
 from core.interpreter.dialects import ReadProgram
-from core.interpreter.job_setup import Setup
+from core.interpreter.shared.job_setup import Setup
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Source
 from core.machine.machine_model import Machine

@@ -15,14 +15,14 @@ from dataclasses import dataclass, field, replace
 from itertools import count
 from typing import NamedTuple
 
-from core.interpreter.actions import AskInput
 from core.interpreter.dialects import ReadProgram
-from core.interpreter.job_setup import Setup
-from core.interpreter.machine_requirements import first_needs
-from core.interpreter.omniturn.conditional_calls import Branching
-from core.interpreter.omniturn.loops_and_subroutines import terminal
+from core.interpreter.omniturn.flow.conditional_calls import Branching
+from core.interpreter.omniturn.flow.loops_and_subroutines import terminal
 from core.interpreter.omniturn.omniturn_program import Program
 from core.interpreter.omniturn.omniturn_statement import Statement
+from core.interpreter.shared.actions import AskInput
+from core.interpreter.shared.job_setup import Setup
+from core.interpreter.shared.machine_requirements import first_needs
 from core.language.diagnostics import Diagnostic, Severity
 from core.machine.machine_model import Machine
 from core.message import Message

@@ -10,7 +10,8 @@ from dataclasses import replace
 from itertools import chain
 from typing import NamedTuple
 
-from core.interpreter.actions import (
+from core.interpreter.dialects import ReadProgram
+from core.interpreter.shared.actions import (
     Action,
     Collet,
     Dwell,
@@ -20,11 +21,9 @@ from core.interpreter.actions import (
     SpindleRun,
     SpindleStop,
 )
-from core.interpreter.dialects import ReadProgram
-from core.interpreter.elementary_blocks import Block, Kind, Series, TimedSeries
-from core.interpreter.interpretation import Interpretation
-from core.interpreter.job_setup import Setup
-from core.interpreter.path_sections import SectionEnds
+from core.interpreter.shared.elementary_blocks import Block, Kind, SectionEnds, Series, TimedSeries
+from core.interpreter.shared.interpretation import Interpretation
+from core.interpreter.shared.job_setup import Setup
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Source
 from core.machine.machine_model import Machine

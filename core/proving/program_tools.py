@@ -6,9 +6,9 @@ import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from core.interpreter.actions import AskInput, Collet, Output, ProgramStop, ToolChange, WaitInput
-from core.interpreter.elementary_blocks import Kind
-from core.interpreter.units import MM_PER_INCH
+from core.interpreter.shared.actions import AskInput, Collet, Output, ProgramStop, ToolChange, WaitInput
+from core.interpreter.shared.elementary_blocks import Kind
+from core.interpreter.shared.units import MM_PER_INCH
 from core.message import Message
 from core.part.cutter import Cutter, Side
 from core.part.stock import Clamping, Point, Stock

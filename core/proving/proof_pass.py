@@ -12,9 +12,9 @@ import numpy as np
 import numpy.typing as npt
 
 from core.geometry.lines_and_arcs import arc_sweep
-from core.interpreter.actions import Dwell, ProgramStop
-from core.interpreter.elementary_blocks import Block, Floats, Kind, Series
-from core.interpreter.machine_requirements import Need, first_needs, needs_of
+from core.interpreter.shared.actions import Dwell, ProgramStop
+from core.interpreter.shared.elementary_blocks import Block, Floats, Kind, Series
+from core.interpreter.shared.machine_requirements import Need, first_needs, needs_of
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Dialect, Source
 from core.machine.machine_model import Machine

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from core.interpreter.machine_requirements import Need
+from core.interpreter.shared.machine_requirements import Need
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Dialect
 from core.part.stock import Stock
@@ -14,7 +14,7 @@ from core.part.tool_shape import ToolShape
 from core.part.turned_part import Piece
 
 if TYPE_CHECKING:
-    from core.interpreter.working_plane import Swivel
+    from core.interpreter.shared.working_plane import Swivel
 
 
 Range = tuple[float, float]

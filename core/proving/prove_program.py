@@ -11,7 +11,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from core.interpreter.dialects import ReadProgram
-from core.interpreter.job_setup import Setup
+from core.interpreter.shared.job_setup import Setup
 from core.language.diagnostics import Severity
 from core.language.source import Dialect, Source
 from core.machine.machine_model import Machine

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from core.geometry.surface_speed import surface_rpm
-from core.interpreter.elementary_blocks import Block, Floats, Ints, Series
+from core.interpreter.shared.elementary_blocks import Block, Floats, Ints, Series
 from core.motion.window_planner import sample_positions
 from core.proving.program_timeline import MotionSpan, Part, RestSpan, Timeline
 

@@ -12,8 +12,8 @@ from dataclasses import dataclass, field, replace
 from enum import Enum
 from itertools import pairwise
 
-from core.interpreter.elementary_blocks import Block
-from core.interpreter.job_setup import ToolOffset
+from core.interpreter.shared.elementary_blocks import Block
+from core.interpreter.shared.job_setup import ToolOffset
 from core.part.cutter import SolidTool, solid_tool
 from core.part.swept_edge import FloatArray, Point
 from core.part.tool_outline import nose_circle, outline

@@ -10,9 +10,9 @@ from typing import NamedTuple
 import numpy as np
 
 from core.geometry.lines_and_arcs import arc_sweep
-from core.interpreter.actions import Preset, ToolChange
-from core.interpreter.elementary_blocks import Block, Kind, Series
-from core.interpreter.modal_state import Modal
+from core.interpreter.shared.actions import Preset, ToolChange
+from core.interpreter.shared.elementary_blocks import Block, Kind, Series
+from core.interpreter.shared.modal_state import Modal
 from core.part.swept_edge import Point
 
 QUICK = 100 * 25.4 / 60

@@ -181,7 +181,7 @@ class GrblIO:
         )
 
     def able(self) -> frozenset[str]:
-        """What a program may ask of the terminals, as ``core.interpreter.machine_requirements`` names it."""
+        """What a program may ask of the terminals, by the names of ``machine_requirements``."""
         outputs = {Message("output {name}", name=name) for name in self._wanted if not self.lacking(name)}
         there = {name for name in self._c.config.inputs if name not in self._inputs.lacking()}
         names = there | {self._c.config.inputs[name].terminal for name in there}

@@ -18,7 +18,7 @@ from app.compose.extra import extras
 from core.access.access_table import Act, Level
 from core.alarms import CATALOGUE
 from core.interpreter.dialects import code_book
-from core.interpreter.omniturn.code_table import CHAPTERS
+from core.interpreter.omniturn.codes.code_table import CHAPTERS
 from core.language.klartext import klartext_faults
 from core.language.sinumerik.cycle_names import CYCLES_OUTSIDE
 from core.language.sinumerik.outside_words import OUTSIDE
@@ -78,6 +78,7 @@ APART = frozenset(
             "access_table.py",
             "code_entry.py",
             "code_table.py",
+            *("move_codes.py", "cycle_codes.py", "flow_codes.py"),
             "language_page.py",
             "keys.py",
             "run_without_screen.py",
@@ -319,7 +320,9 @@ def _of_books() -> list[str]:
     shown = chapters | {entry.what for book in books for entry in book.entries}
     shown |= {what for book in books for entry in book.entries for _, what in book.words_of(entry)}
     refused = {*OUTSIDE.values(), *CYCLES_OUTSIDE.values()}
-    refused |= {name for key, name in vars(klartext_faults).items() if key.isupper()}
+    refused |= {
+        name for key, name in vars(klartext_faults).items() if key.isupper() and isinstance(name, str)
+    }
     return sorted(shown | refused | {*FUNCTIONS.values(), *IDLE.values()})
 
 

@@ -20539,7 +20539,7 @@
       <translation>los dos vectores son paralelos</translation>
     </message>
     <message>
-      <location filename="core/interpreter/control_flow.py" />
+      <location filename="core/interpreter/shared/control_flow.py" />
       <source>{source} line {line}: {value}</source>
       <translation>{source} línea {line}: {value}</translation>
     </message>
@@ -20574,752 +20574,752 @@
       <translation>Elija el archivo de máquina de una fresadora: --machine ac-table-mill.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/formula_values.py" />
+      <location filename="core/interpreter/shared/formula_values.py" />
       <source>A function has too few or too many arguments</source>
       <translation>Una función tiene argumentos de menos o de más</translation>
     </message>
     <message>
-      <location filename="core/interpreter/formula_values.py" />
+      <location filename="core/interpreter/shared/formula_values.py" />
       <source>The formula divides by zero</source>
       <translation>La fórmula divide por cero</translation>
     </message>
     <message>
-      <location filename="core/interpreter/formula_values.py" />
+      <location filename="core/interpreter/shared/formula_values.py" />
       <source>The result is too large</source>
       <translation>El resultado es demasiado grande</translation>
     </message>
     <message>
-      <location filename="core/interpreter/formula_values.py" />
+      <location filename="core/interpreter/shared/formula_values.py" />
       <source>arc cosine</source>
       <translation>arco coseno</translation>
     </message>
     <message>
-      <location filename="core/interpreter/formula_values.py" />
+      <location filename="core/interpreter/shared/formula_values.py" />
       <source>arc sine</source>
       <translation>arco seno</translation>
     </message>
     <message>
-      <location filename="core/interpreter/formula_values.py" />
+      <location filename="core/interpreter/shared/formula_values.py" />
       <source>arc tangent</source>
       <translation>arco tangente</translation>
     </message>
     <message>
-      <location filename="core/interpreter/formula_values.py" />
+      <location filename="core/interpreter/shared/formula_values.py" />
       <source>common logarithm</source>
       <translation>logaritmo decimal</translation>
     </message>
     <message>
-      <location filename="core/interpreter/formula_values.py" />
+      <location filename="core/interpreter/shared/formula_values.py" />
       <source>exclusive or</source>
       <translation>o exclusivo</translation>
     </message>
     <message>
-      <location filename="core/interpreter/formula_values.py" />
+      <location filename="core/interpreter/shared/formula_values.py" />
       <source>greater than or equal</source>
       <translation>mayor o igual</translation>
     </message>
     <message>
-      <location filename="core/interpreter/formula_values.py" />
+      <location filename="core/interpreter/shared/formula_values.py" />
       <source>integer part</source>
       <translation>parte entera</translation>
     </message>
     <message>
-      <location filename="core/interpreter/formula_values.py" />
+      <location filename="core/interpreter/shared/formula_values.py" />
       <source>integer quotient</source>
       <translation>cociente entero</translation>
     </message>
     <message>
-      <location filename="core/interpreter/formula_values.py" />
+      <location filename="core/interpreter/shared/formula_values.py" />
       <source>less than or equal</source>
       <translation>menor o igual</translation>
     </message>
     <message>
-      <location filename="core/interpreter/formula_values.py" />
+      <location filename="core/interpreter/shared/formula_values.py" />
       <source>natural logarithm</source>
       <translation>logaritmo natural</translation>
     </message>
     <message>
-      <location filename="core/interpreter/formula_values.py" />
+      <location filename="core/interpreter/shared/formula_values.py" />
       <source>nearest whole number</source>
       <translation>entero más cercano</translation>
     </message>
     <message>
-      <location filename="core/interpreter/formula_values.py" />
+      <location filename="core/interpreter/shared/formula_values.py" />
       <source>square root</source>
       <translation>raíz cuadrada</translation>
     </message>
     <message>
-      <location filename="core/interpreter/formula_values.py" />
+      <location filename="core/interpreter/shared/formula_values.py" />
       <source>{formula} of {item} is undefined</source>
       <translation>{formula} de {item} no está definido</translation>
     </message>
     <message>
-      <location filename="core/interpreter/interpretation.py" />
+      <location filename="core/interpreter/shared/interpretation.py" />
       <source>The program produces more than {most_blocks} blocks or executes more than {most_lines} lines.</source>
       <translation>El programa genera más de {most_blocks} bloques o ejecuta más de {most_lines} líneas.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/blocks_without_motion.py" />
+      <location filename="core/interpreter/klartext/flow/blocks_without_motion.py" />
       <source>Check the conditions under which the program reaches this block.</source>
       <translation>Compruebe las condiciones con las que el programa llega a este bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/blocks_without_motion.py" />
+      <location filename="core/interpreter/klartext/flow/blocks_without_motion.py" />
       <source>In the loop, change a Q parameter that the jump condition uses.</source>
       <translation>Cambie en el bucle un parámetro Q que use la condición del salto.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/blocks_without_motion.py" />
+      <location filename="core/interpreter/klartext/flow/blocks_without_motion.py" />
       <source>The program reports its own error {number} and stops.</source>
       <translation>El programa emite su propio error {number} y se para.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/blocks_without_motion.py" />
+      <location filename="core/interpreter/klartext/flow/blocks_without_motion.py" />
       <source>This jump repeats forever because the loop does not change anything that affects a jump.</source>
       <translation>Este salto se repite sin fin porque el bucle no cambia nada que influya en un salto.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/contour_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/contour_cycles.py" />
       <source>Add path functions to the contour.</source>
       <translation>Agregue funciones de trayectoria al contorno.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/contour_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/contour_cycles.py" />
       <source>Contour {figure} does not contain any elements.</source>
       <translation>El contorno {figure} no contiene elementos.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/contour_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/contour_cycles.py" />
       <source>Cycle 25 mills only the first contour listed in cycle 14.</source>
       <translation>El ciclo 25 fresa sólo el primer contorno indicado en el ciclo 14.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/contour_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/contour_cycles.py" />
       <source>Depth Q1 is positive (upward).</source>
       <translation>La profundidad Q1 es positiva (hacia arriba).</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/contour_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/contour_cycles.py" />
       <source>Depth Q1={depth} mm is positive (upward).</source>
       <translation>La profundidad Q1={depth} mm es positiva (hacia arriba).</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/contour_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/contour_cycles.py" />
       <source>Enter a value between 0.0001 and 1.9999.</source>
       <translation>Indique un valor entre 0.0001 y 1.9999.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/contour_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/contour_cycles.py" />
       <source>Enter the depth with a minus sign.</source>
       <translation>Indique la profundidad con signo menos.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/contour_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/contour_cycles.py" />
       <source>Enter the tool radius R in the tool table.</source>
       <translation>Introduzca el radio de herramienta R en la tabla de herramientas.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/contour_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/contour_cycles.py" />
       <source>Rough-out tool {plain} (Q13) has no radius in the tool table.</source>
       <translation>La herramienta de desbaste {plain} (Q13) no tiene radio en la tabla de herramientas.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/contour_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/contour_cycles.py" />
       <source>Set Q13 to the number of a measured tool.</source>
       <translation>Ponga en Q13 el número de una herramienta medida.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/contour_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/contour_cycles.py" />
       <source>Set Q2 to a value between 0.0001 and 1.9999.</source>
       <translation>Ponga en Q2 un valor entre 0.0001 y 1.9999.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/contour_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/contour_cycles.py" />
       <source>The contour cannot be milled with tool radius {radius} mm plus the allowance: {problem}.</source>
       <translation>El contorno no se puede fresar con un radio de herramienta de {radius} mm más la sobremedida: {problem}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/contour_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/contour_cycles.py" />
       <source>The tool radius is not defined.</source>
       <translation>El radio de la herramienta no está definido.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/contour_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/contour_cycles.py" />
       <source>There is not enough room to plunge along a ramp.</source>
       <translation>No hay espacio suficiente para penetrar en rampa.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/contour_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/contour_cycles.py" />
       <source>Use a center-cutting tool and plunge vertically.</source>
       <translation>Use una herramienta que corte en el centro y penetre en vertical.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/contour_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/contour_cycles.py" />
       <source>Use a smaller tool, or correct the contour.</source>
       <translation>Use una herramienta menor o corrija el contorno.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/contour_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/contour_cycles.py" />
       <source>With path overlap {named}={overlap}, the cycle cannot clear the area.</source>
       <translation>Con el solapamiento de trayectorias {named}={overlap}, el ciclo no puede vaciar la superficie.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/contour_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/contour_cycles.py" />
       <source>With the programmed path overlap Q2, the cycle cannot clear the area.</source>
       <translation>Con el solapamiento de trayectorias Q2 programado, el ciclo no puede vaciar la superficie.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/contour_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/contour_cycles.py" />
       <source>the tool does not fit anywhere inside the contour</source>
       <translation>la herramienta no cabe en ningún lugar dentro del contorno</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/contour_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/contour_cycles.py" />
       <source>the whole pocket is milled again, including the area that the coarse roughing tool (Q18) has cleared.</source>
       <translation>se fresa de nuevo toda la cajera, también la zona que ya vació la herramienta de desbaste previo (Q18).</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/contour_figures.py" />
+      <location filename="core/interpreter/klartext/cycles/contour_figures.py" />
       <source>A vertical arc inside an SL cycle contour</source>
       <translation>Un arco vertical dentro de un contorno de ciclos SL</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/contour_figures.py" />
+      <location filename="core/interpreter/klartext/cycles/contour_figures.py" />
       <source>Contour {figure} ends {gap} mm from its start.</source>
       <translation>El contorno {figure} termina a {gap} mm de su inicio.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/contour_figures.py" />
+      <location filename="core/interpreter/klartext/cycles/contour_figures.py" />
       <source>Correct the contours.</source>
       <translation>Corrija los contornos.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/contour_figures.py" />
+      <location filename="core/interpreter/klartext/cycles/contour_figures.py" />
       <source>Correct the entries named in the message.</source>
       <translation>Corrija los datos que indica el mensaje.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/contour_figures.py" />
+      <location filename="core/interpreter/klartext/cycles/contour_figures.py" />
       <source>Cycle 14 lists only islands and no pocket, so there is nothing to clear.</source>
       <translation>El ciclo 14 sólo contiene islas y ninguna cajera, así que no hay nada que vaciar.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/contour_figures.py" />
+      <location filename="core/interpreter/klartext/cycles/contour_figures.py" />
       <source>End the contour at its start point.</source>
       <translation>Termine el contorno en su punto de inicio.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/contour_figures.py" />
+      <location filename="core/interpreter/klartext/cycles/contour_figures.py" />
       <source>No machining side is programmed for contour {figure}.</source>
       <translation>No hay ningún lado de mecanizado programado para el contorno {figure}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/contour_figures.py" />
+      <location filename="core/interpreter/klartext/cycles/contour_figures.py" />
       <source>Program the outer contour clockwise with RR.</source>
       <translation>Programe el contorno exterior en sentido horario con RR.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/contour_figures.py" />
+      <location filename="core/interpreter/klartext/cycles/contour_figures.py" />
       <source>The contours cannot be combined: {problem}.</source>
       <translation>Los contornos no se pueden combinar: {problem}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/contour_figures.py" />
+      <location filename="core/interpreter/klartext/cycles/contour_figures.py" />
       <source>The contours do not enclose an area because the islands cover the pockets.</source>
       <translation>Los contornos no encierran ninguna superficie porque las islas cubren las cajeras.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/contour_figures.py" />
+      <location filename="core/interpreter/klartext/cycles/contour_figures.py" />
       <source>Write RL or RR in the first block of the contour.</source>
       <translation>Escriba RL o RR en el primer bloque del contorno.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/contour_figures.py" />
+      <location filename="core/interpreter/klartext/cycles/contour_figures.py" />
       <source>{form} inside an SL cycle contour</source>
       <translation>{form} dentro de un contorno de ciclos SL</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/coordinate_transformations.py" />
+      <location filename="core/interpreter/klartext/setup/coordinate_transformations.py" />
       <source>A datum shift of rotary axis {axis} is not supported.</source>
       <translation>No se admite un desplazamiento de origen del eje giratorio {axis}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/coordinate_transformations.py" />
+      <location filename="core/interpreter/klartext/setup/coordinate_transformations.py" />
       <source>A scaling factor of 0 is not allowed.</source>
       <translation>No se permite un factor de escala de 0.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/coordinate_transformations.py" />
+      <location filename="core/interpreter/klartext/setup/coordinate_transformations.py" />
       <source>Correct the row number, or add the row.</source>
       <translation>Corrija el número de fila o agregue la fila.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/coordinate_transformations.py" />
+      <location filename="core/interpreter/klartext/setup/coordinate_transformations.py" />
       <source>No datum table is selected.</source>
       <translation>No hay tabla de puntos cero seleccionada.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/coordinate_transformations.py" />
+      <location filename="core/interpreter/klartext/setup/coordinate_transformations.py" />
       <source>Position the rotary axis with an L block, or program the plane with PLANE.</source>
       <translation>Posicione el eje giratorio con un bloque L o programe el plano con PLANE.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/coordinate_transformations.py" />
+      <location filename="core/interpreter/klartext/setup/coordinate_transformations.py" />
       <source>Program SCL with a factor such as 0.99.</source>
       <translation>Programe SCL con un factor como 0.99.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/coordinate_transformations.py" />
+      <location filename="core/interpreter/klartext/setup/coordinate_transformations.py" />
       <source>Select the file with SEL TABLE before this block.</source>
       <translation>Seleccione el archivo con SEL TABLE antes de este bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/coordinate_transformations.py" />
+      <location filename="core/interpreter/klartext/setup/coordinate_transformations.py" />
       <source>The datum table has no row {number}.</source>
       <translation>La tabla de puntos cero no tiene fila {number}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycle_moves.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
       <source>A lead of {lead} mm at S{rpm} requires a Z feed rate above the maximum of {fastest} mm/min.</source>
       <translation>Un paso de {lead} mm con S{rpm} requiere en Z un avance superior al máximo de {fastest} mm/min.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycle_moves.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
       <source>Add the parameter to CYCL DEF.</source>
       <translation>Agregue el parámetro a CYCL DEF.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycle_moves.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
       <source>Cycle {number} moves the cutting edge away from the wall, but {unoriented}.</source>
       <translation>El ciclo {number} separa el filo de la pared, pero {unoriented}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycle_moves.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
       <source>Cycle {number} needs a running spindle.</source>
       <translation>El ciclo {number} necesita el husillo en marcha.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycle_moves.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
       <source>Cycle {number} needs a spindle speed.</source>
       <translation>El ciclo {number} necesita una velocidad de husillo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycle_moves.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
       <source>Cycle {number} needs the point angle of the tool for a programmed diameter.</source>
       <translation>El ciclo {number} necesita el ángulo de punta de la herramienta para un diámetro programado.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycle_moves.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
       <source>Cycle {number} needs {parameter}.</source>
       <translation>El ciclo {number} necesita {parameter}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycle_moves.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
       <source>Cycle {number}: Z is not synchronized with the spindle angle, so Z stops while the spindle reverses.</source>
       <translation>Ciclo {number}: Z no está sincronizado con el ángulo del husillo, así que Z se detiene mientras el husillo invierte el giro.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycle_moves.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
       <source>Cycle {number}: {what}</source>
       <translation>Ciclo {number}: {what}</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycle_moves.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
       <source>Enter 8 for coolant on or 9 for coolant off.</source>
       <translation>Indique 8 para conectar el refrigerante o 9 para desconectarlo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycle_moves.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
       <source>Enter a feed rate above 0.</source>
       <translation>Indique un avance mayor que 0.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycle_moves.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
       <source>Enter a feed rate.</source>
       <translation>Indique un avance.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycle_moves.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
       <source>Enter an angle from -360 to 360 degrees.</source>
       <translation>Indique un ángulo de -360 a 360 grados.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycle_moves.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
       <source>Enter the point angle in the tool table, or program Q343=+0 and Q201.</source>
       <translation>Introduzca el ángulo de punta en la tabla de herramientas, o programe Q343=+0 y Q201.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycle_moves.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
       <source>Program Q214=0, or turn the cutting edge by hand when the program stops for this adjustment.</source>
       <translation>Programe Q214=0, o gire el filo a mano cuando el programa se pare para este ajuste.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycle_moves.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
       <source>Program S in TOOL CALL.</source>
       <translation>Programe S en TOOL CALL.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycle_moves.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
       <source>Q{parameter} selects M{number}, which is not a coolant function of this machine.</source>
       <translation>Q{parameter} selecciona M{number}, que no es una función de refrigerante de esta máquina.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycle_moves.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
       <source>Start the spindle with M3 before the cycle.</source>
       <translation>Arranque el husillo con M3 antes del ciclo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycle_moves.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
       <source>Use a floating tap holder.</source>
       <translation>Use un portamachos flotante.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycle_moves.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
       <source>set oriented = true under [spindle] in the machine file if the drive can stop the spindle at an angle</source>
       <translation>ponga oriented = true en [spindle] del archivo de máquina si el accionamiento puede parar el husillo en un ángulo</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycle_moves.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
       <source>the spindle of this machine cannot be oriented</source>
       <translation>el husillo de esta máquina no se puede orientar</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycle_moves.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
       <source>{parameter} is not a valid spindle angle.</source>
       <translation>{parameter} no es un ángulo de husillo válido.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycle_moves.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
       <source>{parameter} is set to rapid, but this is a cutting move.</source>
       <translation>{parameter} indica rápido, pero este es un movimiento de corte.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycle_moves.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
       <source>{parameter} of cycle {number} is not a valid feed rate.</source>
       <translation>{parameter} del ciclo {number} no es un avance válido.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_calls.py" />
       <source> (cylinder surface, {kind})</source>
       <translation> (superficie cilíndrica, {kind})</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_calls.py" />
       <source>A cycle with M136 active (write M137 first)</source>
       <translation>Un ciclo con M136 activo (escriba antes M137)</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_calls.py" />
       <source>CYCL CALL PAT needs a preceding cycle with a number of 200 or higher.</source>
       <translation>CYCL CALL PAT necesita antes un ciclo con número 200 o mayor.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_calls.py" />
       <source>CYCL CALL POS with a Z other than +0 is not supported.</source>
       <translation>No se admite CYCL CALL POS con una Z distinta de +0.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_calls.py" />
       <source>CYCL CALL POS with cycle {number}</source>
       <translation>CYCL CALL POS con el ciclo {number}</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_calls.py" />
       <source>CYCL DEF {number}{kind}</source>
       <translation>CYCL DEF {number}{kind}</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_calls.py" />
       <source>Combine some of the contours.</source>
       <translation>Una algunos de los contornos.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_calls.py" />
       <source>Complete the CYCL DEF.</source>
       <translation>Complete el CYCL DEF.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_calls.py" />
       <source>Cycle 14 does not list any label.</source>
       <translation>El ciclo 14 no contiene ninguna etiqueta.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_calls.py" />
       <source>Cycle 14 lists {contours_count} contours; the maximum is {most_contours}.</source>
       <translation>El ciclo 14 contiene {contours_count} contornos; el máximo es {most_contours}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_calls.py" />
       <source>Cycle {number}</source>
       <translation>Ciclo {number}</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_calls.py" />
       <source>Cycle {number} is a machine-builder cycle, and this machine does not have machine-builder cycles.</source>
       <translation>El ciclo {number} es un ciclo del fabricante de la máquina, y esta máquina no tiene ciclos del fabricante.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_calls.py" />
       <source>Cycle {number} needs a preceding machining cycle.</source>
       <translation>El ciclo {number} necesita antes un ciclo de mecanizado.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_calls.py" />
       <source>Enter a time above 0.</source>
       <translation>Indique un tiempo mayor que 0.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_calls.py" />
       <source>Line {number}.{missing} of the cycle is missing.</source>
       <translation>Falta la línea {number}.{missing} del ciclo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_calls.py" />
       <source>List the contour labels in cycle 14 before this block.</source>
       <translation>Indique las etiquetas de los contornos en el ciclo 14 antes de este bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_calls.py" />
       <source>M103 does not change the feed rates of a cycle.</source>
       <translation>M103 no cambia los avances de un ciclo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_calls.py" />
       <source>Neither PATTERN DEF nor SEL PATTERN has defined any points.</source>
       <translation>Ni PATTERN DEF ni SEL PATTERN ha definido puntos.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_calls.py" />
       <source>No angle is programmed in cycle 13.</source>
       <translation>No hay ningún ángulo programado en el ciclo 13.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_calls.py" />
       <source>No contour is defined for cycle {number}.</source>
       <translation>No hay ningún contorno definido para el ciclo {number}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_calls.py" />
       <source>No machining cycle is defined.</source>
       <translation>No hay ningún ciclo de mecanizado definido.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_calls.py" />
       <source>Preset {number} is not in the preset table.</source>
       <translation>El preset {number} no está en la tabla de presets.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_calls.py" />
       <source>Preset {number} rotates the workpiece and cannot be activated while a tilted plane is active.</source>
       <translation>El preset {number} gira la pieza y no se puede activar con un plano inclinado activo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_calls.py" />
       <source>Remove this text from the program.</source>
       <translation>Quite este texto del programa.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_calls.py" />
       <source>SET UP</source>
       <translation>SET UP</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_calls.py" />
       <source>Set the preset on the PRESETS page, or correct Q339.</source>
       <translation>Fije el preset en la página PRESETS o corrija Q339.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_calls.py" />
       <source>Set the preset on the PRESETS page.</source>
       <translation>Fije el preset en la página PRESETS.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_calls.py" />
       <source>The dwell time of {seconds} s is negative.</source>
       <translation>El tiempo de espera de {seconds} s es negativo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_calls.py" />
       <source>This machine has no preset table, so preset {number} uses the zero from the machine file.</source>
       <translation>Esta máquina no tiene tabla de presets, así que el preset {number} usa el cero del archivo de máquina.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_calls.py" />
       <source>Use only A, B and C in cycle 19.</source>
       <translation>Use sólo A, B y C en el ciclo 19.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_calls.py" />
       <source>Write ANGLE with a value in degrees.</source>
       <translation>Escriba ANGLE con un valor en grados.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_calls.py" />
       <source>Write CYCL DEF before this block.</source>
       <translation>Escriba CYCL DEF antes de este bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_calls.py" />
       <source>Write PATTERN DEF before this block.</source>
       <translation>Escriba PATTERN DEF antes de este bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_calls.py" />
       <source>Write PLANE RESET STAY before this block.</source>
       <translation>Escriba PLANE RESET STAY antes de este bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_calls.py" />
       <source>Write Z+0, and enter the surface coordinate in Q203.</source>
       <translation>Escriba Z+0 e indique la coordenada de la superficie en Q203.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_calls.py" />
       <source>Write the CYCL DEF of a machining cycle before this block.</source>
       <translation>Escriba el CYCL DEF de un ciclo de mecanizado antes de este bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_calls.py" />
       <source>Write the labels, for example CONTOUR LABEL1 /2.</source>
       <translation>Escriba las etiquetas, por ejemplo CONTOUR LABEL1 /2.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/cycle_calls.py" />
       <source>{node} is not an axis.</source>
       <translation>{node} no es un eje.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/feed_rates.py" />
+      <location filename="core/interpreter/klartext/motion/feed_rates.py" />
       <source>Correct the feed rate.</source>
       <translation>Corrija el avance.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/feed_rates.py" />
+      <location filename="core/interpreter/klartext/motion/feed_rates.py" />
       <source>Enter the number of teeth (CUT) in the tool table, or program F.</source>
       <translation>Introduzca el número de dientes (CUT) en la tabla de herramientas, o programe F.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/feed_rates.py" />
+      <location filename="core/interpreter/klartext/motion/feed_rates.py" />
       <source>FZ is feed per tooth, but the number of teeth (CUT) of tool {tool} is not in the tool table.</source>
       <translation>FZ es avance por diente, pero el número de dientes (CUT) de la herramienta {tool} no está en la tabla de herramientas.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/feed_rates.py" />
+      <location filename="core/interpreter/klartext/motion/feed_rates.py" />
       <source>M103 F{number} must be above 0 and at most 100 percent.</source>
       <translation>M103 F{number} debe ser mayor que 0 y como máximo 100 por ciento.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/feed_rates.py" />
+      <location filename="core/interpreter/klartext/motion/feed_rates.py" />
       <source>M103 with a Q parameter</source>
       <translation>M103 con un parámetro Q</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/feed_rates.py" />
+      <location filename="core/interpreter/klartext/motion/feed_rates.py" />
       <source>M136 in an INCH program</source>
       <translation>M136 en un programa en pulgadas</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/feed_rates.py" />
+      <location filename="core/interpreter/klartext/motion/feed_rates.py" />
       <source>Start the spindle with M3 or M4 before this block.</source>
       <translation>Arranque el husillo con M3 o M4 antes de este bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/feed_rates.py" />
+      <location filename="core/interpreter/klartext/motion/feed_rates.py" />
       <source>Write M103 F20 for a fifth of the feed.</source>
       <translation>Escriba M103 F20 para un quinto del avance.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/feed_rates.py" />
+      <location filename="core/interpreter/klartext/motion/feed_rates.py" />
       <source>{word} depends on the spindle speed, but the spindle is stopped.</source>
       <translation>{word} depende de la velocidad del husillo, pero el husillo está parado.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/feed_rates.py" />
+      <location filename="core/interpreter/klartext/motion/feed_rates.py" />
       <source>{word} uses the programmed S, so the spindle override does not change the feed rate.</source>
       <translation>{word} usa la S programada, así que el override del husillo no cambia el avance.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/feed_rates.py" />
+      <location filename="core/interpreter/klartext/motion/feed_rates.py" />
       <source>{word} {feed} at S{rpm} gives a feed rate of {count}, which is above the maximum.</source>
       <translation>{word} {feed} con S{rpm} da un avance de {count}, que supera el máximo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/hole_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/hole_cycles.py" />
       <source>An infeed of {step} mm would need too many pecks.</source>
       <translation>Una profundización de {step} mm necesitaría demasiadas picadas.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/hole_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/hole_cycles.py" />
       <source>Bore from the other side of the part, or {how_oriented}.</source>
       <translation>Mandrine desde el otro lado de la pieza, o {how_oriented}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/hole_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/hole_cycles.py" />
       <source>Cycle 204 moves through the hole with the spindle oriented, but {unoriented}.</source>
       <translation>El ciclo 204 pasa por el agujero con el husillo orientado, pero {unoriented}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/hole_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/hole_cycles.py" />
       <source>Depth Q201={depth} mm is positive (upward).</source>
       <translation>La profundidad Q201={depth} mm es positiva (hacia arriba).</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/hole_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/hole_cycles.py" />
       <source>Enter the M function for the spindle direction.</source>
       <translation>Indique la función M del sentido de giro del husillo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/hole_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/hole_cycles.py" />
       <source>Enter the depth without a minus sign.</source>
       <translation>Indique la profundidad sin signo menos.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/hole_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/hole_cycles.py" />
       <source>Enter the thread pitch.</source>
       <translation>Indique el paso de la rosca.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/hole_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/hole_cycles.py" />
       <source>Pitch Q239 must not be 0.</source>
       <translation>El paso Q239 no puede ser 0.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/hole_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/hole_cycles.py" />
       <source>Q214 must be a whole number from {directions} to {directions2}.</source>
       <translation>Q214 debe ser un número entero de {directions} a {directions2}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/hole_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/hole_cycles.py" />
       <source>Q249 = {depth} mm is negative, so the tool would move away from the part.</source>
       <translation>Q249 = {depth} mm es negativo, así que la herramienta se alejaría de la pieza.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/hole_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/hole_cycles.py" />
       <source>Q426 must be 3, 4 or 5.</source>
       <translation>Q426 debe ser 3, 4 o 5.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/hole_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/hole_cycles.py" />
       <source>TURN THE CUTTING EDGE TOWARD X+</source>
       <translation>GIRE EL FILO HACIA X+</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/hole_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/hole_cycles.py" />
       <source>TURN THE CUTTING EDGE TOWARD X-</source>
       <translation>GIRE EL FILO HACIA X-</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/hole_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/hole_cycles.py" />
       <source>TURN THE CUTTING EDGE TOWARD Y+</source>
       <translation>GIRE EL FILO HACIA Y+</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/hole_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/hole_cycles.py" />
       <source>TURN THE CUTTING EDGE TOWARD Y-</source>
       <translation>GIRE EL FILO HACIA Y-</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/hole_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/hole_cycles.py" />
       <source>The tool, infeed or feed rate of cycle 208 is not valid for the hole.</source>
       <translation>La herramienta, la profundización o el avance del ciclo 208 no es válido para el agujero.</translation>
     </message>
@@ -21484,77 +21484,77 @@
       <translation>{what} no tiene efecto en este control.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/m_functions.py" />
+      <location filename="core/interpreter/klartext/setup/m_functions.py" />
       <source>Assign an output to this machine-builder code under [m_codes], or remove the code.</source>
       <translation>Asigne en [m_codes] una salida a este código del fabricante, o quite el código.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/m_functions.py" />
+      <location filename="core/interpreter/klartext/setup/m_functions.py" />
       <source>Check the tool life before you start the program.</source>
       <translation>Compruebe la vida de la herramienta antes de iniciar el programa.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/m_functions.py" />
+      <location filename="core/interpreter/klartext/setup/m_functions.py" />
       <source>Define the second machine datum as fixed_points under [axis.X], [axis.Y] and [axis.Z], or use M91 to measure from machine zero.</source>
       <translation>Defina el segundo cero de la máquina como fixed_points en [axis.X], [axis.Y] y [axis.Z], o use M91 para medir desde el cero de máquina.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/m_functions.py" />
+      <location filename="core/interpreter/klartext/setup/m_functions.py" />
       <source>M19 stops the spindle at an angle, but {unoriented}.</source>
       <translation>M19 para el husillo en un ángulo, pero {unoriented}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/m_functions.py" />
+      <location filename="core/interpreter/klartext/setup/m_functions.py" />
       <source>M91 and M92 cannot be in the same block because they measure from different datums.</source>
       <translation>M91 y M92 no pueden estar en el mismo bloque porque miden desde ceros distintos.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/m_functions.py" />
+      <location filename="core/interpreter/klartext/setup/m_functions.py" />
       <source>More than one M function in the block controls the spindle.</source>
       <translation>Más de una función M del bloque controla el husillo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/m_functions.py" />
+      <location filename="core/interpreter/klartext/setup/m_functions.py" />
       <source>M{number} is not allowed while M128 is active.</source>
       <translation>M{number} no está permitido con M128 activo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/m_functions.py" />
+      <location filename="core/interpreter/klartext/setup/m_functions.py" />
       <source>M{number} is not defined in the machine file.</source>
       <translation>M{number} no está definido en el archivo de máquina.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/m_functions.py" />
+      <location filename="core/interpreter/klartext/setup/m_functions.py" />
       <source>M{number} is programmed twice in the block.</source>
       <translation>M{number} está programado dos veces en el bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/m_functions.py" />
+      <location filename="core/interpreter/klartext/setup/m_functions.py" />
       <source>M{number} starts the spindle, but no TOOL CALL sets S.</source>
       <translation>M{number} arranca el husillo, pero ningún TOOL CALL fija S.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/m_functions.py" />
+      <location filename="core/interpreter/klartext/setup/m_functions.py" />
       <source>On this control, M101 does not change to a replacement tool, so the called tool remains in use.</source>
       <translation>En este control, M101 no cambia a una herramienta de repuesto, así que se sigue usando la herramienta llamada.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/m_functions.py" />
+      <location filename="core/interpreter/klartext/setup/m_functions.py" />
       <source>Remove one of the two.</source>
       <translation>Quite uno de los dos.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/m_functions.py" />
+      <location filename="core/interpreter/klartext/setup/m_functions.py" />
       <source>Switch M128 off with M129 before this block.</source>
       <translation>Desactive M128 con M129 antes de este bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/m_functions.py" />
+      <location filename="core/interpreter/klartext/setup/m_functions.py" />
       <source>TOOL {tool}</source>
       <translation>TOOL {tool}</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/m_functions.py" />
+      <location filename="core/interpreter/klartext/setup/m_functions.py" />
       <source>{how_oriented}, or remove M19.</source>
       <translation>{how_oriented}, o quite M19.</translation>
     </message>
@@ -21619,1277 +21619,1277 @@
       <translation>{form} es la entrada o la salida de un contorno y no se puede usar en MDI</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/mid_program_startup.py" />
+      <location filename="core/interpreter/klartext/flow/mid_program_startup.py" />
       <source>MIRROR {mirrored}</source>
       <translation>MIRROR {mirrored}</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/older_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/older_cycles.py" />
       <source>A pocket cannot be milled at rapid.</source>
       <translation>Una cajera no se puede fresar en rápido.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/older_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/older_cycles.py" />
       <source>An infeed of {step} mm would need {count} passes, which is too many.</source>
       <translation>Una profundización de {step} mm necesitaría {count} pasadas, que son demasiadas.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/older_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/older_cycles.py" />
       <source>Cycle 18 needs a spindle speed and a pitch.</source>
       <translation>El ciclo 18 necesita una velocidad de husillo y un paso.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/older_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/older_cycles.py" />
       <source>Increase the infeed.</source>
       <translation>Aumente la profundización.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/older_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/older_cycles.py" />
       <source>Line {number}.{part} of the cycle has no {axis}.</source>
       <translation>La línea {number}.{part} del ciclo no tiene {axis}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/older_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/older_cycles.py" />
       <source>Program S in TOOL CALL and PITCH in cycle 18.</source>
       <translation>Programe S en TOOL CALL y PITCH en el ciclo 18.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/older_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/older_cycles.py" />
       <source>The tool is wider than the pocket.</source>
       <translation>La herramienta es más ancha que la cajera.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/older_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/older_cycles.py" />
       <source>The tool is wider than the slot.</source>
       <translation>La herramienta es más ancha que la ranura.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/older_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/older_cycles.py" />
       <source>Use a smaller tool.</source>
       <translation>Use una herramienta menor.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/older_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/older_cycles.py" />
       <source>Write F in CYCL DEF.</source>
       <translation>Escriba F en CYCL DEF.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/path_elements.py" />
+      <location filename="core/interpreter/klartext/motion/path_elements.py" />
       <source>An arc with R {radius} mm cannot connect two points {chord} mm apart.</source>
       <translation>Un arco con R {radius} mm no puede unir dos puntos a {chord} mm de distancia.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/path_elements.py" />
+      <location filename="core/interpreter/klartext/motion/path_elements.py" />
       <source>CP makes {revolutions} revolutions, which is too many.</source>
       <translation>CP da {revolutions} vueltas, que son demasiadas.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/path_elements.py" />
+      <location filename="core/interpreter/klartext/motion/path_elements.py" />
       <source>Correct R or the end point.</source>
       <translation>Corrija R o el punto final.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/path_elements.py" />
+      <location filename="core/interpreter/klartext/motion/path_elements.py" />
       <source>Correct the end point or CC.</source>
       <translation>Corrija el punto final o CC.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/path_elements.py" />
+      <location filename="core/interpreter/klartext/motion/path_elements.py" />
       <source>Correct the end point.</source>
       <translation>Corrija el punto final.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/path_elements.py" />
+      <location filename="core/interpreter/klartext/motion/path_elements.py" />
       <source>IPA+0 does not produce any motion.</source>
       <translation>IPA+0 no produce ningún movimiento.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/path_elements.py" />
+      <location filename="core/interpreter/klartext/motion/path_elements.py" />
       <source>IPA{value} and DR{turn} have opposite directions.</source>
       <translation>IPA{value} y DR{turn} tienen sentidos opuestos.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/path_elements.py" />
+      <location filename="core/interpreter/klartext/motion/path_elements.py" />
       <source>Move to a point on the circle before this block.</source>
       <translation>Vaya a un punto del círculo antes de este bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/path_elements.py" />
+      <location filename="core/interpreter/klartext/motion/path_elements.py" />
       <source>No move precedes {form}, so its starting direction is not defined.</source>
       <translation>Ningún movimiento precede a {form}, así que su dirección inicial no está definida.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/path_elements.py" />
+      <location filename="core/interpreter/klartext/motion/path_elements.py" />
       <source>No pole is defined with CC.</source>
       <translation>No hay ningún polo definido con CC.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/path_elements.py" />
+      <location filename="core/interpreter/klartext/motion/path_elements.py" />
       <source>Program a full circle as two arcs or with path function C.</source>
       <translation>Programe un círculo completo como dos arcos o con la función de trayectoria C.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/path_elements.py" />
+      <location filename="core/interpreter/klartext/motion/path_elements.py" />
       <source>Program a move before this block.</source>
       <translation>Programe un movimiento antes de este bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/path_elements.py" />
+      <location filename="core/interpreter/klartext/motion/path_elements.py" />
       <source>Program at most {most_turns} revolutions.</source>
       <translation>Programe como máximo {most_turns} vueltas.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/path_elements.py" />
+      <location filename="core/interpreter/klartext/motion/path_elements.py" />
       <source>The end point is {last} mm from the pole, but the start point is {first} mm from the pole.</source>
       <translation>El punto final está a {last} mm del polo, pero el punto inicial está a {first} mm del polo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/path_elements.py" />
+      <location filename="core/interpreter/klartext/motion/path_elements.py" />
       <source>The tool is on the pole, so no circle is possible.</source>
       <translation>La herramienta está en el polo, así que no es posible ningún círculo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/path_elements.py" />
+      <location filename="core/interpreter/klartext/motion/path_elements.py" />
       <source>Use the same sign for IPA and DR.</source>
       <translation>Use el mismo signo en IPA y DR.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/path_elements.py" />
+      <location filename="core/interpreter/klartext/motion/path_elements.py" />
       <source>Write CC with X and Y before this block.</source>
       <translation>Escriba CC con X e Y antes de este bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/path_elements.py" />
+      <location filename="core/interpreter/klartext/motion/path_elements.py" />
       <source>Write DR+ for counterclockwise.</source>
       <translation>Escriba DR+ para sentido antihorario.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/path_elements.py" />
+      <location filename="core/interpreter/klartext/motion/path_elements.py" />
       <source>{form} needs DR+ or DR-.</source>
       <translation>{form} necesita DR+ o DR-.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/path_elements.py" />
+      <location filename="core/interpreter/klartext/motion/path_elements.py" />
       <source>{form} would have to reverse its direction to reach its end point.</source>
       <translation>{form} tendría que invertir su dirección para llegar a su punto final.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/path_functions.py" />
+      <location filename="core/interpreter/klartext/motion/path_functions.py" />
       <source>A rotary axis cannot move while radius compensation is active.</source>
       <translation>Un eje giratorio no se puede mover con la compensación de radio activa.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/path_functions.py" />
+      <location filename="core/interpreter/klartext/motion/path_functions.py" />
       <source>A vertical arc with M103 active</source>
       <translation>Un arco vertical con M103 activo</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/path_functions.py" />
+      <location filename="core/interpreter/klartext/motion/path_functions.py" />
       <source>APPR is not allowed while radius compensation is active.</source>
       <translation>APPR no está permitido con la compensación de radio activa.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/path_functions.py" />
+      <location filename="core/interpreter/klartext/motion/path_functions.py" />
       <source>End the contour with R0 before this block.</source>
       <translation>Termine el contorno con R0 antes de este bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/path_functions.py" />
+      <location filename="core/interpreter/klartext/motion/path_functions.py" />
       <source>End the contour with R0 or DEP before this block.</source>
       <translation>Termine el contorno con R0 o DEP antes de este bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/path_functions.py" />
+      <location filename="core/interpreter/klartext/motion/path_functions.py" />
       <source>End the contour with R0 or DEP.</source>
       <translation>Termine el contorno con R0 o DEP.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/path_functions.py" />
+      <location filename="core/interpreter/klartext/motion/path_functions.py" />
       <source>LN with 3D compensation (DL, DR, DR2, RL, RR)</source>
       <translation>LN con compensación 3D (DL, DR, DR2, RL, RR)</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/path_functions.py" />
+      <location filename="core/interpreter/klartext/motion/path_functions.py" />
       <source>LN with a tool direction vector (TX TY TZ)</source>
       <translation>LN con un vector de dirección de la herramienta (TX TY TZ)</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/path_functions.py" />
+      <location filename="core/interpreter/klartext/motion/path_functions.py" />
       <source>Position the rotary axes before the cut with L A+Q120 C+Q122 R0 FMAX, or write TURN in the PLANE block.</source>
       <translation>Posicione los ejes giratorios antes del corte con L A+Q120 C+Q122 R0 FMAX, o escriba TURN en el bloque PLANE.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/path_functions.py" />
+      <location filename="core/interpreter/klartext/motion/path_functions.py" />
       <source>Put RND or CHF between two contour elements.</source>
       <translation>Ponga RND o CHF entre dos elementos del contorno.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/path_functions.py" />
+      <location filename="core/interpreter/klartext/motion/path_functions.py" />
       <source>Radius compensation is possible only in X and Y, but this arc is vertical.</source>
       <translation>La compensación de radio es posible sólo en X e Y, pero este arco es vertical.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/path_functions.py" />
+      <location filename="core/interpreter/klartext/motion/path_functions.py" />
       <source>Remove the word.</source>
       <translation>Quite la palabra.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/path_functions.py" />
+      <location filename="core/interpreter/klartext/motion/path_functions.py" />
       <source>R{compensation} is not allowed while R{side} is active.</source>
       <translation>R{compensation} no está permitido con R{side} activo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/path_functions.py" />
+      <location filename="core/interpreter/klartext/motion/path_functions.py" />
       <source>Start the spindle with M3 or M4.</source>
       <translation>Arranque el husillo con M3 o M4.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/path_functions.py" />
+      <location filename="core/interpreter/klartext/motion/path_functions.py" />
       <source>The position of {off} does not match the plane programmed on line {line}.</source>
       <translation>La posición de {off} no corresponde al plano programado en la línea {line}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/path_functions.py" />
+      <location filename="core/interpreter/klartext/motion/path_functions.py" />
       <source>The program ends while radius compensation is active.</source>
       <translation>El programa termina con la compensación de radio activa.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/path_functions.py" />
+      <location filename="core/interpreter/klartext/motion/path_functions.py" />
       <source>The spindle is stopped during this feed move.</source>
       <translation>El husillo está parado durante este movimiento de avance.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/path_functions.py" />
+      <location filename="core/interpreter/klartext/motion/path_functions.py" />
       <source>This machine has no {axis} axis.</source>
       <translation>Esta máquina no tiene eje {axis}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/path_functions.py" />
+      <location filename="core/interpreter/klartext/motion/path_functions.py" />
       <source>Use a smaller chamfer or radius.</source>
       <translation>Use un chaflán o un radio menor.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/path_functions.py" />
+      <location filename="core/interpreter/klartext/motion/path_functions.py" />
       <source>Write R0 before this block.</source>
       <translation>Escriba R0 antes de este bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/path_functions.py" />
+      <location filename="core/interpreter/klartext/motion/path_functions.py" />
       <source>Write R0 before you change the compensation side.</source>
       <translation>Escriba R0 antes de cambiar el lado de la compensación.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/path_functions.py" />
+      <location filename="core/interpreter/klartext/motion/path_functions.py" />
       <source>radius compensation is active</source>
       <translation>la compensación de radio está activa</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/path_functions.py" />
+      <location filename="core/interpreter/klartext/motion/path_functions.py" />
       <source>the previous block is part of an unfinished corner</source>
       <translation>el bloque anterior forma parte de una esquina sin terminar</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/path_functions.py" />
+      <location filename="core/interpreter/klartext/motion/path_functions.py" />
       <source>{form} must be followed by a path in the working plane.</source>
       <translation>Después de {form} debe seguir una trayectoria en el plano de trabajo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/path_functions.py" />
+      <location filename="core/interpreter/klartext/motion/path_functions.py" />
       <source>{form} must follow a path in the working plane.</source>
       <translation>{form} debe ir después de una trayectoria en el plano de trabajo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/path_functions.py" />
+      <location filename="core/interpreter/klartext/motion/path_functions.py" />
       <source>{form} {size} mm: {problem}.</source>
       <translation>{form} {size} mm: {problem}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/path_functions.py" />
+      <location filename="core/interpreter/klartext/motion/path_functions.py" />
       <source>{what} is not allowed while radius compensation is active.</source>
       <translation>{what} no está permitido con la compensación de radio activa.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/plane_functions.py" />
+      <location filename="core/interpreter/klartext/motion/plane_functions.py" />
       <source> when {side} is programmed</source>
       <translation> cuando está programado {side}</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/plane_functions.py" />
+      <location filename="core/interpreter/klartext/motion/plane_functions.py" />
       <source>Check the axis angles, write PLANE before MIRROR, ROTATION and SCALE, or use PLANE AXIAL.</source>
       <translation>Compruebe los ángulos de los ejes, escriba PLANE antes de MIRROR, ROTATION y SCALE, o use PLANE AXIAL.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/plane_functions.py" />
+      <location filename="core/interpreter/klartext/motion/plane_functions.py" />
       <source>Check the points, angles and SYM.</source>
       <translation>Compruebe los puntos, los ángulos y SYM.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/plane_functions.py" />
+      <location filename="core/interpreter/klartext/motion/plane_functions.py" />
       <source>Correct the angle.</source>
       <translation>Corrija el ángulo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/plane_functions.py" />
+      <location filename="core/interpreter/klartext/motion/plane_functions.py" />
       <source>Correct the points, vectors or angles.</source>
       <translation>Corrija los puntos, vectores o ángulos.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/plane_functions.py" />
+      <location filename="core/interpreter/klartext/motion/plane_functions.py" />
       <source>If the shift is meant for the workpiece coordinate system, write PLANE RESET STAY before TRANS DATUM.</source>
       <translation>Si el desplazamiento es para el sistema de coordenadas de la pieza, escriba PLANE RESET STAY antes de TRANS DATUM.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/plane_functions.py" />
+      <location filename="core/interpreter/klartext/motion/plane_functions.py" />
       <source>M128 is active.</source>
       <translation>M128 está activo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/plane_functions.py" />
+      <location filename="core/interpreter/klartext/motion/plane_functions.py" />
       <source>MB MAX needs a software limit, but this machine does not have one along the tool axis.</source>
       <translation>MB MAX necesita un límite por software, pero esta máquina no lo tiene en el eje de la herramienta.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/plane_functions.py" />
+      <location filename="core/interpreter/klartext/motion/plane_functions.py" />
       <source>MIRROR, ROTATION or SCALE is active and also applies to PLANE {form}.</source>
       <translation>MIRROR, ROTATION o SCALE está activo y se aplica también a PLANE {form}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/plane_functions.py" />
+      <location filename="core/interpreter/klartext/motion/plane_functions.py" />
       <source>No TOOL CALL has defined a tool axis.</source>
       <translation>Ningún TOOL CALL ha definido un eje de herramienta.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/plane_functions.py" />
+      <location filename="core/interpreter/klartext/motion/plane_functions.py" />
       <source>Remove the word, or select a machine with axis {axis}.</source>
       <translation>Quite la palabra o elija una máquina con eje {axis}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/plane_functions.py" />
+      <location filename="core/interpreter/klartext/motion/plane_functions.py" />
       <source>TABLE ROT</source>
       <translation>TABLE ROT</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/plane_functions.py" />
+      <location filename="core/interpreter/klartext/motion/plane_functions.py" />
       <source>The datum was shifted in the tilted coordinate system that is defined on line {line}.</source>
       <translation>El origen se desplazó en el sistema de coordenadas inclinado que se define en la línea {line}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/plane_functions.py" />
+      <location filename="core/interpreter/klartext/motion/plane_functions.py" />
       <source>The rotary axes cannot reach this plane within their ranges{requested}.</source>
       <translation>Los ejes giratorios no pueden alcanzar este plano dentro de su recorrido{requested}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/plane_functions.py" />
+      <location filename="core/interpreter/klartext/motion/plane_functions.py" />
       <source>There are two possible swivel directions; the start position of the table determines which direction is used.</source>
       <translation>Hay dos sentidos de basculación posibles; la posición inicial de la mesa determina cuál se usa.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/plane_functions.py" />
+      <location filename="core/interpreter/klartext/motion/plane_functions.py" />
       <source>This machine has no rotary axis {axis}.</source>
       <translation>Esta máquina no tiene eje giratorio {axis}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/plane_functions.py" />
+      <location filename="core/interpreter/klartext/motion/plane_functions.py" />
       <source>Write MB with a length.</source>
       <translation>Escriba MB con una longitud.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/plane_functions.py" />
+      <location filename="core/interpreter/klartext/motion/plane_functions.py" />
       <source>Write SYM+ or SYM-, or position the table before this block.</source>
       <translation>Escriba SYM+ o SYM-, o posicione la mesa antes de este bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/plane_functions.py" />
+      <location filename="core/interpreter/klartext/motion/plane_functions.py" />
       <source>Write TOOL CALL n Z before this block.</source>
       <translation>Escriba TOOL CALL n Z antes de este bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/plane_functions.py" />
+      <location filename="core/interpreter/klartext/motion/plane_functions.py" />
       <source>{axis} {angle} is not between {ends}.</source>
       <translation>{axis} {angle} no está entre {ends}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/plane_functions.py" />
+      <location filename="core/interpreter/klartext/motion/plane_functions.py" />
       <source>{low} and {high}</source>
       <translation>{low} y {high}</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/pocket_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/pocket_cycles.py" />
       <source>A slot {half} mm wide over {sweep} degrees on a circle {radius} mm in diameter is not possible.</source>
       <translation>Una ranura de {half} mm de ancho sobre {sweep} grados en un círculo de {radius} mm de diámetro no es posible.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/pocket_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/pocket_cycles.py" />
       <source>Correct Q218 and Q219.</source>
       <translation>Corrija Q218 y Q219.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/pocket_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/pocket_cycles.py" />
       <source>Correct Q219, Q248 and Q375.</source>
       <translation>Corrija Q219, Q248 y Q375.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/pocket_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/pocket_cycles.py" />
       <source>Correct the blank dimensions.</source>
       <translation>Corrija las medidas de la pieza en bruto.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/pocket_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/pocket_cycles.py" />
       <source>Enter a valid number.</source>
       <translation>Indique un número válido.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/pocket_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/pocket_cycles.py" />
       <source>Q367 must be 0, 1, 2 or 3.</source>
       <translation>Q367 debe ser 0, 1, 2 o 3.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/pocket_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/pocket_cycles.py" />
       <source>Q367 must be 0, 1, 2, 3 or 4.</source>
       <translation>Q367 debe ser 0, 1, 2, 3 o 4.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/pocket_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/pocket_cycles.py" />
       <source>Q377={count} is not a valid number of slots.</source>
       <translation>Q377={count} no es un número de ranuras válido.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/pocket_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/pocket_cycles.py" />
       <source>Set Q366=+0 for a center-cutting tool.</source>
       <translation>Ponga Q366=+0 para una herramienta que corte en el centro.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/pocket_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/pocket_cycles.py" />
       <source>Set Q370 between 0.1 and 1.9999, and enter the tool radius.</source>
       <translation>Ponga Q370 entre 0.1 y 1.9999, e indique el radio de la herramienta.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/pocket_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/pocket_cycles.py" />
       <source>The blank is not larger than the stud.</source>
       <translation>El bruto no es mayor que la isla.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/pocket_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/pocket_cycles.py" />
       <source>The ends of the slot overlap.</source>
       <translation>Los extremos de la ranura se solapan.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/pocket_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/pocket_cycles.py" />
       <source>The slot is wider than it is long.</source>
       <translation>La ranura es más ancha que larga.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/pocket_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/pocket_cycles.py" />
       <source>The tool is wider than the pocket or slot.</source>
       <translation>La herramienta es más ancha que la cajera o la ranura.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/pocket_cycles.py" />
+      <location filename="core/interpreter/klartext/cycles/pocket_cycles.py" />
       <source>With path overlap Q370={overlap} and tool radius {radius} mm, the cycle cannot clear the area.</source>
       <translation>Con el solapamiento Q370={overlap} y un radio de herramienta de {radius} mm, el ciclo no puede vaciar la superficie.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/point_patterns.py" />
+      <location filename="core/interpreter/klartext/cycles/point_patterns.py" />
       <source>Enter a whole number of 1 or more.</source>
       <translation>Indique un número entero de 1 o más.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/point_patterns.py" />
+      <location filename="core/interpreter/klartext/cycles/point_patterns.py" />
       <source>Q{parameter}={count} is not a valid number of positions.</source>
       <translation>Q{parameter}={count} no es un número de posiciones válido.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/point_patterns.py" />
+      <location filename="core/interpreter/klartext/cycles/point_patterns.py" />
       <source>The maximum is {most_points} points.</source>
       <translation>El máximo es de {most_points} puntos.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/point_patterns.py" />
+      <location filename="core/interpreter/klartext/cycles/point_patterns.py" />
       <source>The pattern has too many points: {found_count}.</source>
       <translation>La figura tiene demasiados puntos: {found_count}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/point_patterns.py" />
+      <location filename="core/interpreter/klartext/cycles/point_patterns.py" />
       <source>{form}: {number} is not a valid number of points.</source>
       <translation>{form}: {number} no es un número de puntos válido.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/q_functions.py" />
+      <location filename="core/interpreter/klartext/flow/word_values.py" />
       <source>Correct the formula.</source>
       <translation>Corrija la fórmula.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/q_functions.py" />
+      <location filename="core/interpreter/klartext/flow/word_values.py" />
       <source>Q{number}=PREDEF, but no GLOBAL DEF defines Q{number2}.</source>
       <translation>Q{number}=PREDEF, pero ningún GLOBAL DEF define Q{number2}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/q_functions.py" />
+      <location filename="core/interpreter/klartext/flow/word_values.py" />
       <source>The result {value} exceeds the limit of {most_q}.</source>
       <translation>El resultado {value} supera el límite de {most_q}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/q_functions.py" />
+      <location filename="core/interpreter/klartext/flow/word_values.py" />
       <source>Write GLOBAL DEF before this block, or enter a number.</source>
       <translation>Escriba GLOBAL DEF antes de este bloque o indique un número.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/radius_compensation.py" />
+      <location filename="core/interpreter/klartext/motion/radius_compensation.py" />
       <source>A tool radius of {radius} mm does not fit the contour: {why}.</source>
       <translation>Un radio de herramienta de {radius} mm no cabe en el contorno: {why}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/radius_compensation.py" />
+      <location filename="core/interpreter/klartext/motion/radius_compensation.py" />
       <source>No path is possible for {form} because the tool is inside the arc of this move.</source>
       <translation>No hay trayectoria posible para {form} porque la herramienta está dentro del arco de este movimiento.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/radius_compensation.py" />
+      <location filename="core/interpreter/klartext/motion/radius_compensation.py" />
       <source>R {value} mm of {form} must be larger than the tool radius of {radius} mm.</source>
       <translation>R {value} mm de {form} debe ser mayor que el radio de herramienta de {radius} mm.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/radius_compensation.py" />
+      <location filename="core/interpreter/klartext/motion/radius_compensation.py" />
       <source>Start farther from the contour, or reduce R.</source>
       <translation>Empiece más lejos del contorno o reduzca R.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/radius_compensation.py" />
+      <location filename="core/interpreter/klartext/motion/radius_compensation.py" />
       <source>Use a smaller tool, or change the contour.</source>
       <translation>Use una herramienta menor o cambie el contorno.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/system_data.py" />
+      <location filename="core/interpreter/klartext/flow/system_data.py" />
       <source>Add the tool to the tool table.</source>
       <translation>Agregue la herramienta a la tabla de herramientas.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/system_data.py" />
+      <location filename="core/interpreter/klartext/flow/system_data.py" />
       <source>FN 17 SYSWRITE ID50 NR{number} {name}</source>
       <translation>FN 17 SYSWRITE ID50 NR{number} {name}</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/system_data.py" />
+      <location filename="core/interpreter/klartext/flow/system_data.py" />
       <source>FN {function} with ID{word} NR{number} IDX{index}</source>
       <translation>FN {function} con ID{word} NR{number} IDX{index}</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/system_data.py" />
+      <location filename="core/interpreter/klartext/flow/system_data.py" />
       <source>The tool table has no column {empty}, so FN 18 returns {value} as it does for an empty cell.</source>
       <translation>La tabla de herramientas no tiene columna {empty}, así que FN 18 devuelve {value} como para una celda vacía.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/system_data.py" />
+      <location filename="core/interpreter/klartext/flow/system_data.py" />
       <source>Tool {tool} is not in the tool table.</source>
       <translation>La herramienta {tool} no está en la tabla de herramientas.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/system_data.py" />
+      <location filename="core/interpreter/klartext/flow/system_data.py" />
       <source>Writing {name} of tool {tool} to the tool table with FN 17 (enter the value in the tool table instead)</source>
       <translation>Escribir {name} de la herramienta {tool} en la tabla de herramientas con FN 17 (introduzca el valor en la tabla)</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/tool_call.py" />
+      <location filename="core/interpreter/klartext/setup/tool_call.py" />
       <source>A cutting speed needs the tool radius, but the radius of the tool is not defined.</source>
       <translation>Una velocidad de corte necesita el radio de la herramienta, pero ese radio no está definido.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/tool_call.py" />
+      <location filename="core/interpreter/klartext/setup/tool_call.py" />
       <source>Enter the tool radius R in the tool table, or program S.</source>
       <translation>Introduzca el radio de herramienta R en la tabla de herramientas, o programe S.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/tool_call.py" />
+      <location filename="core/interpreter/klartext/setup/tool_call.py" />
       <source>Give this name to a tool in the tool table, or call the tool by its number.</source>
       <translation>Dé este nombre a una herramienta de la tabla de herramientas, o llámela por su número.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/tool_call.py" />
+      <location filename="core/interpreter/klartext/setup/tool_call.py" />
       <source>No tool is named "{tool}".</source>
       <translation>Ninguna herramienta se llama «{tool}».</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/tool_call.py" />
+      <location filename="core/interpreter/klartext/setup/tool_call.py" />
       <source>Set the tool offset.</source>
       <translation>Ponga el corrector de la herramienta.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/tool_call.py" />
+      <location filename="core/interpreter/klartext/setup/tool_call.py" />
       <source>S{rpm} is above the spindle maximum of {highest} rpm.</source>
       <translation>S{rpm} supera el máximo del husillo de {highest} rpm.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/tool_call.py" />
+      <location filename="core/interpreter/klartext/setup/tool_call.py" />
       <source>TOOL CALL</source>
       <translation>TOOL CALL</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/tool_call.py" />
+      <location filename="core/interpreter/klartext/setup/tool_call.py" />
       <source>TOOL CALL with a tool or an oversize is not allowed while M128 is active.</source>
       <translation>TOOL CALL con una herramienta o una sobremedida no está permitido con M128 activo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/tool_call.py" />
+      <location filename="core/interpreter/klartext/setup/tool_call.py" />
       <source>The tool axis {tool_axis}</source>
       <translation>El eje de herramienta {tool_axis}</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/tool_call.py" />
+      <location filename="core/interpreter/klartext/setup/tool_call.py" />
       <source>Tool {tool} has no offset, so 0 is used and the machine will not start.</source>
       <translation>La herramienta {tool} no tiene corrector, así que se usa 0 y la máquina no arrancará.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/word_values.py" />
+      <location filename="core/interpreter/klartext/flow/word_values.py" />
       <source>F must be above zero.</source>
       <translation>F debe ser mayor que cero.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/word_values.py" />
+      <location filename="core/interpreter/klartext/flow/word_values.py" />
       <source>No feed rate is active.</source>
       <translation>No hay ningún avance activo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/word_values.py" />
+      <location filename="core/interpreter/klartext/flow/word_values.py" />
       <source>Program F in TOOL CALL.</source>
       <translation>Programe F en TOOL CALL.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/word_values.py" />
+      <location filename="core/interpreter/klartext/flow/word_values.py" />
       <source>The last TOOL CALL has no F.</source>
       <translation>El último TOOL CALL no tiene F.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/word_values.py" />
+      <location filename="core/interpreter/klartext/flow/word_values.py" />
       <source>Write F or FMAX.</source>
       <translation>Escriba F o FMAX.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/word_values.py" />
+      <location filename="core/interpreter/klartext/flow/word_values.py" />
       <source>{what} {value} is not between {low} and {maximum}.</source>
       <translation>{what} {value} no está entre {low} y {maximum}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/machine_requirements.py" />
+      <location filename="core/interpreter/shared/machine_requirements.py" />
       <source>a thread pull-out synchronized with the spindle; end the thread in a groove instead</source>
       <translation>una salida de rosca sincronizada con el husillo; en su lugar, termine la rosca en una ranura</translation>
     </message>
     <message>
-      <location filename="core/interpreter/machine_requirements.py" />
+      <location filename="core/interpreter/shared/machine_requirements.py" />
       <source>axes other than X and Z</source>
       <translation>ejes distintos de X y Z</translation>
     </message>
     <message>
-      <location filename="core/interpreter/machine_requirements.py" />
+      <location filename="core/interpreter/shared/machine_requirements.py" />
       <source>chained threads or threads with a variable lead; cut each thread separately with its own lead instead</source>
       <translation>roscas encadenadas o de paso variable; en su lugar, corte cada rosca por separado con su propio paso</translation>
     </message>
     <message>
-      <location filename="core/interpreter/machine_requirements.py" />
+      <location filename="core/interpreter/shared/machine_requirements.py" />
       <source>constant surface speed; program the spindle speed in rpm with G97 instead</source>
       <translation>velocidad superficial constante; en su lugar, programe la velocidad del husillo en rpm con G97</translation>
     </message>
     <message>
-      <location filename="core/interpreter/machine_requirements.py" />
+      <location filename="core/interpreter/shared/machine_requirements.py" />
       <source>input {name}</source>
       <translation>la entrada {name}</translation>
     </message>
     <message>
-      <location filename="core/interpreter/machine_requirements.py" />
+      <location filename="core/interpreter/shared/machine_requirements.py" />
       <source>milling with the plane commands (~PLXC) and (~PLZC)</source>
       <translation>fresado con los comandos de plano (~PLXC) y (~PLZC)</translation>
     </message>
     <message>
-      <location filename="core/interpreter/machine_requirements.py" />
+      <location filename="core/interpreter/shared/machine_requirements.py" />
       <source>output collet</source>
       <translation>la salida de la pinza</translation>
     </message>
     <message>
-      <location filename="core/interpreter/machine_requirements.py" />
+      <location filename="core/interpreter/shared/machine_requirements.py" />
       <source>output coolant</source>
       <translation>la salida del refrigerante</translation>
     </message>
     <message>
-      <location filename="core/interpreter/machine_requirements.py" />
+      <location filename="core/interpreter/shared/machine_requirements.py" />
       <source>spindle orientation to an angle</source>
       <translation>la orientación del husillo a un ángulo</translation>
     </message>
     <message>
-      <location filename="core/interpreter/machine_requirements.py" />
+      <location filename="core/interpreter/shared/machine_requirements.py" />
       <source>the C axis</source>
       <translation>el eje C</translation>
     </message>
     <message>
-      <location filename="core/interpreter/machine_requirements.py" />
+      <location filename="core/interpreter/shared/machine_requirements.py" />
       <source>threading with constant surface speed; program G97 before the thread</source>
       <translation>roscado con velocidad de corte constante; programe G97 antes de la rosca</translation>
     </message>
     <message>
-      <location filename="core/interpreter/machine_requirements.py" />
+      <location filename="core/interpreter/shared/machine_requirements.py" />
       <source>write {code} = {{ output = "NAME", on = true }} under [m_codes] in the machine file, where NAME is an output under [io.out], or {code2} = {{ ignored = true }} if the code does nothing on this machine</source>
       <translation>escriba {code} = {{ output = "NAME", on = true }} en [m_codes] del archivo de máquina, donde NAME es una salida de [io.out], o {code2} = {{ ignored = true }} si el código no hace nada en esta máquina</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/arc_moves.py" />
+      <location filename="core/interpreter/omniturn/motion/arc_moves.py" />
       <source>Add {letter}.</source>
       <translation>Agregue {letter}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/arc_moves.py" />
+      <location filename="core/interpreter/omniturn/motion/arc_moves.py" />
       <source>Check G02 and G03, and the signs of I and K.</source>
       <translation>Compruebe G02 y G03, y los signos de I y K.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/arc_moves.py" />
+      <location filename="core/interpreter/omniturn/motion/arc_moves.py" />
       <source>Correct I and K.</source>
       <translation>Corrija I y K.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/arc_moves.py" />
+      <location filename="core/interpreter/omniturn/motion/arc_moves.py" />
       <source>G73 is active, so X is a radius. If the X words are diameters, write G72 before them.</source>
       <translation>G73 está activo, así que X es un radio. Si las palabras X son diámetros, escriba G72 antes de ellas.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/arc_moves.py" />
+      <location filename="core/interpreter/omniturn/motion/arc_moves.py" />
       <source>On this line, I and K are distances from the start point of the arc.</source>
       <translation>En esta línea, I y K son distancias desde el punto de inicio del arco.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/arc_moves.py" />
+      <location filename="core/interpreter/omniturn/motion/arc_moves.py" />
       <source>On this line, I and K are the coordinates of the arc center.</source>
       <translation>En esta línea, I y K son las coordenadas del centro del arco.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/arc_moves.py" />
+      <location filename="core/interpreter/omniturn/motion/arc_moves.py" />
       <source>Program a full circle with I and K.</source>
       <translation>Programe un círculo completo con I y K.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/arc_moves.py" />
+      <location filename="core/interpreter/omniturn/motion/arc_moves.py" />
       <source>R is {value}; an arc between these points needs a radius of {half} or more.</source>
       <translation>R es {value}; un arco entre estos puntos necesita un radio de {half} o más.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/arc_moves.py" />
+      <location filename="core/interpreter/omniturn/motion/arc_moves.py" />
       <source>The arc center is at the start point of the arc.</source>
       <translation>El centro del arco está en el punto de inicio del arco.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/arc_moves.py" />
+      <location filename="core/interpreter/omniturn/motion/arc_moves.py" />
       <source>The arc programmed with R ends at its start point.</source>
       <translation>El arco programado con R termina en su punto de inicio.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/arc_moves.py" />
+      <location filename="core/interpreter/omniturn/motion/arc_moves.py" />
       <source>The arc spans {sweep} degrees.</source>
       <translation>El arco abarca {sweep} grados.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/arc_moves.py" />
+      <location filename="core/interpreter/omniturn/motion/arc_moves.py" />
       <source>The arc's radius is {first} at its start and {last} at its end.</source>
       <translation>El radio del arco es {first} al inicio y {last} al final.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/arc_moves.py" />
+      <location filename="core/interpreter/omniturn/motion/arc_moves.py" />
       <source>{letter} is missing; with G90 and G73 active, I and K are the coordinates of the arc center.</source>
       <translation>Falta {letter}; con G90 y G73 activos, I y K son las coordenadas del centro del arco.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/c_axis.py" />
+      <location filename="core/interpreter/omniturn/motion/c_axis.py" />
       <source>At a C speed of {c_rpm} rpm this feed is {value}; the maximum is {maximum}.</source>
       <translation>Con C a {c_rpm} rpm este avance es {value}; el máximo es {maximum}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/c_axis.py" />
+      <location filename="core/interpreter/omniturn/motion/c_axis.py" />
       <source>C is programmed to turn {turn} degrees, but at this feed the move needs {needed} degrees of C rotation.</source>
       <translation>C está programado para girar {turn} grados, pero a este avance el movimiento necesita {needed} grados de giro de C.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/c_axis.py" />
+      <location filename="core/interpreter/omniturn/motion/c_axis.py" />
       <source>Lower F or S.</source>
       <translation>Baje F o S.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/c_axis.py" />
+      <location filename="core/interpreter/omniturn/motion/c_axis.py" />
       <source>Round the number.</source>
       <translation>Redondee el número.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/c_axis.py" />
+      <location filename="core/interpreter/omniturn/motion/c_axis.py" />
       <source>The feed is per revolution of C, but the speed of C is not programmed with S.</source>
       <translation>El avance es por vuelta de C, pero la velocidad de C no está programada con S.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/c_axis.py" />
+      <location filename="core/interpreter/omniturn/motion/c_axis.py" />
       <source>Turn C farther, or increase F; otherwise the axes stop before the end point.</source>
       <translation>Gire más C, o aumente F; si no, los ejes se paran antes del punto final.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/c_axis.py" />
+      <location filename="core/interpreter/omniturn/motion/c_axis.py" />
       <source>Write S on this line.</source>
       <translation>Escriba S en esta línea.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/c_axis.py" />
+      <location filename="core/interpreter/omniturn/motion/c_axis.py" />
       <source>{word} is finer than the resolution of {step} degrees; {count} is used.</source>
       <translation>{word} es más fino que la resolución de {step} grados; se usa {count}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/canned_cycles.py" />
+      <location filename="core/interpreter/omniturn/cycles/canned_cycles.py" />
       <source>Look for a missing decimal point in {letter}.</source>
       <translation>Busque un punto decimal que falta en {letter}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/canned_cycles.py" />
+      <location filename="core/interpreter/omniturn/cycles/canned_cycles.py" />
       <source>{text} would make {count} {what}; the maximum is {most_passes}.</source>
       <translation>{text} haría {count} {what}; el máximo es {most_passes}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/coarse_feeds.py" />
+      <location filename="core/interpreter/omniturn/motion/coarse_feeds.py" />
       <source>G36 is not at the same position as G35, which was at radius {place}, Z {place2}.</source>
       <translation>G36 no está en la misma posición que G35, que estaba en radio {place}, Z {place2}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/coarse_feeds.py" />
+      <location filename="core/interpreter/omniturn/motion/coarse_feeds.py" />
       <source>G{code} is not followed by a G92 with X and Z.</source>
       <translation>A G{code} no le sigue un G92 con X y Z.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/coarse_feeds.py" />
+      <location filename="core/interpreter/omniturn/motion/coarse_feeds.py" />
       <source>Move back to the G35 position before G36.</source>
       <translation>Regrese a la posición de G35 antes de G36.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/coarse_feeds.py" />
+      <location filename="core/interpreter/omniturn/motion/coarse_feeds.py" />
       <source>The G92 after G{code} does not match the current position, which is radius {position}, Z {position2}.</source>
       <translation>El G92 después de G{code} no corresponde a la posición actual, que es radio {position}, Z {position2}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/coarse_feeds.py" />
+      <location filename="core/interpreter/omniturn/motion/coarse_feeds.py" />
       <source>Write G92 with the current X and Z on the next line.</source>
       <translation>Escriba en la línea siguiente G92 con la X y la Z actuales.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/corners.py" />
+      <location filename="core/interpreter/omniturn/motion/corners.py" />
       <source>A chamfer or corner radius needs two consecutive straight moves.</source>
       <translation>Un chaflán o radio de esquina necesita dos rectas seguidas.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/corners.py" />
+      <location filename="core/interpreter/omniturn/motion/corners.py" />
       <source>Corner {letter} is not possible: {why}.</source>
       <translation>La esquina {letter} no es posible: {why}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/corners.py" />
+      <location filename="core/interpreter/omniturn/motion/corners.py" />
       <source>Remove C or R.</source>
       <translation>Quite C o R.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/corners.py" />
+      <location filename="core/interpreter/omniturn/motion/corners.py" />
       <source>The moves on lines {line} and {line2} are in the same direction, so they do not form a corner.</source>
       <translation>Los movimientos de las líneas {line} y {line2} van en la misma dirección, así que no forman una esquina.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/corners.py" />
+      <location filename="core/interpreter/omniturn/motion/corners.py" />
       <source>The two moves are in the same direction, so they do not form a corner.</source>
       <translation>Los dos movimientos van en la misma dirección, así que no forman una esquina.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/corners.py" />
+      <location filename="core/interpreter/omniturn/motion/corners.py" />
       <source>no move follows the corner</source>
       <translation>no sigue ningún movimiento a la esquina</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/corners.py" />
+      <location filename="core/interpreter/omniturn/motion/corners.py" />
       <source>no move is programmed between the corner and {item}</source>
       <translation>no hay ningún movimiento programado entre la esquina y {item}</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/corners.py" />
+      <location filename="core/interpreter/omniturn/motion/corners.py" />
       <source>nose compensation ends before the next move</source>
       <translation>la compensación de punta termina antes del movimiento siguiente</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/corners.py" />
+      <location filename="core/interpreter/omniturn/motion/corners.py" />
       <source>the contour ends at this corner</source>
       <translation>el contorno termina en esta esquina</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/corners.py" />
+      <location filename="core/interpreter/omniturn/motion/corners.py" />
       <source>the corner needs {needed} of the move on line {line}, but only {left} remains</source>
       <translation>la esquina necesita {needed} del movimiento de la línea {line}, pero sólo quedan {left}</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/corners.py" />
+      <location filename="core/interpreter/omniturn/motion/corners.py" />
       <source>the corner needs {needed} of the next move, but only {left} remains</source>
       <translation>la esquina necesita {needed} del movimiento siguiente, pero sólo quedan {left}</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/corners.py" />
+      <location filename="core/interpreter/omniturn/motion/corners.py" />
       <source>the corner needs {needed} of this move, but only {left} remains</source>
       <translation>la esquina necesita {needed} de este movimiento, pero sólo quedan {left}</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/corners.py" />
+      <location filename="core/interpreter/omniturn/motion/corners.py" />
       <source>the motion</source>
       <translation>el movimiento</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/corners.py" />
+      <location filename="core/interpreter/omniturn/motion/corners.py" />
       <source>the move on line {line} has zero length</source>
       <translation>el movimiento de la línea {line} tiene longitud cero</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/corners.py" />
+      <location filename="core/interpreter/omniturn/motion/corners.py" />
       <source>the next move is an arc</source>
       <translation>el movimiento siguiente es un arco</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/corners.py" />
+      <location filename="core/interpreter/omniturn/motion/corners.py" />
       <source>the next move, on line {line}, is an arc</source>
       <translation>el movimiento siguiente, en la línea {line}, es un arco</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/corners.py" />
+      <location filename="core/interpreter/omniturn/motion/corners.py" />
       <source>the next move, on line {line}, is not a straight line</source>
       <translation>el movimiento siguiente, en la línea {line}, no es una recta</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/corners.py" />
+      <location filename="core/interpreter/omniturn/motion/corners.py" />
       <source>{problem} (line {line})</source>
       <translation>{problem} (línea {line})</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/corners.py" />
+      <location filename="core/interpreter/omniturn/motion/corners.py" />
       <source>{what} on line {line} is not a straight move</source>
       <translation>{what} en la línea {line} no es una recta</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/cycle_contour.py" />
+      <location filename="core/interpreter/omniturn/cycles/cycle_contour.py" />
       <source>Correct the line.</source>
       <translation>Corrija la línea.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/cycle_contour.py" />
+      <location filename="core/interpreter/omniturn/cycles/cycle_contour.py" />
       <source>G{one_shot} is not allowed in a contour</source>
       <translation>G{one_shot} no está permitido en un contorno</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/cycle_contour.py" />
+      <location filename="core/interpreter/omniturn/cycles/cycle_contour.py" />
       <source>Nose compensation cannot be turned on or off in a contour</source>
       <translation>La compensación de punta no se puede activar ni desactivar en un contorno</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/cycle_contour.py" />
+      <location filename="core/interpreter/omniturn/cycles/cycle_contour.py" />
       <source>Program a separate contour for finishing.</source>
       <translation>Programe un contorno aparte para el acabado.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/cycle_contour.py" />
+      <location filename="core/interpreter/omniturn/cycles/cycle_contour.py" />
       <source>The contour changes modes or coordinates; the previous ones are restored after the cycle.</source>
       <translation>El contorno cambia modos o coordenadas; después del ciclo se restablecen los valores anteriores.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/cycle_contour.py" />
+      <location filename="core/interpreter/omniturn/cycles/cycle_contour.py" />
       <source>The contour of G{one_shot} does not contain a line or an arc.</source>
       <translation>El contorno de G{one_shot} no contiene ninguna recta ni arco.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/cycle_contour.py" />
+      <location filename="core/interpreter/omniturn/cycles/cycle_contour.py" />
       <source>The first line of a contour defines its start point and cannot contain an arc or a corner</source>
       <translation>La primera línea de un contorno define su punto de inicio y no puede contener un arco ni una esquina</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/cycle_contour.py" />
+      <location filename="core/interpreter/omniturn/cycles/cycle_contour.py" />
       <source>This line of the contour cannot be read</source>
       <translation>Esta línea del contorno no se puede leer</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/cycle_contour.py" />
+      <location filename="core/interpreter/omniturn/cycles/cycle_contour.py" />
       <source>Write only X and Z of the first point.</source>
       <translation>Escriba sólo la X y la Z del primer punto.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/cycle_contour.py" />
+      <location filename="core/interpreter/omniturn/cycles/cycle_contour.py" />
       <source>Write the contour block by block, with only straight moves, arcs, chamfers and roundings.</source>
       <translation>Escriba el contorno bloque por bloque, solo con movimientos rectos, arcos, chaflanes y redondeos.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/cycle_contour.py" />
+      <location filename="core/interpreter/omniturn/cycles/cycle_contour.py" />
       <source>Write the points of the contour.</source>
       <translation>Escriba los puntos del contorno.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/cycle_contour.py" />
+      <location filename="core/interpreter/omniturn/cycles/cycle_contour.py" />
       <source>{line} is not allowed in a contour</source>
       <translation>{line} no está permitido en un contorno</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/cycle_contour.py" />
+      <location filename="core/interpreter/omniturn/cycles/cycle_contour.py" />
       <source>{words} and other words that do not belong to a contour are ignored in the contour of G{one_shot}.</source>
       <translation>{words} y otras palabras que no pertenecen a un contorno se ignoran en el contorno de G{one_shot}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/drilling_cycles.py" />
+      <location filename="core/interpreter/omniturn/cycles/drilling_cycles.py" />
       <source>Correct K, or drill with G81.</source>
       <translation>Corrija K, o taladre con G81.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/drilling_cycles.py" />
+      <location filename="core/interpreter/omniturn/cycles/drilling_cycles.py" />
       <source>Correct Z, or move the start point farther away from the part.</source>
       <translation>Corrija Z, o aleje más de la pieza el punto de inicio.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/drilling_cycles.py" />
+      <location filename="core/interpreter/omniturn/cycles/drilling_cycles.py" />
       <source>R is the Z position to which the drill retracts from the hole.</source>
       <translation>R es la posición Z a la que la broca se retira del agujero.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/drilling_cycles.py" />
+      <location filename="core/interpreter/omniturn/cycles/drilling_cycles.py" />
       <source>The bottom of the hole at {depth} is not deeper than the start point at {z}.</source>
       <translation>El fondo del agujero en {depth} no está más profundo que el punto de inicio en {z}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/drilling_cycles.py" />
+      <location filename="core/interpreter/omniturn/cycles/drilling_cycles.py" />
       <source>{text} is inside the hole, at or below the depth of the first peck.</source>
       <translation>{text} está dentro del agujero, a la profundidad del primer picoteo o más abajo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/drilling_cycles.py" />
+      <location filename="core/interpreter/omniturn/cycles/drilling_cycles.py" />
       <source>{text}: the peck exceeds the hole depth of {depth}.</source>
       <translation>{text}: el picoteo supera la profundidad del agujero, que es {depth}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/dwell.py" />
+      <location filename="core/interpreter/omniturn/setup/spindle_and_dwell.py" />
       <source>Check F; with G04, F is in seconds.</source>
       <translation>Compruebe F; con G04, F está en segundos.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/dwell.py" />
+      <location filename="core/interpreter/omniturn/setup/spindle_and_dwell.py" />
       <source>Program a dwell of at least G04F{needed} after this line.</source>
       <translation>Programe una espera de al menos G04F{needed} después de esta línea.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/dwell.py" />
+      <location filename="core/interpreter/omniturn/setup/spindle_and_dwell.py" />
       <source>The C drive does not signal when C is in position; at this point, C needs another {needed} s to finish its move.</source>
       <translation>El accionamiento de C no avisa cuando C está en posición; en este punto, C necesita {needed} s más para terminar su movimiento.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/dwell.py" />
+      <location filename="core/interpreter/omniturn/setup/spindle_and_dwell.py" />
       <source>The dwell lasts {seconds} minutes.</source>
       <translation>La espera dura {seconds} minutos.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/feeds.py" />
+      <location filename="core/interpreter/omniturn/motion/feeds.py" />
       <source>Check F and G94/G95.</source>
       <translation>Compruebe F y G94/G95.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/feeds.py" />
+      <location filename="core/interpreter/omniturn/motion/feeds.py" />
       <source>Feed {value} exceeds the maximum of {limit}.</source>
       <translation>El avance {value} supera el máximo de {limit}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/feeds.py" />
+      <location filename="core/interpreter/omniturn/motion/feeds.py" />
       <source>Feed {value} exceeds the maximum of {most_per_rev} at {rpm} rpm ({limit}).</source>
       <translation>El avance {value} supera el máximo de {most_per_rev} a {rpm} rpm ({limit}).</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/feeds.py" />
+      <location filename="core/interpreter/omniturn/motion/feeds.py" />
       <source>Feed {value} is very high for cutting.</source>
       <translation>El avance {value} es muy alto para cortar.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/feeds.py" />
+      <location filename="core/interpreter/omniturn/motion/feeds.py" />
       <source>G96 is active, but no surface speed is programmed with S.</source>
       <translation>G96 está activo, pero no hay ninguna velocidad de corte programada con S.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/feeds.py" />
+      <location filename="core/interpreter/omniturn/motion/feeds.py" />
       <source>Look for a missing decimal point, or for G95 where G94 is intended.</source>
       <translation>Busque un punto decimal que falta, o G95 donde debe ir G94.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/feeds.py" />
+      <location filename="core/interpreter/omniturn/motion/feeds.py" />
       <source>Look for a missing decimal point.</source>
       <translation>Busque un punto decimal que falta.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/feeds.py" />
+      <location filename="core/interpreter/omniturn/motion/feeds.py" />
       <source>No feed is programmed for this move.</source>
       <translation>No hay ningún avance programado para este movimiento.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/feeds.py" />
+      <location filename="core/interpreter/omniturn/motion/feeds.py" />
       <source>Program S together with G96.</source>
       <translation>Programe S junto con G96.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/feeds.py" />
+      <location filename="core/interpreter/omniturn/motion/feeds.py" />
       <source>Start the spindle with M03 or M04, or use G94.</source>
       <translation>Arranque el husillo con M03 o M04, o use G94.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/feeds.py" />
+      <location filename="core/interpreter/omniturn/motion/feeds.py" />
       <source>The spindle is stopped, but the move uses constant surface speed.</source>
       <translation>El husillo está parado, pero el movimiento usa velocidad de corte constante.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/feeds.py" />
+      <location filename="core/interpreter/omniturn/motion/feeds.py" />
       <source>The spindle is stopped, but the move uses feed per revolution.</source>
       <translation>El husillo está parado, pero el movimiento usa avance por vuelta.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/feeds.py" />
+      <location filename="core/interpreter/omniturn/motion/feeds.py" />
       <source>This move takes {seconds} s at {value}.</source>
       <translation>Este movimiento tarda {seconds} s a {value}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/feeds.py" />
+      <location filename="core/interpreter/omniturn/motion/feeds.py" />
       <source>Write F on this line or an earlier line.</source>
       <translation>Escriba F en esta línea o en una anterior.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/follow_ups.py" />
+      <location filename="core/interpreter/omniturn/consequent_faults.py" />
       <source>The arc center is programmed on the next line.</source>
       <translation>El centro del arco está programado en la línea siguiente.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/follow_ups.py" />
+      <location filename="core/interpreter/omniturn/consequent_faults.py" />
       <source>Write {word} on the same line as the arc.</source>
       <translation>Escriba {word} en la misma línea que el arco.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
+      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
       <source>A subroutine must not call itself.</source>
       <translation>Una subrutina no debe llamarse a sí misma.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
+      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
       <source>Add G75 or G78, or remove RF.</source>
       <translation>Agregue G75 o G78, o quite RF.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
+      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
       <source>Add LF where the loop ends.</source>
       <translation>Agregue LF donde termina el bucle.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
+      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
       <source>Add LS with a count, or remove LF.</source>
       <translation>Agregue LS con una cuenta, o quite LF.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
+      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
       <source>Add M99 at the end of the subroutine.</source>
       <translation>Agregue M99 al final de la subrutina.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
+      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
       <source>LF has no matching LS.</source>
       <translation>LF no tiene su LS.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
+      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
       <source>M99 is not in a subroutine.</source>
       <translation>M99 no está en una subrutina.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
+      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
       <source>Move this line before M30, or start a subroutine with }n.</source>
       <translation>Mueva esta línea antes de M30, o empiece una subrutina con }n.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
+      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
       <source>RF has no matching G75 or G78.</source>
       <translation>RF no tiene su G75 o G78.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
+      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
       <source>Subroutine calls are nested more than {deepest_call} levels deep.</source>
       <translation>Las llamadas a subrutinas están anidadas a más de {deepest_call} niveles.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
+      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
       <source>Subroutine {inside} has no M99 before this line.</source>
       <translation>La subrutina {inside} no tiene M99 antes de esta línea.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
+      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
       <source>Subroutine {inside} has no M99.</source>
       <translation>La subrutina {inside} no tiene M99.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
+      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
       <source>Subroutine {number} already begins on line {first}.</source>
       <translation>La subrutina {number} ya empieza en la línea {first}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
+      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
       <source>Subroutine {number} is called, but the program does not contain }}{number2}.</source>
       <translation>Se llama la subrutina {number}, pero el programa no contiene }}{number2}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
+      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
       <source>The contour of G{one_shot} has no RF.</source>
       <translation>El contorno de G{one_shot} no tiene RF.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
+      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
       <source>The main program ends without M30 or M02.</source>
       <translation>El programa principal termina sin M30 ni M02.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
+      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
       <source>This line is after the end of the program but not in a subroutine.</source>
       <translation>Esta línea está después del final del programa, pero no en una subrutina.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
+      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
       <source>Write M30 at the end of the program, or delete this line.</source>
       <translation>Escriba M30 al final del programa o borre esta línea.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
+      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
       <source>Write M30 before the subroutines.</source>
       <translation>Escriba M30 antes de las subrutinas.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
+      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
       <source>Write RF alone on the line after the contour, or P with a subroutine number.</source>
       <translation>Escriba RF solo en la línea después del contorno, o P con un número de subrutina.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
+      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
       <source>Write the subroutine after M30.</source>
       <translation>Escriba la subrutina después de M30.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
+      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
       <source>{text} has no matching LF.</source>
       <translation>{text} no tiene su LF.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/m_codes.py" />
+      <location filename="core/interpreter/omniturn/setup/m_codes.py" />
       <source>In the machine file, assign an output to this M code.</source>
       <translation>En el archivo de máquina, asigne una salida a este código M.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/m_codes.py" />
+      <location filename="core/interpreter/omniturn/setup/m_codes.py" />
       <source>M{code} has no effect because the machine file defines this code as ignored.</source>
       <translation>M{code} no tiene efecto porque el archivo de máquina define este código como ignorado.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/m_codes.py" />
+      <location filename="core/interpreter/omniturn/setup/m_codes.py" />
       <source>Set enabled = true for {code} under [m_codes].</source>
       <translation>Ponga enabled = true para {code} en [m_codes].</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/m_codes.py" />
+      <location filename="core/interpreter/omniturn/setup/m_codes.py" />
       <source>{name} is defined but not enabled in the machine file.</source>
       <translation>{name} está definido pero no habilitado en el archivo de máquina.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/m_codes.py" />
+      <location filename="core/interpreter/omniturn/setup/m_codes.py" />
       <source>{name} is not a valid code on this machine. {habit}</source>
       <translation>{name} no es un código válido en esta máquina. {habit}</translation>
     </message>
@@ -22904,242 +22904,242 @@
       <translation>{radius} redondea la esquina con el movimiento siguiente, pero MDI ejecuta sólo una línea.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <location filename="core/interpreter/omniturn/motion/nose_compensation.py" />
       <source>A subroutine cannot be called while G{state} is active.</source>
       <translation>No se puede llamar a una subrutina con G{state} activo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <location filename="core/interpreter/omniturn/motion/nose_compensation.py" />
       <source>Choose a different path for the {lead}, or switch between G41 and G42.</source>
       <translation>Elija otra trayectoria para la {lead}, o cambie entre G41 y G42.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <location filename="core/interpreter/omniturn/motion/nose_compensation.py" />
       <source>D cannot change while G{state} is active.</source>
       <translation>D no puede cambiar con G{state} activo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <location filename="core/interpreter/omniturn/motion/nose_compensation.py" />
       <source>Enter the nose radius in the offset table.</source>
       <translation>Introduzca el radio de punta en la tabla de correctores.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <location filename="core/interpreter/omniturn/motion/nose_compensation.py" />
       <source>Enter the nose radius without a sign; G41 and G42 set the side.</source>
       <translation>Introduzca el radio de punta sin signo; G41 y G42 fijan el lado.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <location filename="core/interpreter/omniturn/motion/nose_compensation.py" />
       <source>G{code} is not allowed in a subroutine.</source>
       <translation>G{code} no está permitido en una subrutina.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <location filename="core/interpreter/omniturn/motion/nose_compensation.py" />
       <source>Move farther away from the part.</source>
       <translation>Aléjese más de la pieza.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <location filename="core/interpreter/omniturn/motion/nose_compensation.py" />
       <source>Move off the part in a straight line.</source>
       <translation>Salga de la pieza en línea recta.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <location filename="core/interpreter/omniturn/motion/nose_compensation.py" />
       <source>Move off the part, and write G40 before the end of the program.</source>
       <translation>Salga de la pieza, y escriba G40 antes del final del programa.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <location filename="core/interpreter/omniturn/motion/nose_compensation.py" />
       <source>Move off the part.</source>
       <translation>Salga de la pieza.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <location filename="core/interpreter/omniturn/motion/nose_compensation.py" />
       <source>Program the approach as a straight line with D.</source>
       <translation>Programe la entrada como una recta con D.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <location filename="core/interpreter/omniturn/motion/nose_compensation.py" />
       <source>R of D{secondary} is 0, so G{state} does not compensate.</source>
       <translation>La R de D{secondary} es 0, así que G{state} no compensa.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <location filename="core/interpreter/omniturn/motion/nose_compensation.py" />
       <source>R of D{secondary} is negative.</source>
       <translation>La R de D{secondary} es negativa.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <location filename="core/interpreter/omniturn/motion/nose_compensation.py" />
       <source>Start the approach, or end the departure, at least twice the nose radius away from the part.</source>
       <translation>Empiece la aproximación, o termine la salida, a una distancia de la pieza de al menos dos veces el radio de punta.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <location filename="core/interpreter/omniturn/motion/nose_compensation.py" />
       <source>The approach starts {value} from the part, which is less than the nose radius of {nose}.</source>
       <translation>La entrada empieza a {value} de la pieza, que es menos que el radio de punta de {nose}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <location filename="core/interpreter/omniturn/motion/nose_compensation.py" />
       <source>The approach starts {value} from the part, which is less than twice the nose radius of {nose}.</source>
       <translation>La entrada empieza a {value} de la pieza, que es menos que el doble del radio de punta de {nose}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <location filename="core/interpreter/omniturn/motion/nose_compensation.py" />
       <source>The departure ends {value} from the part, which is less than the nose radius of {nose}.</source>
       <translation>La salida termina a {value} de la pieza, que es menos que el radio de punta de {nose}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <location filename="core/interpreter/omniturn/motion/nose_compensation.py" />
       <source>The departure ends {value} from the part, which is less than twice the nose radius of {nose}.</source>
       <translation>La salida termina a {value} de la pieza, que es menos que el doble del radio de punta de {nose}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <location filename="core/interpreter/omniturn/motion/nose_compensation.py" />
       <source>The departure, the last move before G40, has zero length.</source>
       <translation>La salida, el último movimiento antes de G40, tiene longitud cero.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <location filename="core/interpreter/omniturn/motion/nose_compensation.py" />
       <source>The departure, the move before G40, is not a straight line.</source>
       <translation>La salida, el movimiento antes de G40, no es una recta.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <location filename="core/interpreter/omniturn/motion/nose_compensation.py" />
       <source>The first move after G{state} on line {line} has no D.</source>
       <translation>El primer movimiento tras G{state} en la línea {line} no lleva D.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <location filename="core/interpreter/omniturn/motion/nose_compensation.py" />
       <source>The first move after G{state} on line {line} is not a straight line.</source>
       <translation>El primer movimiento tras G{state} en la línea {line} no es una recta.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <location filename="core/interpreter/omniturn/motion/nose_compensation.py" />
       <source>The plane commands (~PLXC) and (~PLZC) are not allowed while G{state} is active.</source>
       <translation>Los comandos de plano (~PLXC) y (~PLZC) no están permitidos con G{state} activo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <location filename="core/interpreter/omniturn/motion/nose_compensation.py" />
       <source>The program ends while G{state} is active.</source>
       <translation>El programa termina con G{state} activo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <location filename="core/interpreter/omniturn/motion/nose_compensation.py" />
       <source>The {lead} move is {length} long, which is less than the nose radius of {nose}.</source>
       <translation>El movimiento de {lead} mide {length}, que es menos que el radio de punta de {nose}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <location filename="core/interpreter/omniturn/motion/nose_compensation.py" />
       <source>Use a smaller nose radius, or change the contour.</source>
       <translation>Use un radio de punta menor, o cambie el contorno.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <location filename="core/interpreter/omniturn/motion/nose_compensation.py" />
       <source>With G{code}, the tool nose cuts into the part during the {lead}.</source>
       <translation>Con G{code}, la punta de la herramienta corta la pieza durante la {lead}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <location filename="core/interpreter/omniturn/motion/nose_compensation.py" />
       <source>Write D only on the first move after G41 or G42.</source>
       <translation>Escriba D sólo en el primer movimiento tras G41 o G42.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <location filename="core/interpreter/omniturn/motion/nose_compensation.py" />
       <source>Write Dn on the first move after G41 or G42; R of Dn is the nose radius.</source>
       <translation>Escriba Dn en el primer movimiento tras G41 o G42; la R de Dn es el radio de punta.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <location filename="core/interpreter/omniturn/motion/nose_compensation.py" />
       <source>Write G40 before this line.</source>
       <translation>Escriba G40 antes de esta línea.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <location filename="core/interpreter/omniturn/motion/nose_compensation.py" />
       <source>Write the compensated contour in the main program.</source>
       <translation>Escriba el contorno compensado en el programa principal.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <location filename="core/interpreter/omniturn/motion/nose_compensation.py" />
       <source>Write the contour between the approach and the departure.</source>
       <translation>Escriba el contorno entre la entrada y la salida.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <location filename="core/interpreter/omniturn/motion/nose_compensation.py" />
       <source>{name} cannot compensate this move.</source>
       <translation>{name} no puede compensar este movimiento.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <location filename="core/interpreter/omniturn/motion/nose_compensation.py" />
       <source>{name} has no contour move between its approach and its departure.</source>
       <translation>{name} no tiene ningún movimiento del contorno entre su entrada y su salida.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <location filename="core/interpreter/omniturn/motion/nose_compensation.py" />
       <source>{name} with a nose radius of {nose} cannot compensate this move: {why}.</source>
       <translation>{name} con radio de punta {nose} no puede compensar este movimiento: {why}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <location filename="core/interpreter/omniturn/motion/nose_compensation.py" />
       <source>{what} is not allowed while G{state} is active.</source>
       <translation>{what} no está permitido con G{state} activo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/omniturn_book.py" />
+      <location filename="core/interpreter/omniturn/codes/omniturn_book.py" />
       <source>taper: X travel over the thread length</source>
       <translation>cono: recorrido de X en el largo de la rosca</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/omniturn_book.py" />
+      <location filename="core/interpreter/omniturn/codes/omniturn_book.py" />
       <source>the X coordinate</source>
       <translation>la coordenada X</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/omniturn_book.py" />
+      <location filename="core/interpreter/omniturn/codes/omniturn_book.py" />
       <source>the Z coordinate</source>
       <translation>la coordenada Z</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/omniturn_book.py" />
+      <location filename="core/interpreter/omniturn/codes/omniturn_book.py" />
       <source>the Z position to which the drill retracts</source>
       <translation>la posición Z a la que se retira la broca</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/omniturn_book.py" />
+      <location filename="core/interpreter/omniturn/codes/omniturn_book.py" />
       <source>the arc center in X</source>
       <translation>el centro del arco en X</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/omniturn_book.py" />
+      <location filename="core/interpreter/omniturn/codes/omniturn_book.py" />
       <source>the arc center in Z</source>
       <translation>el centro del arco en Z</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/omniturn_book.py" />
+      <location filename="core/interpreter/omniturn/codes/omniturn_book.py" />
       <source>the feed</source>
       <translation>el avance</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/omniturn_book.py" />
+      <location filename="core/interpreter/omniturn/codes/omniturn_book.py" />
       <source>the feed per minute</source>
       <translation>el avance por minuto</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/omniturn_book.py" />
+      <location filename="core/interpreter/omniturn/codes/omniturn_book.py" />
       <source>the feed per revolution</source>
       <translation>el avance por vuelta</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/omniturn_book.py" />
+      <location filename="core/interpreter/omniturn/codes/omniturn_book.py" />
       <source>the shift in X</source>
       <translation>el desplazamiento en X</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/omniturn_book.py" />
+      <location filename="core/interpreter/omniturn/codes/omniturn_book.py" />
       <source>the shift in Z</source>
       <translation>el desplazamiento en Z</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/omniturn_book.py" />
+      <location filename="core/interpreter/omniturn/codes/omniturn_book.py" />
       <source>the subroutine number</source>
       <translation>el número de la subrutina</translation>
     </message>
@@ -23374,387 +23374,387 @@
       <translation>{word} no es un código válido en este control. {habit}</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/plane_switching.py" />
+      <location filename="core/interpreter/omniturn/motion/plane_switching.py" />
       <source>(~{name}) needs the tool on the negative X side, but X is {pixels}.</source>
       <translation>(~{name}) necesita la herramienta en el lado X negativo, pero X es {pixels}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/plane_switching.py" />
+      <location filename="core/interpreter/omniturn/motion/plane_switching.py" />
       <source>D is allowed only with (~PLZC).</source>
       <translation>D sólo está permitida con (~PLZC).</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/plane_switching.py" />
+      <location filename="core/interpreter/omniturn/motion/plane_switching.py" />
       <source>D is programmed while Y is {y}, so D would move Y.</source>
       <translation>D se programa con Y en {y}, así que D movería Y.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/plane_switching.py" />
+      <location filename="core/interpreter/omniturn/motion/plane_switching.py" />
       <source>D must be a diameter greater than 0.</source>
       <translation>D debe ser un diámetro mayor que 0.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/plane_switching.py" />
+      <location filename="core/interpreter/omniturn/motion/plane_switching.py" />
       <source>H is allowed only with (~PLXC).</source>
       <translation>H sólo está permitida con (~PLXC).</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/plane_switching.py" />
+      <location filename="core/interpreter/omniturn/motion/plane_switching.py" />
       <source>H is programmed after a move or F, but must come first.</source>
       <translation>H está programada después de un movimiento o de F, pero debe ir primero.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/plane_switching.py" />
+      <location filename="core/interpreter/omniturn/motion/plane_switching.py" />
       <source>I and J are the coordinates of the arc center.</source>
       <translation>I y J son las coordenadas del centro del arco.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/plane_switching.py" />
+      <location filename="core/interpreter/omniturn/motion/plane_switching.py" />
       <source>Move to Y0 before you program D.</source>
       <translation>Vaya a Y0 antes de programar D.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/plane_switching.py" />
+      <location filename="core/interpreter/omniturn/motion/plane_switching.py" />
       <source>Move to negative X before this line.</source>
       <translation>Muévase a X negativa antes de esta línea.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/plane_switching.py" />
+      <location filename="core/interpreter/omniturn/motion/plane_switching.py" />
       <source>The path comes within {nearest} of the spindle centerline, but with the programmed H the tool cannot come closer to the centerline than {minimum}.</source>
       <translation>La trayectoria pasa a {nearest} del eje del husillo, pero con la H programada la herramienta no puede acercarse al eje a menos de {minimum}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/plane_switching.py" />
+      <location filename="core/interpreter/omniturn/motion/plane_switching.py" />
       <source>The tool centerline is offset from the spindle centerline by H.</source>
       <translation>La línea central de la herramienta está desplazada H respecto al eje del husillo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/plane_switching.py" />
+      <location filename="core/interpreter/omniturn/motion/plane_switching.py" />
       <source>Write H before the first move and before F.</source>
       <translation>Escriba H antes del primer movimiento y antes de F.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/plane_switching.py" />
+      <location filename="core/interpreter/omniturn/motion/plane_switching.py" />
       <source>Z{z} is past the spindle centerline; with (~PLZC), Z is the diameter at the tool tip.</source>
       <translation>Z{z} está más allá del eje de giro del husillo; con (~PLZC), Z es el diámetro en la punta de la herramienta.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/program_size.py" />
+      <location filename="core/interpreter/omniturn/flow/program_size.py" />
       <source>The program executes {lines} lines; the maximum is {most_lines}.</source>
       <translation>El programa ejecuta {lines} líneas; el máximo es {most_lines}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/program_size.py" />
+      <location filename="core/interpreter/omniturn/flow/program_size.py" />
       <source>The program generates {blocks} blocks; the maximum is {most_blocks}.</source>
       <translation>El programa genera {blocks} bloques; el máximo es {most_blocks}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/program_size.py" />
+      <location filename="core/interpreter/omniturn/flow/program_size.py" />
       <source>about 10^{tens}</source>
       <translation>cerca de 10^{tens}</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
       <source>Both ends of the contour have the same {letter} as the start point, so the contour does not enclose an area to cut.</source>
       <translation>Los dos extremos del contorno tienen la misma {letter} que el punto de inicio, así que el contorno no encierra un área que cortar.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
       <source>Check whether the tool can plunge into the material.</source>
       <translation>Compruebe si la herramienta puede penetrar en el material.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
       <source>Check whether the tool fits into the undercut.</source>
       <translation>Compruebe si la herramienta cabe en el destalonado.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
       <source>Correct {letter} or the start point.</source>
       <translation>Corrija {letter} o el punto de inicio.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
       <source>In {letter}, the start point is between the two ends of the contour, but it must be outside them.</source>
       <translation>En {letter}, el punto inicial está entre los dos extremos del contorno, pero debe estar fuera de ellos.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
       <source>Increase I, or program the contour with fewer moves.</source>
       <translation>Aumente I, o programe el contorno con menos movimientos.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
       <source>Move the start point away from the contour.</source>
       <translation>Aleje del contorno el punto de inicio.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
       <source>Move the start point so that both ends of the contour are on the same side of it, in X and in Z.</source>
       <translation>Ponga el punto inicial de modo que ambos extremos del contorno queden al mismo lado, en X y en Z.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
       <source>No material remains to be cut between the contour and the start point.</source>
       <translation>No queda material por cortar entre el contorno y el punto de inicio.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
       <source>On the path from the start point to the contour and back, the tool comes closer to the contour than the distance U.</source>
       <translation>En el recorrido del punto de inicio al contorno y de regreso, la herramienta se acerca al contorno a menos de la distancia U.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
       <source>Program the contour with fewer, longer moves.</source>
       <translation>Programe el contorno con menos movimientos, más largos.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
       <source>Reduce U, or widen the narrow part of the contour.</source>
       <translation>Reduzca U, o ensanche la parte estrecha del contorno.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
       <source>Start farther from the contour in X.</source>
       <translation>Empiece más lejos del contorno en X.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
       <source>The allowance {text} leaves no material for the box cycle to cut.</source>
       <translation>La sobremedida {text} no deja material para que lo corte el ciclo de caja.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
       <source>The box has zero size along {letter} because its corner is at the start point.</source>
       <translation>La caja tiene medida cero en {letter} porque su esquina está en el punto de inicio.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
       <source>The contour goes deeper immediately after its first point; start the contour at the lowest X and move up the face first.</source>
       <translation>El contorno baja justo después de su primer punto; empiece el contorno en la X más baja y suba primero por la cara.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
       <source>The contour has {contour_count} lines and arcs; the maximum is {most_elements}.</source>
       <translation>El contorno tiene {contour_count} líneas y arcos; el máximo es {most_elements}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
       <source>The contour reverses along Z. The roughing passes do not reach this undercut, so the pass along the contour cuts all of its material.</source>
       <translation>El contorno retrocede en Z. Las pasadas de desbaste no llegan a este destalonado, así que la pasada a lo largo del contorno corta todo su material.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
       <source>The contour rises and falls again, so the tool plunges into the material after the rise.</source>
       <translation>El contorno sube y vuelve a bajar, así que la herramienta penetra en el material después de la subida.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
       <source>U must be less than the distance in X from the start point to the programmed X.</source>
       <translation>U debe ser menor que la distancia en X del punto de inicio a la X programada.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
       <source>{count} passes along a contour of {elements} lines and arcs are too many to calculate.</source>
       <translation>{count} pasadas a lo largo de un contorno de {elements} líneas y arcos son demasiadas para calcular.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
       <source>{text} cannot find a continuous path along the contour at distance U.</source>
       <translation>{text} no puede hallar una trayectoria continua a lo largo del contorno a la distancia U.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/spindle_speed.py" />
+      <location filename="core/interpreter/omniturn/setup/spindle_and_dwell.py" />
       <source>Correct G76 or G77.</source>
       <translation>Corrija G76 o G77.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/spindle_speed.py" />
+      <location filename="core/interpreter/omniturn/setup/spindle_and_dwell.py" />
       <source>G76 ({css_min} rpm) is higher than G77 ({css_max} rpm).</source>
       <translation>G76 ({css_min} rpm) es mayor que G77 ({css_max} rpm).</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/straight_moves.py" />
+      <location filename="core/interpreter/omniturn/motion/straight_moves.py" />
       <source>The first move after {place} has no {ending}.</source>
       <translation>El primer movimiento tras {place} no lleva {ending}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/straight_moves.py" />
+      <location filename="core/interpreter/omniturn/motion/straight_moves.py" />
       <source>This move is a rapid because of the G00 next to the comment on line {title_rapid}.</source>
       <translation>Este movimiento es rápido por el G00 junto al comentario de la línea {title_rapid}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/straight_moves.py" />
+      <location filename="core/interpreter/omniturn/motion/straight_moves.py" />
       <source>Write G01 if the move is meant to cut.</source>
       <translation>Escriba G01 si el movimiento debe cortar.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/straight_moves.py" />
+      <location filename="core/interpreter/omniturn/motion/straight_moves.py" />
       <source>Write both X and Z, or write G92 before this move.</source>
       <translation>Escriba X y Z, o escriba G92 antes de este movimiento.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/straight_moves.py" />
+      <location filename="core/interpreter/omniturn/motion/straight_moves.py" />
       <source>the T word on line {tool_line}</source>
       <translation>la palabra T de la línea {tool_line}</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/straight_moves.py" />
+      <location filename="core/interpreter/omniturn/motion/straight_moves.py" />
       <source>{word} is finer than the resolution of {step} {name}; {value} is used.</source>
       <translation>{word} es más fino que la resolución de {step} {name}; se usa {value}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/straight_moves.py" />
+      <location filename="core/interpreter/omniturn/motion/straight_moves.py" />
       <source>{word} is finer than the resolution; {value} is used.</source>
       <translation>{word} es más fino que la resolución; se usa {value}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
       <source>At {rpm} rpm this lead needs a feed of {value}; the maximum is {limit}.</source>
       <translation>A {rpm} rpm este paso necesita un avance de {value}; el máximo es {limit}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
       <source>Because of the flank angle, the last pass would start beyond its end point in Z.</source>
       <translation>Por el ángulo de flanco, la última pasada empezaría más allá de su punto final en Z.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
       <source>Check I (a larger I gives fewer passes) and the X start position of the tool.</source>
       <translation>Compruebe I (una I mayor da menos pasadas) y la posición inicial X de la herramienta.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
       <source>Check the sign of X and the start position of the tool.</source>
       <translation>Compruebe el signo de X y la posición inicial de la herramienta.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
       <source>Correct I (the depth of the first pass) or K.</source>
       <translation>Corrija I (la profundidad de la primera pasada) o K.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
       <source>Correct Z, or move the tool away before G33.</source>
       <translation>Corrija Z, o aleje la herramienta antes de G33.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
       <source>Did you mean K{feed}?</source>
       <translation>¿Quiso escribir K{feed}?</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
       <source>Position the tool at the depth of the first pass before this line.</source>
       <translation>Posicione la herramienta a la profundidad de la primera pasada antes de esta línea.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
       <source>Start farther away from the end point Z.</source>
       <translation>Empiece más lejos del punto final Z.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
       <source>Start farther from the thread, or reduce S.</source>
       <translation>Empiece más lejos de la rosca, o reduzca S.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
       <source>The acceleration distance is {run_up}, but the Z axis needs {needed} to reach the threading feed rate.</source>
       <translation>La distancia de aceleración es {run_up}, pero el eje Z necesita {needed} para alcanzar el avance de roscado.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
       <source>The lead K is missing, but the line contains {feed}.</source>
       <translation>Falta el paso K, pero la línea contiene {feed}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
       <source>The thread ends at the same Z where it starts.</source>
       <translation>La rosca termina en la misma Z donde empieza.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
       <source>The thread takes {passes} passes.</source>
       <translation>La rosca hace {passes} pasadas.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
       <source>The thread would take {count} passes; the maximum is {most_passes}.</source>
       <translation>La rosca haría {count} pasadas; el máximo es {most_passes}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
       <source>Use G35 for a larger lead.</source>
       <translation>Use G35 para un paso mayor.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
       <source>Use G35F2 for a larger lead.</source>
       <translation>Use G35F2 para un paso mayor.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
       <source>the tool is at radius {x}</source>
       <translation>la herramienta está en radio {x}</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
       <source>{text} is on the other side of the spindle centerline: {position}.</source>
       <translation>{text} está del otro lado del eje del husillo: {position}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
       <source>{text} leaves no material to cut because {position}.</source>
       <translation>{text} no deja material por cortar porque {position}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
       <source>{text}: the first pass would be deeper than the lead.</source>
       <translation>{text}: la primera pasada sería más profunda que el paso.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
       <source>{text}: the minimum lead is {minimum}.</source>
       <translation>{text}: el paso mínimo es {minimum}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
+      <location filename="core/interpreter/omniturn/setup/tools_and_offsets.py" />
       <source>G96 is active at a tool change, so the spindle drive must follow every sudden change in X.</source>
       <translation>G96 está activo en un cambio de herramienta, así que el accionamiento del husillo tiene que seguir cada cambio brusco de X.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
+      <location filename="core/interpreter/omniturn/setup/tools_and_offsets.py" />
       <source>No T follows this G10, so its work shift never takes effect.</source>
       <translation>Ninguna T sigue a este G10, así que su desplazamiento nunca actúa.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
+      <location filename="core/interpreter/omniturn/setup/tools_and_offsets.py" />
       <source>On this control, G92 presets the position and does not cut a thread. Threads are cut with G33.</source>
       <translation>En este control, G92 preselecciona la posición y no corta ninguna rosca. Las roscas se cortan con G33.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
+      <location filename="core/interpreter/omniturn/setup/tools_and_offsets.py" />
       <source>Set the tool offsets.</source>
       <translation>Ponga los correctores de las herramientas.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
+      <location filename="core/interpreter/omniturn/setup/tools_and_offsets.py" />
       <source>Write G10 before a T word.</source>
       <translation>Escriba G10 antes de una palabra T.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
+      <location filename="core/interpreter/omniturn/setup/tools_and_offsets.py" />
       <source>Write G33XnZnInKn.</source>
       <translation>Escriba G33XnZnInKn.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
+      <location filename="core/interpreter/omniturn/setup/tools_and_offsets.py" />
       <source>Write G97 before T.</source>
       <translation>Escriba G97 antes de la T.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
+      <location filename="core/interpreter/omniturn/setup/tools_and_offsets.py" />
       <source>{names} have no offset, so 0 is used and the machine will not start.</source>
       <translation>{names} no tienen corrector, así que se usa 0 y la máquina no arrancará.</translation>
     </message>
@@ -23944,1352 +23944,1352 @@
       <translation>líneas {first} a {last}</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/chamfers_and_rounds.py" />
+      <location filename="core/interpreter/sinumerik/motion/chamfers_and_rounds.py" />
       <source>Program a different end point.</source>
       <translation>Programe un punto final distinto.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/chamfers_and_rounds.py" />
+      <location filename="core/interpreter/sinumerik/motion/chamfers_and_rounds.py" />
       <source>Program two consecutive moves for the corner.</source>
       <translation>Programe dos movimientos seguidos para la esquina.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/chamfers_and_rounds.py" />
+      <location filename="core/interpreter/sinumerik/motion/chamfers_and_rounds.py" />
       <source>Use CHF, CHR and RND only with G1, G2 and G3.</source>
       <translation>Use CHF, CHR y RND sólo con G1, G2 y G3.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/chamfers_and_rounds.py" />
+      <location filename="core/interpreter/sinumerik/motion/chamfers_and_rounds.py" />
       <source>Write G18 before this block.</source>
       <translation>Escriba G18 antes de este bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/chamfers_and_rounds.py" />
+      <location filename="core/interpreter/sinumerik/motion/chamfers_and_rounds.py" />
       <source>corners in X and Z need G18</source>
       <translation>las esquinas en X y Z necesitan G18</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/chamfers_and_rounds.py" />
+      <location filename="core/interpreter/sinumerik/motion/chamfers_and_rounds.py" />
       <source>the block is not a line or an arc</source>
       <translation>el bloque no es una recta ni un arco</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/chamfers_and_rounds.py" />
+      <location filename="core/interpreter/sinumerik/motion/chamfers_and_rounds.py" />
       <source>the corner needs {needed} mm of the move on line {line}, which is only {left} mm long</source>
       <translation>la esquina necesita {needed} mm del movimiento de la línea {line}, que sólo mide {left} mm</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/chamfers_and_rounds.py" />
+      <location filename="core/interpreter/sinumerik/motion/chamfers_and_rounds.py" />
       <source>the corner size</source>
       <translation>el tamaño de la esquina</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/chamfers_and_rounds.py" />
+      <location filename="core/interpreter/sinumerik/motion/chamfers_and_rounds.py" />
       <source>the moves on lines {line} and {line2} are in the same direction and do not form a corner.</source>
       <translation>los movimientos de las líneas {line} y {line2} van en la misma dirección y no forman una esquina.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/chamfers_and_rounds.py" />
+      <location filename="core/interpreter/sinumerik/motion/chamfers_and_rounds.py" />
       <source>the next move, on line {line}, is not a line or an arc in X and Z</source>
       <translation>el movimiento siguiente, en la línea {line}, no es una recta ni un arco en X y Z</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/control_structures.py" />
+      <location filename="core/interpreter/sinumerik/flow/control_structures.py" />
       <source>Add the matching end statement.</source>
       <translation>Agregue la instrucción de final correspondiente.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/control_structures.py" />
+      <location filename="core/interpreter/sinumerik/flow/control_structures.py" />
       <source>Check the preceding blocks for the cause.</source>
       <translation>Busque la causa en los bloques anteriores.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/control_structures.py" />
+      <location filename="core/interpreter/sinumerik/flow/control_structures.py" />
       <source>Check the start of the control structure.</source>
       <translation>Compruebe el inicio de la estructura de control.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/control_structures.py" />
+      <location filename="core/interpreter/sinumerik/flow/control_structures.py" />
       <source>Correct the array sizes; at most {most_dimensions} dimensions are allowed.</source>
       <translation>Corrija los tamaños del array; se permiten como máximo {most_dimensions} dimensiones.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/control_structures.py" />
+      <location filename="core/interpreter/sinumerik/flow/control_structures.py" />
       <source>Correct the label or the direction of the jump.</source>
       <translation>Corrija la etiqueta o la dirección del salto.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/control_structures.py" />
+      <location filename="core/interpreter/sinumerik/flow/control_structures.py" />
       <source>Shorten the list, or enlarge the array.</source>
       <translation>Acorte la lista o agrande el array.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/control_structures.py" />
+      <location filename="core/interpreter/sinumerik/flow/control_structures.py" />
       <source>Write DEF INT {jump} before this block.</source>
       <translation>Escriba DEF INT {jump} antes de este bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/control_structures.py" />
+      <location filename="core/interpreter/sinumerik/flow/control_structures.py" />
       <source>array {item} needs {left} more elements for this list.</source>
       <translation>al array {item} le faltan {left} elementos para esta lista.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/control_structures.py" />
+      <location filename="core/interpreter/sinumerik/flow/control_structures.py" />
       <source>label {target} was not found in the search direction of {steering}.</source>
       <translation>no se encontró la etiqueta {target} en la dirección de búsqueda de {steering}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/control_structures.py" />
+      <location filename="core/interpreter/sinumerik/flow/control_structures.py" />
       <source>the name {jump} is not defined with DEF.</source>
       <translation>el nombre {jump} no está definido con DEF.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/control_structures.py" />
+      <location filename="core/interpreter/sinumerik/flow/control_structures.py" />
       <source>the program itself triggers alarm {number}.</source>
       <translation>el propio programa dispara la alarma {number}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/control_structures.py" />
+      <location filename="core/interpreter/sinumerik/flow/control_structures.py" />
       <source>{item}{sizes}: an array must have 1 to {largest_array} elements.</source>
       <translation>{item}{sizes}: un array debe tener de 1 a {largest_array} elementos.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/control_structures.py" />
+      <location filename="core/interpreter/sinumerik/flow/control_structures.py" />
       <source>{steering} has no matching end.</source>
       <translation>{steering} no tiene un final correspondiente.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/control_structures.py" />
+      <location filename="core/interpreter/sinumerik/flow/control_structures.py" />
       <source>{steering} has no matching start.</source>
       <translation>{steering} no tiene un inicio correspondiente.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/cycle_calls.py" />
+      <location filename="core/interpreter/sinumerik/cycles/cycle_calls.py" />
       <source>Put {named}.spf in the main program's folder, or add %_N_{named2}_SPF to the main program's file.</source>
       <translation>Ponga {named}.spf en la carpeta del programa principal, o agregue %_N_{named2}_SPF al archivo del programa principal.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/cycle_calls.py" />
+      <location filename="core/interpreter/sinumerik/cycles/cycle_calls.py" />
       <source>Write "NAME" for a subprogram, or "START:END" for two labels.</source>
       <translation>Escriba "NAME" para un subprograma, o "START:END" para dos etiquetas.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/cycle_calls.py" />
+      <location filename="core/interpreter/sinumerik/cycles/cycle_calls.py" />
       <source>{name} does not contain the name of a contour</source>
       <translation>{name} no contiene el nombre de un contorno</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/cycle_calls.py" />
+      <location filename="core/interpreter/sinumerik/cycles/cycle_calls.py" />
       <source>{name} refers to labels that do not exist: {named}</source>
       <translation>{name} se refiere a etiquetas que no existen: {named}</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/cycle_calls.py" />
+      <location filename="core/interpreter/sinumerik/cycles/cycle_calls.py" />
       <source>{name} refers to subprogram {named}, which does not exist</source>
       <translation>{name} se refiere al subprograma {named}, que no existe</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/cycle_contour.py" />
+      <location filename="core/interpreter/sinumerik/cycles/cycle_contour.py" />
       <source>C and frames are not allowed in a contour</source>
       <translation>C y los frames no se permiten en un contorno</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/cycle_contour.py" />
+      <location filename="core/interpreter/sinumerik/cycles/cycle_contour.py" />
       <source>a contour can contain only G0, G1, G2 and G3</source>
       <translation>un contorno sólo puede contener G0, G1, G2 y G3</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/cycle_contour.py" />
+      <location filename="core/interpreter/sinumerik/cycles/cycle_contour.py" />
       <source>a contour can contain only moves, but this line contains a call or a jump</source>
       <translation>un contorno sólo puede contener movimientos, pero esta línea contiene una llamada o un salto</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <location filename="core/interpreter/sinumerik/cycles/cycle_parameters.py" />
       <source>Add this parameter to {call}.</source>
       <translation>Agregue este parámetro a {call}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <location filename="core/interpreter/sinumerik/cycles/cycle_parameters.py" />
       <source>Enter a number.</source>
       <translation>Indique un número.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <location filename="core/interpreter/sinumerik/cycles/cycle_parameters.py" />
       <source>Enter a whole number.</source>
       <translation>Indique un número entero.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <location filename="core/interpreter/sinumerik/cycles/cycle_parameters.py" />
       <source>Omit {name}.</source>
       <translation>Omita {name}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <location filename="core/interpreter/sinumerik/cycles/cycle_parameters.py" />
       <source>Program F before this block.</source>
       <translation>Programe F antes de este bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <location filename="core/interpreter/sinumerik/cycles/cycle_parameters.py" />
       <source>Remove the sign.</source>
       <translation>Quite el signo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <location filename="core/interpreter/sinumerik/cycles/cycle_parameters.py" />
       <source>Use only these parameters: {names}.</source>
       <translation>Use sólo estos parámetros: {names}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <location filename="core/interpreter/sinumerik/cycles/cycle_parameters.py" />
       <source>Write G40 and a move before this block.</source>
       <translation>Escriba G40 y un movimiento antes de este bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <location filename="core/interpreter/sinumerik/cycles/cycle_parameters.py" />
       <source>Write T and D before this block.</source>
       <translation>Escriba T y D antes de este bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <location filename="core/interpreter/sinumerik/cycles/cycle_parameters.py" />
       <source>Write TRAFOOF before this block.</source>
       <translation>Escriba TRAFOOF antes de este bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <location filename="core/interpreter/sinumerik/cycles/cycle_parameters.py" />
       <source>Write TRANS without axes before this block.</source>
       <translation>Escriba TRANS sin ejes antes de este bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <location filename="core/interpreter/sinumerik/cycles/cycle_parameters.py" />
       <source>no feedrate is programmed.</source>
       <translation>no hay avance programado.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <location filename="core/interpreter/sinumerik/cycles/cycle_parameters.py" />
       <source>{call} accepts {names_count} parameters, but the call passes {arguments_count}.</source>
       <translation>{call} admite {names_count} parámetros, pero la llamada pasa {arguments_count}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <location filename="core/interpreter/sinumerik/cycles/cycle_parameters.py" />
       <source>{call} cannot run in a frame that is rotated, scaled or mirrored.</source>
       <translation>{call} no puede correr en un frame girado, escalado o en espejo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <location filename="core/interpreter/sinumerik/cycles/cycle_parameters.py" />
       <source>{call} moves along Z, but {plane} is active.</source>
       <translation>{call} se mueve a lo largo de Z, pero {plane} está activo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <location filename="core/interpreter/sinumerik/cycles/cycle_parameters.py" />
       <source>{call} needs an active tool with an offset.</source>
       <translation>{call} necesita una herramienta activa con corrector.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <location filename="core/interpreter/sinumerik/cycles/cycle_parameters.py" />
       <source>{call} uses the spindle for turning or tapping, but {plane} is active.</source>
       <translation>{call} usa el husillo para tornear o roscar, pero {plane} está activo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <location filename="core/interpreter/sinumerik/cycles/cycle_parameters.py" />
       <source>{name} is a size and cannot be negative</source>
       <translation>{name} es una medida y no puede ser negativa</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <location filename="core/interpreter/sinumerik/cycles/cycle_parameters.py" />
       <source>{name} is missing</source>
       <translation>{name} falta</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <location filename="core/interpreter/sinumerik/cycles/cycle_parameters.py" />
       <source>{name} is not supported; {why}</source>
       <translation>{name} no se admite; {why}</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <location filename="core/interpreter/sinumerik/cycles/cycle_parameters.py" />
       <source>{name} is text but must be a number</source>
       <translation>{name} es texto, pero debe ser un número</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <location filename="core/interpreter/sinumerik/cycles/cycle_parameters.py" />
       <source>{name} is {value} but must be a whole number</source>
       <translation>{name} es {value}, pero debe ser un número entero</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <location filename="core/interpreter/sinumerik/cycles/cycle_parameters.py" />
       <source>{name} is {value} but must be between {low} and {high}</source>
       <translation>{name} es {value}, pero debe estar entre {low} y {high}</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <location filename="core/interpreter/sinumerik/cycles/cycle_parameters.py" />
       <source>{name} is {value}; valid types are {low} to {high}</source>
       <translation>{name} es {value}; los tipos válidos son de {low} a {high}</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <location filename="core/interpreter/sinumerik/cycles/cycle_parameters.py" />
       <source>{name} must be a feed rate above 0</source>
       <translation>{name} debe ser un avance mayor que 0</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <location filename="core/interpreter/sinumerik/cycles/cycle_parameters.py" />
       <source>{name} must be greater than 0</source>
       <translation>{name} debe ser mayor que 0</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/drilling_cycles.py" />
       <source>Correct RTP, RFP and the depth so that they follow in this order along the drilling direction.</source>
       <translation>Corrija RTP, RFP y la profundidad para que se sucedan en este orden en la dirección de taladrado.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/drilling_cycles.py" />
       <source>Correct the sign of RPAP.</source>
       <translation>Corrija el signo de RPAP.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/drilling_cycles.py" />
       <source>DP and DPR differ, so DP is used.</source>
       <translation>DP y DPR difieren, así que se usa DP.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/drilling_cycles.py" />
       <source>Enter DP, or DPR measured from the reference plane.</source>
       <translation>Indique DP, o DPR medido desde el plano de referencia.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/drilling_cycles.py" />
       <source>Enter _MDEP, or reduce DAM.</source>
       <translation>Indique _MDEP o reduzca DAM.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/drilling_cycles.py" />
       <source>Enter the dwell in seconds.</source>
       <translation>Indique la espera en segundos.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/drilling_cycles.py" />
       <source>Enter the spindle direction.</source>
       <translation>Indique el sentido de giro del husillo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/drilling_cycles.py" />
       <source>Omit DP or DPR.</source>
       <translation>Omita DP o DPR.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/drilling_cycles.py" />
       <source>Omit _AXN.</source>
       <translation>Omita _AXN.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/drilling_cycles.py" />
       <source>Write G17 before this block and G18 after it.</source>
       <translation>Escriba G17 antes de este bloque y G18 después.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/drilling_cycles.py" />
       <source>Write G97 with S before this block.</source>
       <translation>Escriba G97 con S antes de este bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/drilling_cycles.py" />
       <source>this lathe has no Y axis</source>
       <translation>este torno no tiene eje Y</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/drilling_cycles.py" />
       <source>{call} drills perpendicular to plane G{plane}; drilling along Z needs G17.</source>
       <translation>{call} taladra perpendicular al plano G{plane}; taladrar a lo largo de Z necesita G17.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/drilling_cycles.py" />
       <source>{call} needs S in rpm.</source>
       <translation>{call} necesita S en rpm.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/drilling_cycles.py" />
       <source>{name} is before RFP in the drilling direction</source>
       <translation>{name} está antes de RFP en la dirección de taladrado</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/drilling_cycles.py" />
       <source>{name} is deeper than the hole</source>
       <translation>{name} es más profundo que el agujero</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/drilling_cycles.py" />
       <source>{name} is in revolutions, but the spindle is stopped</source>
       <translation>{name} está en vueltas, pero el husillo está parado</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/drilling_cycles.py" />
       <source>{name} is not beyond RFP as seen from RTP (RTP {retract}, RFP {reference}, depth {bottom})</source>
       <translation>{name} no está más allá de RFP visto desde RTP (RTP {retract}, RFP {reference}, profundidad {bottom})</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/drilling_cycles.py" />
       <source>{name} makes the pecks too small</source>
       <translation>{name} hace las picadas demasiado pequeñas</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/drilling_cycles.py" />
       <source>{name} must be 3 or 4</source>
       <translation>{name} debe ser 3 o 4</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/drilling_cycles.py" />
       <source>{name} must be a factor from 0.001 to 1</source>
       <translation>{name} debe ser un factor de 0.001 a 1</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/drilling_cycles.py" />
       <source>{name} must be an amount, or a factor greater than -1 and not greater than 0</source>
       <translation>{name} debe ser una cantidad, o un factor mayor que -1 y no mayor que 0</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/drilling_cycles.py" />
       <source>{name} must be an angle from 0 to less than 360 degrees</source>
       <translation>{name} debe ser un ángulo de 0 a menos de 360 grados</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/drilling_cycles.py" />
       <source>{name} selects an axis other than Z, which is not supported</source>
       <translation>{name} selecciona un eje distinto de Z, lo que no se admite</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/drilling_cycles.py" />
       <source>{name} would move the tool deeper into the hole</source>
       <translation>{name} llevaría la herramienta más adentro del agujero</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/fixed_points.py" />
+      <location filename="core/interpreter/sinumerik/motion/fixed_points.py" />
       <source>Add {key}, or write SUPA G0 D0 with machine coordinates X and Z.</source>
       <translation>Añada {key}, o escriba SUPA G0 D0 con las coordenadas de máquina X y Z.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/fixed_points.py" />
+      <location filename="core/interpreter/sinumerik/motion/fixed_points.py" />
       <source>Correct FP, or add the point to {key}.</source>
       <translation>Corrija FP o agregue el punto a {key}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/fixed_points.py" />
+      <location filename="core/interpreter/sinumerik/motion/fixed_points.py" />
       <source>Write a value from FP=1 to FP=4.</source>
       <translation>Escriba un valor de FP=1 a FP=4.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/fixed_points.py" />
+      <location filename="core/interpreter/sinumerik/motion/fixed_points.py" />
       <source>Write {word} X1=0 Z1=0.</source>
       <translation>Escriba {word} X1=0 Z1=0.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/fixed_points.py" />
+      <location filename="core/interpreter/sinumerik/motion/fixed_points.py" />
       <source>Write {word}0.</source>
       <translation>Escriba {word}0.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/fixed_points.py" />
+      <location filename="core/interpreter/sinumerik/motion/fixed_points.py" />
       <source>Write {word}=0.</source>
       <translation>Escriba {word}=0.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/fixed_points.py" />
+      <location filename="core/interpreter/sinumerik/motion/fixed_points.py" />
       <source>fixed_points under [axis.{axis}] in the machine file</source>
       <translation>fixed_points en [axis.{axis}] del archivo de máquina</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/fixed_points.py" />
+      <location filename="core/interpreter/sinumerik/motion/fixed_points.py" />
       <source>{word} has no effect with G75: the axis moves to machine position {end} mm.</source>
       <translation>{word} no tiene efecto con G75: el eje se mueve a la posición de máquina {end} mm.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/fixed_points.py" />
+      <location filename="core/interpreter/sinumerik/motion/fixed_points.py" />
       <source>{word} is not a valid fixed point.</source>
       <translation>{word} no es un punto fijo válido.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/fixed_points.py" />
+      <location filename="core/interpreter/sinumerik/motion/fixed_points.py" />
       <source>{word} moves the tool off the contour and cannot be used while G{code} is active.</source>
       <translation>{word} saca la herramienta del contorno y no se puede usar con G{code} activo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/fixed_points.py" />
+      <location filename="core/interpreter/sinumerik/motion/fixed_points.py" />
       <source>{word} must be in a block that contains only the axes to move, each programmed as 0.</source>
       <translation>{word} debe ir en un bloque que contenga sólo los ejes que se mueven, cada uno programado con 0.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/fixed_points.py" />
+      <location filename="core/interpreter/sinumerik/motion/fixed_points.py" />
       <source>{word}: G74 always moves to machine home.</source>
       <translation>{word}: G74 va siempre a la referencia de la máquina.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/fixed_points.py" />
+      <location filename="core/interpreter/sinumerik/motion/fixed_points.py" />
       <source>{word}: the machine file defines {known} fixed points for {axis}, but number {number} is programmed.</source>
       <translation>{word}: el archivo de máquina define {known} puntos fijos de {axis}, pero se programa el número {number}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/fixed_points.py" />
+      <location filename="core/interpreter/sinumerik/motion/fixed_points.py" />
       <source>{word}: the machine file does not define a fixed point for {axis}.</source>
       <translation>{word}: el archivo de máquina no define un punto fijo de {axis}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
       <source>Check the angles.</source>
       <translation>Compruebe los ángulos.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
       <source>Correct SPD or DIAG.</source>
       <translation>Corrija SPD o DIAG.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
       <source>Correct the offsets of the two tool corners.</source>
       <translation>Corrija los correctores de las dos esquinas de la herramienta.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
       <source>Program a face groove as a CYCLE95 contour or in G1 blocks.</source>
       <translation>Programe una ranura frontal como contorno de CYCLE95 o en bloques G1.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
       <source>Set both tool corners on the TOOL OFFSETS page (F8).</source>
       <translation>Ponga las dos esquinas de la herramienta en la página CORRECTORES DE HERRAMIENTA (F8).</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
       <source>Set {other} on the TOOL OFFSETS page (F8).</source>
       <translation>Ponga {other} en la página CORRECTORES DE HERRAMIENTA (F8).</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
       <source>Use a narrower tool.</source>
       <translation>Use una herramienta más angosta.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
       <source>program a groove on a taper as a CYCLE95 contour</source>
       <translation>programe una ranura en un cono como contorno de CYCLE95</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
       <source>program the corners as a CYCLE95 contour, or chamfer them with G1</source>
       <translation>programe las esquinas como contorno de CYCLE95, o achaflánelas con G1</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
       <source>{call} assumes a tool {width} mm wide because {key} is not set.</source>
       <translation>{call} supone una herramienta de {width} mm de ancho porque {key} no está puesto.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
       <source>{call} needs the tool width, but the other tool corner ({name}) is not set.</source>
       <translation>{call} necesita el ancho de la herramienta, pero la otra esquina de la herramienta ({name}) no está puesta.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
       <source>{key} and {other} are at the same position, so the tool has no width.</source>
       <translation>{key} y {other} están en la misma posición, así que la herramienta no tiene ancho.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
       <source>{name} is {high} including FAL2 on both flanks, but the tool is {width} wide</source>
       <translation>{name} es {high} con FAL2 incluido en ambos flancos, pero la herramienta mide {width} de ancho</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
       <source>{name} is {kind}, which specifies a face groove and is not supported</source>
       <translation>{name} es {kind}, que indica una ranura frontal y no se admite</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
       <source>{name} makes the groove reach past the spindle centerline</source>
       <translation>{name} hace que la ranura llegue más allá del eje del husillo</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
       <source>{name} must be 1 to 8 or 11 to 18</source>
       <translation>{name} debe ser de 1 a 8 o de 11 a 18</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
       <source>{name} must be a flank angle from 0 to less than 90 degrees</source>
       <translation>{name} debe ser un ángulo de flanco de 0 a menos de 90 grados</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
       <source>{name} must be a time of 0 s or more</source>
       <translation>{name} debe ser un tiempo de 0 s o más</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
       <source>{name} would need {count} cuts, which is too many</source>
       <translation>{name} necesitaría {count} cortes, que son demasiados</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
       <source>{name} would need {count} steps, which is too many</source>
       <translation>{name} necesitaría {count} penetraciones, que son demasiadas</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/hole_patterns.py" />
+      <location filename="core/interpreter/sinumerik/cycles/drilling_cycles.py" />
       <source>Write MCALL CYCLE81( ) or another cycle before this block.</source>
       <translation>Escriba MCALL CYCLE81( ) u otro ciclo antes de este bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/hole_patterns.py" />
+      <location filename="core/interpreter/sinumerik/cycles/drilling_cycles.py" />
       <source>Write TRANSMIT before this block, or program the positions after MCALL.</source>
       <translation>Escriba TRANSMIT antes de este bloque, o programe las posiciones después de MCALL.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/hole_patterns.py" />
+      <location filename="core/interpreter/sinumerik/cycles/drilling_cycles.py" />
       <source>{call} uses positions in X and Y, but this lathe has no Y axis.</source>
       <translation>{call} usa posiciones en X e Y, pero este torno no tiene eje Y.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/hole_patterns.py" />
+      <location filename="core/interpreter/sinumerik/cycles/drilling_cycles.py" />
       <source>{call} uses the cycle called with MCALL, but no MCALL is active.</source>
       <translation>{call} usa el ciclo llamado con MCALL, pero no hay ningún MCALL activo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/hole_patterns.py" />
+      <location filename="core/interpreter/sinumerik/cycles/drilling_cycles.py" />
       <source>{name} is the distance between the holes and must be greater than 0</source>
       <translation>{name} es la distancia entre los agujeros y debe ser mayor que 0</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/hole_patterns.py" />
+      <location filename="core/interpreter/sinumerik/cycles/drilling_cycles.py" />
       <source>{name} is the number of holes and must be greater than 0</source>
       <translation>{name} es el número de agujeros y debe ser mayor que 0</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/linear_moves.py" />
+      <location filename="core/interpreter/sinumerik/motion/linear_moves.py" />
       <source>Add X or Z of the end point to the block.</source>
       <translation>Agregue al bloque X o Z del punto final.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/linear_moves.py" />
+      <location filename="core/interpreter/sinumerik/motion/linear_moves.py" />
       <source>Correct the target or the axis offset.</source>
       <translation>Corrija el destino o el decalaje del eje.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/linear_moves.py" />
+      <location filename="core/interpreter/sinumerik/motion/linear_moves.py" />
       <source>Program a position of {name} before this block.</source>
       <translation>Programe una posición de {name} antes de este bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/linear_moves.py" />
+      <location filename="core/interpreter/sinumerik/motion/linear_moves.py" />
       <source>Program only X or only Z with ANG.</source>
       <translation>Programe sólo X o sólo Z con ANG.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/linear_moves.py" />
+      <location filename="core/interpreter/sinumerik/motion/linear_moves.py" />
       <source>Remove this word, or remove RP and AP.</source>
       <translation>Quite esta palabra, o quite RP y AP.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/linear_moves.py" />
+      <location filename="core/interpreter/sinumerik/motion/linear_moves.py" />
       <source>The resulting RP is less than 0.</source>
       <translation>La RP resultante es menor que 0.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/linear_moves.py" />
+      <location filename="core/interpreter/sinumerik/motion/linear_moves.py" />
       <source>This axis is linear; write AC( ) or IC( ).</source>
       <translation>Este eje es lineal; escriba AC( ) o IC( ).</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/linear_moves.py" />
+      <location filename="core/interpreter/sinumerik/motion/linear_moves.py" />
       <source>This axis ranges from -360 to +360; write AC( ) or IC( ).</source>
       <translation>Este eje va de -360 a +360; escriba AC( ) o IC( ).</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/linear_moves.py" />
+      <location filename="core/interpreter/sinumerik/motion/linear_moves.py" />
       <source>Write G2 or G3, or remove the word.</source>
       <translation>Escriba G2 o G3, o quite la palabra.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/linear_moves.py" />
+      <location filename="core/interpreter/sinumerik/motion/linear_moves.py" />
       <source>Write X together with ANG.</source>
       <translation>Escriba X junto con ANG.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/linear_moves.py" />
+      <location filename="core/interpreter/sinumerik/motion/linear_moves.py" />
       <source>Write Z together with ANG.</source>
       <translation>Escriba Z junto con ANG.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/linear_moves.py" />
+      <location filename="core/interpreter/sinumerik/motion/linear_moves.py" />
       <source>Write an angle from 0 to 359.999, or IC( ) for an incremental move.</source>
       <translation>Escriba un ángulo de 0 a 359.999, o IC( ) para un movimiento incremental.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/linear_moves.py" />
+      <location filename="core/interpreter/sinumerik/motion/linear_moves.py" />
       <source>Write both RP and AP.</source>
       <translation>Escriba RP y AP.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/linear_moves.py" />
+      <location filename="core/interpreter/sinumerik/motion/linear_moves.py" />
       <source>Write {name}=AC( ) or {name2}=IC( ).</source>
       <translation>Escriba {name}=AC( ) o {name2}=IC( ).</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/linear_moves.py" />
+      <location filename="core/interpreter/sinumerik/motion/linear_moves.py" />
       <source>the first polar move needs RP and AP.</source>
       <translation>el primer movimiento polar necesita RP y AP.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/linear_moves.py" />
+      <location filename="core/interpreter/sinumerik/motion/linear_moves.py" />
       <source>this straight line never reaches the programmed X.</source>
       <translation>esta recta nunca llega a la X programada.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/linear_moves.py" />
+      <location filename="core/interpreter/sinumerik/motion/linear_moves.py" />
       <source>this straight line never reaches the programmed Z.</source>
       <translation>esta recta nunca llega a la Z programada.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/linear_moves.py" />
+      <location filename="core/interpreter/sinumerik/motion/linear_moves.py" />
       <source>{text} can be used only in an arc, but G{motion} is active.</source>
       <translation>{text} sólo se puede usar en un arco, pero está activo G{motion}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/linear_moves.py" />
+      <location filename="core/interpreter/sinumerik/motion/linear_moves.py" />
       <source>{text} cannot be combined with RP and AP.</source>
       <translation>{text} no se puede combinar con RP y AP.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/linear_moves.py" />
+      <location filename="core/interpreter/sinumerik/motion/linear_moves.py" />
       <source>{word} can be used only in a straight move.</source>
       <translation>{word} sólo se puede usar en un movimiento recto.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/linear_moves.py" />
+      <location filename="core/interpreter/sinumerik/motion/linear_moves.py" />
       <source>{word} cannot be combined with both X and Z, which define the end point.</source>
       <translation>{word} no se puede combinar con X y Z a la vez, que definen el punto final.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/linear_moves.py" />
+      <location filename="core/interpreter/sinumerik/motion/linear_moves.py" />
       <source>{word} is incremental, but T or D has just changed the position of {name}.</source>
       <translation>{word} es incremental, pero T o D acaba de cambiar la posición de {name}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/linear_moves.py" />
+      <location filename="core/interpreter/sinumerik/motion/linear_moves.py" />
       <source>{word} without X or Z begins a contour of two straight lines, which TurnDesk does not support.</source>
       <translation>{word} sin X ni Z empieza un contorno de dos rectas, que TurnDesk no admite.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/linear_moves.py" />
+      <location filename="core/interpreter/sinumerik/motion/linear_moves.py" />
       <source>{word}: {form} needs a rotary axis.</source>
       <translation>{word}: {form} necesita un eje giratorio.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/live_tool.py" />
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
       <source>Remove this word, or define an output named live under [io.out] in the machine file.</source>
       <translation>Quite esta palabra, o defina una salida llamada live en [io.out] del archivo de máquina.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/live_tool.py" />
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
       <source>Set the live tool to {value} rpm by hand.</source>
       <translation>Ponga la herramienta motorizada a {value} rpm a mano.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/live_tool.py" />
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
       <source>Write M3, and use a tool that cuts in that direction.</source>
       <translation>Escriba M3 y use una herramienta que corte en ese sentido.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/live_tool.py" />
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
       <source>Write S2= in the block.</source>
       <translation>Escriba S2= en el bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/live_tool.py" />
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
       <source>{word} starts the live tool, but its speed is not programmed with S.</source>
       <translation>{word} arranca la herramienta motorizada, pero su velocidad no está programada con S.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/live_tool.py" />
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
       <source>{word}: the live tool turns in only one direction.</source>
       <translation>{word}: la herramienta motorizada gira en un solo sentido.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/live_tool.py" />
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
       <source>{word}: the speed cannot be negative; M3 and M4 set the direction.</source>
       <translation>{word}: la velocidad no puede ser negativa; M3 y M4 fijan el sentido.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/live_tool.py" />
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
       <source>{word}: this machine has one spindle and no output for a live tool.</source>
       <translation>{word}: esta máquina tiene un solo husillo y ninguna salida para una herramienta motorizada.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/live_tool.py" />
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
       <source>{word}: this machine only switches the live tool on and off; the speed is set at the drive of the live tool.</source>
       <translation>{word}: esta máquina sólo enciende y apaga la herramienta motorizada; la velocidad se ajusta en el accionamiento de la herramienta motorizada.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/m_functions.py" />
+      <location filename="core/interpreter/sinumerik/setup/m_functions.py" />
       <source>Call a subprogram by its name, and end it with M17.</source>
       <translation>Llame un subprograma por su nombre y termínelo con M17.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/m_functions.py" />
+      <location filename="core/interpreter/sinumerik/setup/m_functions.py" />
       <source>M{code} belongs to the ISO dialect of this control.</source>
       <translation>M{code} pertenece al dialecto ISO de este control.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/m_functions.py" />
+      <location filename="core/interpreter/sinumerik/setup/m_functions.py" />
       <source>M{code} is a machine-builder code that has no function on this machine</source>
       <translation>M{code} es un código del fabricante de la máquina que no tiene función en esta máquina</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/m_functions.py" />
+      <location filename="core/interpreter/sinumerik/setup/m_functions.py" />
       <source>M{code} is defined but not enabled in the machine file.</source>
       <translation>M{code} está definido pero no habilitado en el archivo de máquina.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/m_functions.py" />
+      <location filename="core/interpreter/sinumerik/setup/m_functions.py" />
       <source>T changes the tool automatically on this machine</source>
       <translation>en esta máquina T cambia la herramienta automáticamente</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/m_functions.py" />
+      <location filename="core/interpreter/sinumerik/setup/m_functions.py" />
       <source>Write M5 before this block.</source>
       <translation>Escriba M5 antes de este bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/m_functions.py" />
+      <location filename="core/interpreter/sinumerik/setup/m_functions.py" />
       <source>the machine file contains ignored = true for this M code</source>
       <translation>el archivo de máquina contiene ignored = true para este código M</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/m_functions.py" />
+      <location filename="core/interpreter/sinumerik/setup/m_functions.py" />
       <source>{what}, so the machine will not start.</source>
       <translation>{what}, así que la máquina no arrancará.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/m_functions.py" />
+      <location filename="core/interpreter/sinumerik/setup/m_functions.py" />
       <source>{word} cannot open the chuck while the spindle turns.</source>
       <translation>{word} no puede abrir el plato mientras gira el husillo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/mda_block.py" />
+      <location filename="core/interpreter/sinumerik/flow/block_search.py" />
       <source>{call} calls another program and cannot be used in MDI</source>
       <translation>{call} llama a otro programa y no se puede usar en MDI</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/mda_block.py" />
+      <location filename="core/interpreter/sinumerik/flow/block_search.py" />
       <source>{steering} jumps to another block and cannot be used in MDI</source>
       <translation>{steering} salta a otro bloque y no se puede usar en MDI</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/mda_block.py" />
+      <location filename="core/interpreter/sinumerik/flow/block_search.py" />
       <source>{word} is allowed only between two blocks of a contour</source>
       <translation>{word} sólo se permite entre dos bloques de un contorno</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
+      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
       <source>Correct the factor; to reverse an axis, use MIRROR.</source>
       <translation>Corrija el factor; para invertir un eje, use MIRROR.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
+      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
       <source>Correct the move, or write WALIMOF.</source>
       <translation>Corrija el movimiento, o escriba WALIMOF.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
+      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
       <source>G{plane} cannot change the plane while G{nose_comp} is active.</source>
       <translation>G{plane} no puede cambiar el plano con G{nose_comp} activo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
+      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
       <source>J: an arc in G18 uses I and K.</source>
       <translation>J: un arco en G18 usa I y K.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
+      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
       <source>Remove this axis, or select a machine file that has this axis.</source>
       <translation>Quite este eje, o elija un archivo de máquina que lo tenga.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
+      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
       <source>Remove this word; TRANSMIT and TRACYL create Y from X and C.</source>
       <translation>Quite esta palabra; TRANSMIT y TRACYL forman Y con X y C.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
+      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
       <source>Write G{plane} before this block.</source>
       <translation>Escriba G{plane} antes de este bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
+      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
       <source>Write {key} RPL=…</source>
       <translation>Escriba {key} RPL=…</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
+      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
       <source>Write {word} with a plain number.</source>
       <translation>Escriba {word} con un número simple.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
+      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
       <source>radius compensation in {total} needs G{plane}.</source>
       <translation>la compensación de radio en {total} necesita G{plane}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
+      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
       <source>unknown axis: this machine has no third axis.</source>
       <translation>eje desconocido: esta máquina no tiene tercer eje.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
+      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
       <source>{name} has no effect because {why}.</source>
       <translation>{name} no tiene efecto porque {why}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
+      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
       <source>{name} moves past the working area limit that G{value} sets at {limit} mm.</source>
       <translation>{name} pasa del límite de la zona de trabajo que G{value} fija en {limit} mm.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
+      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
       <source>{word} can be used only with ROT.</source>
       <translation>{word} sólo se puede usar con ROT.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
+      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
       <source>{word} can be used only with X and Z.</source>
       <translation>{word} sólo se puede usar con X y Z.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
+      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
       <source>{word}: a factor must be between 0.001 and 1000.</source>
       <translation>{word}: un factor debe estar entre 0.001 y 1000.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
+      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
       <source>{word}: an offset must be a plain number.</source>
       <translation>{word}: un desplazamiento debe ser un número simple.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
+      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
       <source>{word}: on a lathe, {key} rotates the plane with RPL=, not with axis words.</source>
       <translation>{word}: en un torno, {key} gira el plano con RPL=, no con palabras de eje.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
+      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
       <source>{word}: this lathe has no Y axis.</source>
       <translation>{word}: este torno no tiene eje Y.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/parameter_passing.py" />
+      <location filename="core/interpreter/sinumerik/flow/parameter_passing.py" />
       <source>Correct the call, or the PROC line of the subprogram.</source>
       <translation>Corrija la llamada, o la línea PROC del subprograma.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/parameter_passing.py" />
+      <location filename="core/interpreter/sinumerik/flow/parameter_passing.py" />
       <source>Pass a variable or an R parameter.</source>
       <translation>Pase una variable o un parámetro R.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/parameter_passing.py" />
+      <location filename="core/interpreter/sinumerik/flow/parameter_passing.py" />
       <source>Pass the name of an array without an index.</source>
       <translation>Pase el nombre de un array sin índice.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/parameter_passing.py" />
+      <location filename="core/interpreter/sinumerik/flow/parameter_passing.py" />
       <source>Use the array sizes given in the PROC line.</source>
       <translation>Use los tamaños de array indicados en la línea PROC.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/parameter_passing.py" />
+      <location filename="core/interpreter/sinumerik/flow/parameter_passing.py" />
       <source>no parameters</source>
       <translation>ningún parámetro</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/parameter_passing.py" />
+      <location filename="core/interpreter/sinumerik/flow/parameter_passing.py" />
       <source>{call} accepts {parameters_count}, but the call passes {arguments_count}.</source>
       <translation>{call} admite {parameters_count}, pero la llamada pasa {arguments_count}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/parameter_passing.py" />
+      <location filename="core/interpreter/sinumerik/flow/parameter_passing.py" />
       <source>{count} parameter</source>
       <translation>{count} parámetro</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/parameter_passing.py" />
+      <location filename="core/interpreter/sinumerik/flow/parameter_passing.py" />
       <source>{count} parameters</source>
       <translation>{count} parámetros</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/parameter_passing.py" />
+      <location filename="core/interpreter/sinumerik/flow/parameter_passing.py" />
       <source>{name} has {text} elements, but this size does not match the dimensions of {parameter}.</source>
       <translation>{name} tiene {text} elementos, pero este tamaño no coincide con las dimensiones de {parameter}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/parameter_passing.py" />
+      <location filename="core/interpreter/sinumerik/flow/parameter_passing.py" />
       <source>{parameter} of {call} is a VAR array, so the call must pass an array.</source>
       <translation>{parameter} de {call} es un array VAR, así que la llamada debe pasar un array.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/parameter_passing.py" />
+      <location filename="core/interpreter/sinumerik/flow/parameter_passing.py" />
       <source>{parameter} of {call} is a VAR parameter, so the call must pass a variable.</source>
       <translation>{parameter} de {call} es un parámetro VAR, así que la llamada debe pasar una variable.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/parting_cycle.py" />
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
       <source>Enter 3 for M3 or 4 for M4.</source>
       <translation>Indique 3 para M3 o 4 para M4.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/parting_cycle.py" />
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
       <source>Enter _DIAG1 and _DIAG2 as diameters, and omit _AMODE.</source>
       <translation>Indique _DIAG1 y _DIAG2 como diámetros y omita _AMODE.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/parting_cycle.py" />
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
       <source>Enter diameters, with SPD as the largest.</source>
       <translation>Indique diámetros, con SPD como el mayor.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/parting_cycle.py" />
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
       <source>Write S and M3 before this block.</source>
       <translation>Escriba S y M3 antes de este bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/parting_cycle.py" />
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
       <source>Write _FF1.</source>
       <translation>Escriba _FF1.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/parting_cycle.py" />
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
       <source>cut the chamfer or the radius with G1 before the cycle</source>
       <translation>corte el chaflán o el radio con G1 antes del ciclo</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/parting_cycle.py" />
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
       <source>the spindle is stopped, and neither _SV1 with _SDAC nor S with M3 starts it.</source>
       <translation>el husillo está parado, y ni _SV1 con _SDAC ni S con M3 lo arrancan.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/parting_cycle.py" />
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
       <source>the tool only retracts, because this machine has no parts catcher</source>
       <translation>la herramienta sólo se retira, porque esta máquina no tiene recogedor de piezas</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/parting_cycle.py" />
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
       <source>{name} cannot be {value}</source>
       <translation>{name} no puede ser {value}</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/parting_cycle.py" />
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
       <source>{name} is {slow} but must be between SPD {surface} and _DIAG2 {last}</source>
       <translation>{name} es {slow}, pero debe estar entre SPD {surface} y _DIAG2 {last}</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/parting_cycle.py" />
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
       <source>{name} is {value}, which is not a valid speed for this spindle</source>
       <translation>{name} es {value}, que no es una velocidad válida para este husillo</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/parting_cycle.py" />
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
       <source>{name} specifies depths measured from SPD, which is not supported</source>
       <translation>{name} especifica profundidades medidas desde SPD, lo que no se admite</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <location filename="core/interpreter/sinumerik/motion/radius_compensation.py" />
       <source>After G40, program a move before T or D.</source>
       <translation>Después de G40, programe un movimiento antes de T o D.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <location filename="core/interpreter/sinumerik/motion/radius_compensation.py" />
       <source>Approach with G0 or G1, then begin the contour.</source>
       <translation>Acérquese con G0 o G1 y luego empiece el contorno.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <location filename="core/interpreter/sinumerik/motion/radius_compensation.py" />
       <source>Choose a point farther away from the contour.</source>
       <translation>Elija un punto más alejado del contorno.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <location filename="core/interpreter/sinumerik/motion/radius_compensation.py" />
       <source>Choose another point for this move, or write KONT to go around the end of the contour.</source>
       <translation>Elija otro punto para este movimiento, o escriba KONT para rodear el extremo del contorno.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <location filename="core/interpreter/sinumerik/motion/radius_compensation.py" />
       <source>Choose another point for this move.</source>
       <translation>Elija otro punto para este movimiento.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <location filename="core/interpreter/sinumerik/motion/radius_compensation.py" />
       <source>Enter the nose radius on the TOOL OFFSETS page (F8).</source>
       <translation>Introduzca el radio de punta en la página CORRECTORES DE HERRAMIENTA (F8).</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <location filename="core/interpreter/sinumerik/motion/radius_compensation.py" />
       <source>Enter the tip quadrant (F8); 9 means the nose center.</source>
       <translation>Introduzca el cuadrante de punta (F8); 9 es el centro del radio.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <location filename="core/interpreter/sinumerik/motion/radius_compensation.py" />
       <source>G{code} needs an active tool with a cutting edge (D number).</source>
       <translation>G{code} necesita una herramienta activa con filo (número D).</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <location filename="core/interpreter/sinumerik/motion/radius_compensation.py" />
       <source>G{nose_comp} cannot change to G{code} within the same contour.</source>
       <translation>G{nose_comp} no puede cambiar a G{code} en el mismo contorno.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <location filename="core/interpreter/sinumerik/motion/radius_compensation.py" />
       <source>Leave the contour before you change the zero point.</source>
       <translation>Salga del contorno antes de cambiar el punto cero.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <location filename="core/interpreter/sinumerik/motion/radius_compensation.py" />
       <source>Leave the contour with G0 or G1.</source>
       <translation>Salga del contorno con G0 o G1.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <location filename="core/interpreter/sinumerik/motion/radius_compensation.py" />
       <source>Leave the contour with G40 before this block.</source>
       <translation>Salga del contorno con G40 antes de este bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <location filename="core/interpreter/sinumerik/motion/radius_compensation.py" />
       <source>Move off the part with G40 before the program ends.</source>
       <translation>Salga de la pieza con G40 antes del final del programa.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <location filename="core/interpreter/sinumerik/motion/radius_compensation.py" />
       <source>T or D is programmed before the move that leaves the contour.</source>
       <translation>T o D está programado antes del movimiento que sale del contorno.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <location filename="core/interpreter/sinumerik/motion/radius_compensation.py" />
       <source>Write the contour before G40.</source>
       <translation>Escriba el contorno antes de G40.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <location filename="core/interpreter/sinumerik/motion/radius_compensation.py" />
       <source>a nose radius of {radius} mm does not fit this contour: {why}.</source>
       <translation>un radio de punta de {radius} mm no cabe en este contorno: {why}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <location filename="core/interpreter/sinumerik/motion/radius_compensation.py" />
       <source>a thread is cut while G{code} is active.</source>
       <translation>se corta una rosca con G{code} activo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <location filename="core/interpreter/sinumerik/motion/radius_compensation.py" />
       <source>during the {end}, the nose radius of {radius} mm cuts into the contour.</source>
       <translation>durante la {end}, el radio de punta de {radius} mm corta el contorno.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <location filename="core/interpreter/sinumerik/motion/radius_compensation.py" />
       <source>in line {line}</source>
       <translation>en la línea {line}</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <location filename="core/interpreter/sinumerik/motion/radius_compensation.py" />
       <source>no contour move follows G{code}.</source>
       <translation>ningún movimiento de contorno sigue a G{code}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <location filename="core/interpreter/sinumerik/motion/radius_compensation.py" />
       <source>the C axis turns while G{code} is active.</source>
       <translation>el eje C gira con G{code} activo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <location filename="core/interpreter/sinumerik/motion/radius_compensation.py" />
       <source>the first move with G40 is not a straight line.</source>
       <translation>el primer movimiento con G40 no es una recta.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <location filename="core/interpreter/sinumerik/motion/radius_compensation.py" />
       <source>the first move with G{code} is not a straight line.</source>
       <translation>el primer movimiento con G{code} no es una recta.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <location filename="core/interpreter/sinumerik/motion/radius_compensation.py" />
       <source>the nose radius of the tool is 0, so G{code} does not compensate.</source>
       <translation>el radio de punta de la herramienta es 0, así que G{code} no compensa.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <location filename="core/interpreter/sinumerik/motion/radius_compensation.py" />
       <source>the program ends while G41 or G42 is active.</source>
       <translation>el programa termina con G41 o G42 activo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <location filename="core/interpreter/sinumerik/motion/radius_compensation.py" />
       <source>the tool has no tip quadrant, so G{code} applies the tool offset to the nose center.</source>
       <translation>la herramienta no tiene cuadrante de punta, así que G{code} aplica el corrector de la herramienta al centro del radio.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <location filename="core/interpreter/sinumerik/motion/radius_compensation.py" />
       <source>the zero point changes in the move that leaves the contour.</source>
       <translation>el cero cambia en el movimiento que sale del contorno.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <location filename="core/interpreter/sinumerik/motion/radius_compensation.py" />
       <source>the zero point changes while G{code} is active.</source>
       <translation>el cero cambia con G{code} activo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <location filename="core/interpreter/sinumerik/motion/radius_compensation.py" />
       <source>with KONT, the distance from the {end} point to the end of the contour is less than the nose radius.</source>
       <translation>con KONT, la distancia entre el punto de {end} y el extremo del contorno es menor que el radio de punta.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
+      <location filename="core/interpreter/sinumerik/motion/sinumerik_arcs.py" />
       <source>AR is programmed without an end point and without I and K.</source>
       <translation>AR está programado sin punto final y sin I y K.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
+      <location filename="core/interpreter/sinumerik/motion/sinumerik_arcs.py" />
       <source>Add I1 and K1.</source>
       <translation>Añada I1 y K1.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
+      <location filename="core/interpreter/sinumerik/motion/sinumerik_arcs.py" />
       <source>Add one of the missing values.</source>
       <translation>Agregue uno de los valores que faltan.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
+      <location filename="core/interpreter/sinumerik/motion/sinumerik_arcs.py" />
       <source>CIP needs I1 and K1 to define a point on the arc.</source>
       <translation>CIP necesita I1 y K1 para definir un punto del arco.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
+      <location filename="core/interpreter/sinumerik/motion/sinumerik_arcs.py" />
       <source>CT continues a path, but no move precedes it.</source>
       <translation>CT continúa una trayectoria, pero ningún movimiento la precede.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
+      <location filename="core/interpreter/sinumerik/motion/sinumerik_arcs.py" />
       <source>Correct CR or the end point.</source>
       <translation>Corrija CR o el punto final.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
+      <location filename="core/interpreter/sinumerik/motion/sinumerik_arcs.py" />
       <source>Correct the point, or write G1.</source>
       <translation>Corrija el punto, o escriba G1.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
+      <location filename="core/interpreter/sinumerik/motion/sinumerik_arcs.py" />
       <source>Enter I and K as distances from the start point (I as a radius), or as coordinates with AC( ).</source>
       <translation>Indique I y K como distancias desde el punto inicial (I como radio), o como coordenadas con AC( ).</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
+      <location filename="core/interpreter/sinumerik/motion/sinumerik_arcs.py" />
       <source>Keep only two of the three: AR, the end point and the center.</source>
       <translation>Deje sólo dos de los tres: AR, el punto final y el centro.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
+      <location filename="core/interpreter/sinumerik/motion/sinumerik_arcs.py" />
       <source>Remove this word, or program the type of arc that uses it.</source>
       <translation>Quite esta palabra, o programe el tipo de arco que la usa.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
+      <location filename="core/interpreter/sinumerik/motion/sinumerik_arcs.py" />
       <source>SCALE uses different factors for X and Z, so an arc is not possible.</source>
       <translation>SCALE usa factores distintos en X y Z, así que no es posible un arco.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
+      <location filename="core/interpreter/sinumerik/motion/sinumerik_arcs.py" />
       <source>Use the same factor for both axes.</source>
       <translation>Use el mismo factor en ambos ejes.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
+      <location filename="core/interpreter/sinumerik/motion/sinumerik_arcs.py" />
       <source>Write G1, or change the end point.</source>
       <translation>Escriba G1 o cambie el punto final.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
+      <location filename="core/interpreter/sinumerik/motion/sinumerik_arcs.py" />
       <source>arcs in X and Z need G18.</source>
       <translation>los arcos en X y Z necesitan G18.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
+      <location filename="core/interpreter/sinumerik/motion/sinumerik_arcs.py" />
       <source>the arc has AR, an end point and a center, but only two of them are allowed.</source>
       <translation>el arco tiene AR, un punto final y un centro, pero sólo se permiten dos de ellos.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
+      <location filename="core/interpreter/sinumerik/motion/sinumerik_arcs.py" />
       <source>the arc has CR and another definition of its center.</source>
       <translation>el arco tiene CR y otra definición de su centro.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
+      <location filename="core/interpreter/sinumerik/motion/sinumerik_arcs.py" />
       <source>the arc needs CR, AR, or I and K.</source>
       <translation>el arco necesita CR, AR, o bien I y K.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
+      <location filename="core/interpreter/sinumerik/motion/sinumerik_arcs.py" />
       <source>the arc's radius is {first} mm at its start and {last} mm at its end.</source>
       <translation>el radio del arco es {first} mm al inicio y {last} mm al final.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
+      <location filename="core/interpreter/sinumerik/motion/sinumerik_arcs.py" />
       <source>the arc{name} ends where it starts.</source>
       <translation>el arco{name} termina donde empieza.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
+      <location filename="core/interpreter/sinumerik/motion/sinumerik_arcs.py" />
       <source>the center of the arc is its start point.</source>
       <translation>el centro del arco es su punto inicial.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
+      <location filename="core/interpreter/sinumerik/motion/sinumerik_arcs.py" />
       <source>the end point of CT is in line with the previous path, so no arc is possible.</source>
       <translation>el punto final de CT está en la recta de la trayectoria anterior, así que no es posible ningún arco.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
+      <location filename="core/interpreter/sinumerik/motion/sinumerik_arcs.py" />
       <source>the start point, the end point and the intermediate point (I1, K1) are on one line, or two of them are identical.</source>
       <translation>el punto inicial, el punto final y el punto intermedio (I1, K1) están en una recta, o dos de ellos son idénticos.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
+      <location filename="core/interpreter/sinumerik/motion/sinumerik_arcs.py" />
       <source>{word} cannot be used with {kind}.</source>
       <translation>{word} no se puede usar con {kind}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
+      <location filename="core/interpreter/sinumerik/motion/sinumerik_arcs.py" />
       <source>{word} is too small: it must be at least half the distance between the arc ends, which is {chord} mm.</source>
       <translation>{word} es demasiado pequeño: debe ser al menos la mitad de la distancia entre los extremos del arco, que es {chord} mm.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
+      <location filename="core/interpreter/sinumerik/motion/sinumerik_arcs.py" />
       <source>{word}: an opening angle must be greater than 0 and less than 360 degrees.</source>
       <translation>{word}: un ángulo de apertura debe ser mayor que 0 y menor que 360 grados.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_feeds.py" />
+      <location filename="core/interpreter/sinumerik/motion/sinumerik_feeds.py" />
       <source>G95 needs a spindle speed, but the spindle is stopped.</source>
       <translation>G95 necesita una velocidad de husillo, pero el husillo está parado.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_feeds.py" />
+      <location filename="core/interpreter/sinumerik/motion/sinumerik_feeds.py" />
       <source>G95 needs the live tool speed because SETMS(2) is active, but the live tool is stopped.</source>
       <translation>G95 necesita la velocidad de la herramienta motorizada porque SETMS(2) está activo, pero la herramienta motorizada está parada.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_feeds.py" />
+      <location filename="core/interpreter/sinumerik/motion/sinumerik_feeds.py" />
       <source>Program F. A change between G94 and G95 deletes F; G96 and G97 have the same effect as G95.</source>
       <translation>Programe F. Un cambio entre G94 y G95 borra F; G96 y G97 tienen el mismo efecto que G95.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_feeds.py" />
+      <location filename="core/interpreter/sinumerik/motion/sinumerik_feeds.py" />
       <source>Start the live tool with S and M3.</source>
       <translation>Arranque la herramienta motorizada con S y M3.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_feeds.py" />
+      <location filename="core/interpreter/sinumerik/motion/sinumerik_feeds.py" />
       <source>Start the spindle with S and M3 or M4, or use G94.</source>
       <translation>Arranque el husillo con S y M3 o M4, o use G94.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_feeds.py" />
+      <location filename="core/interpreter/sinumerik/motion/sinumerik_feeds.py" />
       <source>{word} is not between 1 and 200.</source>
       <translation>{word} no está entre 1 y 200.</translation>
     </message>
@@ -25449,977 +25449,977 @@
       <translation>{word}: esta máquina sólo puede posicionar un husillo; el husillo 2 es su herramienta motorizada.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
       <source>Close the collet first.</source>
       <translation>Cierre antes la pinza.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
       <source>Correct G25 or G26.</source>
       <translation>Corrija G25 o G26.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
       <source>Enter F in seconds or S in revolutions.</source>
       <translation>Indique F en segundos o S en vueltas.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
       <source>Enter an angle from 0 to less than 360 degrees.</source>
       <translation>Indique un ángulo de 0 a menos de 360 grados.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
       <source>Enter an angle of less than 360 degrees.</source>
       <translation>Indique un ángulo menor de 360 grados.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
       <source>G4 {word} waits for spindle revolutions, but the spindle is stopped.</source>
       <translation>G4 {word} espera vueltas del husillo, pero el husillo está parado.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
       <source>Select the machine sinumerik-live, whose spindle is the C axis.</source>
       <translation>Elija la máquina sinumerik-live, cuyo husillo es el eje C.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
       <source>Set oriented = true under [spindle] in the machine file if the drive can stop the spindle at an angle, or write M5 and index the part with C.</source>
       <translation>Ponga oriented = true en [spindle] del archivo de máquina si el accionamiento puede parar el husillo en un ángulo, o escriba M5 y divida la pieza con C.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
       <source>Start the spindle with M3 or M4, or write G4 F.</source>
       <translation>Arranque el husillo con M3 o M4, o escriba G4 F.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
       <source>Write G97 if S is in rpm.</source>
       <translation>Escriba G97 si S está en rpm.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
       <source>Write S in the block.</source>
       <translation>Escriba S en el bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
       <source>Write SPOS with an angle before this block.</source>
       <translation>Escriba SPOS con un ángulo antes de este bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
       <source>a surface speed of {word} m/min is too high for any tool.</source>
       <translation>una velocidad de corte de {word} m/min es demasiado alta para cualquier herramienta.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
       <source>the speed limit</source>
       <translation>el límite de velocidad</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
       <source>the spindle of this machine cannot be oriented because C has a separate drive and the machine file does not enable orientation by the spindle drive.</source>
       <translation>el husillo de esta máquina no se puede orientar porque C tiene un accionamiento propio y el archivo de máquina no habilita la orientación con el accionamiento del husillo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
       <source>the spindle of this machine cannot be oriented because the machine has no C axis and the machine file does not enable orientation by the spindle drive.</source>
       <translation>el husillo de esta máquina no se puede orientar porque la máquina no tiene eje C y el archivo de máquina no habilita la orientación con el accionamiento del husillo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
       <source>the spindle of this machine is not a C axis because C has a separate drive; the spindle drive can only turn the spindle to an angle.</source>
       <translation>el husillo de esta máquina no es un eje C porque C tiene un accionamiento propio; el accionamiento del husillo sólo puede girar el husillo a un ángulo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
       <source>the spindle of this machine is not a C axis because the machine has no C axis; the spindle drive can only turn the spindle to an angle.</source>
       <translation>el husillo de esta máquina no es un eje C porque la máquina no tiene eje C; el accionamiento del husillo sólo puede girar el husillo a un ángulo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
       <source>{word} is a dwell of {seconds} s; the maximum is {longest_dwell} s.</source>
       <translation>{word} es una espera de {seconds} s; el máximo es {longest_dwell} s.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
       <source>{word} is above the spindle maximum of {highest} rpm.</source>
       <translation>{word} supera el máximo del husillo de {highest} rpm.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
       <source>{word} is not a valid speed limit.</source>
       <translation>{word} no es un límite de velocidad válido.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
       <source>{word} is relative to a spindle angle, but the spindle has not been positioned at an angle.</source>
       <translation>{word} es relativo a un ángulo del husillo, pero el husillo no está posicionado en ningún ángulo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
       <source>{word} needs a controlled spindle, which this machine does not have.</source>
       <translation>{word} necesita un husillo controlado, que esta máquina no tiene.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
       <source>{word} starts the spindle with the collet open.</source>
       <translation>{word} arranca el husillo con la pinza abierta.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
       <source>{word} starts the spindle, but S is 0 or not programmed.</source>
       <translation>{word} arranca el husillo, pero S es 0 o no está programada.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
       <source>{word}: a dwell cannot be negative.</source>
       <translation>{word}: una espera no puede ser negativa.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
       <source>{word}: on this drive, a spindle positioning move must be less than one revolution.</source>
       <translation>{word}: con este accionamiento, un movimiento de posicionado del husillo debe ser menor de una vuelta.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
       <source>{word}: the minimum speed {lowest} is above the maximum speed {highest}.</source>
       <translation>{word}: la velocidad mínima {lowest} supera la velocidad máxima {highest}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
       <source>{word}: {value} is not a valid spindle angle.</source>
       <translation>{word}: {value} no es un ángulo de husillo válido.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/stock_removal.py" />
+      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
       <source>Check the direction of the contour.</source>
       <translation>Compruebe la dirección del contorno.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/stock_removal.py" />
+      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
       <source>End the contour at a point where the tool can leave it.</source>
       <translation>Termine el contorno en un punto donde la herramienta pueda salir de él.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/stock_removal.py" />
+      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
       <source>Enter 1 for roughing, 5 for finishing or 9 for both, for external machining along Z.</source>
       <translation>Indique 1 para desbastar, 5 para acabar o 9 para ambos, para mecanizado exterior a lo largo de Z.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/stock_removal.py" />
+      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
       <source>Enter the tip quadrant on the TOOL OFFSETS page (F8).</source>
       <translation>Introduzca el cuadrante de punta en la página CORRECTORES DE HERRAMIENTA (F8).</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/stock_removal.py" />
+      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
       <source>Reduce FAL, or widen the narrow part of the contour.</source>
       <translation>Reduzca FAL, o ensanche la parte estrecha del contorno.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/stock_removal.py" />
+      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
       <source>Split the contour into smaller parts.</source>
       <translation>Divida el contorno en partes menores.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/stock_removal.py" />
+      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
       <source>Write FF2.</source>
       <translation>Escriba FF2.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/stock_removal.py" />
+      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
       <source>Write MID.</source>
       <translation>Escriba MID.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/stock_removal.py" />
+      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
       <source>Write {name}.</source>
       <translation>Escriba {name}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/stock_removal.py" />
+      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
       <source>the tool has no tip quadrant, so {call} ignores the nose radius on tapers and arcs.</source>
       <translation>la herramienta no tiene cuadrante de punta, así que {call} no considera el radio de punta en conos y arcos.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/stock_removal.py" />
+      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
       <source>with allowance {name}, no continuous path along the contour is possible</source>
       <translation>con la sobremedida {name} no es posible una trayectoria continua a lo largo del contorno</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/stock_removal.py" />
+      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
       <source>{name} has {contour_count} elements; the maximum is {most_elements}</source>
       <translation>{name} tiene {contour_count} elementos; el máximo es {most_elements}</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/stock_removal.py" />
+      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
       <source>{name} is missing, and no F is active</source>
       <translation>{name} falta, y no hay ninguna F activa</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/stock_removal.py" />
+      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
       <source>{name} is missing, but the contour has a relief cut</source>
       <translation>{name} falta, pero el contorno tiene un destalonado</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/stock_removal.py" />
+      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
       <source>{name} is missing, so the depth of a pass is not defined</source>
       <translation>{name} falta, así que no está definida la profundidad de una pasada</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/stock_removal.py" />
+      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
       <source>{name} is missing; valid types are 1 to 12</source>
       <translation>{name} falta; los tipos válidos son de 1 a 12</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/stock_removal.py" />
+      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
       <source>{name} is {value}; valid types are 1 to 12</source>
       <translation>{name} es {value}; los tipos válidos son de 1 a 12</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/stock_removal.py" />
+      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
       <source>{name} refers to a contour without lines or arcs</source>
       <translation>{name} se refiere a un contorno sin rectas ni arcos</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/stock_removal.py" />
+      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
       <source>{name} specifies a contour that the tool cannot approach or leave with enough clearance</source>
       <translation>{name} indica un contorno al que la herramienta no puede acercarse, o del que no puede salir, con holgura suficiente</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/stock_removal.py" />
+      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
       <source>{name} specifies a contour with no material to cut</source>
       <translation>{name} indica un contorno sin material por cortar</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/stock_removal.py" />
+      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
       <source>{name} would interrupt a pass {count} times, which is too many</source>
       <translation>{name} interrumpiría una pasada {count} veces, que son demasiadas</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/stock_removal.py" />
+      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
       <source>{name} would need {count} passes, which is too many</source>
       <translation>{name} necesitaría {count} pasadas, que son demasiadas</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/subprogram_flow.py" />
+      <location filename="core/interpreter/sinumerik/flow/subprogram_flow.py" />
       <source>Correct the label.</source>
       <translation>Corrija la etiqueta.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/subprogram_flow.py" />
+      <location filename="core/interpreter/sinumerik/flow/subprogram_flow.py" />
       <source>In the loop, change a variable that the condition uses; to make another part, use Cycle Start instead.</source>
       <translation>Cambie en el bucle una variable que use la condición; para hacer otra pieza, use el arranque de ciclo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/subprogram_flow.py" />
+      <location filename="core/interpreter/sinumerik/flow/subprogram_flow.py" />
       <source>Put the whole section to be repeated before or after this block.</source>
       <translation>Ponga toda la sección que se repite antes o después de este bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/subprogram_flow.py" />
+      <location filename="core/interpreter/sinumerik/flow/subprogram_flow.py" />
       <source>P{passes} is not a valid repeat count.</source>
       <translation>P{passes} no es un número de repeticiones válido.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/subprogram_flow.py" />
+      <location filename="core/interpreter/sinumerik/flow/subprogram_flow.py" />
       <source>Write a repeat count from P1 to P{most_passes}.</source>
       <translation>Escriba un número de repeticiones de P1 a P{most_passes}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/subprogram_flow.py" />
+      <location filename="core/interpreter/sinumerik/flow/subprogram_flow.py" />
       <source>label {missing}, which {steering} uses, is not in this program.</source>
       <translation>la etiqueta {missing}, que usa {steering}, no está en este programa.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/subprogram_flow.py" />
+      <location filename="core/interpreter/sinumerik/flow/subprogram_flow.py" />
       <source>subprogram calls are nested more than {deepest_call} levels deep.</source>
       <translation>las llamadas a subprogramas están anidadas a más de {deepest_call} niveles.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/subprogram_flow.py" />
+      <location filename="core/interpreter/sinumerik/flow/subprogram_flow.py" />
       <source>subprogram {call} does not exist.</source>
       <translation>el subprograma {call} no existe.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/subprogram_flow.py" />
+      <location filename="core/interpreter/sinumerik/flow/subprogram_flow.py" />
       <source>the program section to be repeated contains the {steering} block or does not end before that block.</source>
       <translation>la sección del programa que se repite contiene el bloque de {steering} o no termina antes de ese bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/subprogram_flow.py" />
+      <location filename="core/interpreter/sinumerik/flow/subprogram_flow.py" />
       <source>this jump repeats forever because nothing in the loop changes the result of a jump condition.</source>
       <translation>este salto se repite sin fin porque nada en el bucle cambia el resultado de una condición de salto.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
       <source>Enter 0, or the reverse direction: 4 after M3, or 3 after M4.</source>
       <translation>Indique 0 o el sentido inverso: 4 tras M3, o 3 tras M4.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
       <source>Enter PIT in mm.</source>
       <translation>Indique PIT en mm.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
       <source>Enter PIT or MPIT, or ENC 1 to use the active feed rate.</source>
       <translation>Indique PIT o MPIT, o ENC 1 para usar el avance activo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
       <source>Enter Z of the end point.</source>
       <translation>Indique la Z del punto final.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
       <source>Enter a speed, or program S before the cycle.</source>
       <translation>Indique una velocidad, o programe S antes del ciclo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
       <source>Lower the speed.</source>
       <translation>Baje la velocidad.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
       <source>No spindle speed is programmed for {code}.</source>
       <translation>No hay velocidad de husillo programada para {code}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
       <source>Write G97 with S and M3 or M4 before this block.</source>
       <translation>Escriba G97 con S y M3 o M4 antes de este bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
       <source>Write S before this block.</source>
       <translation>Escriba S antes de este bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
       <source>Write SPOS=0 before this block.</source>
       <translation>Escriba SPOS=0 antes de este bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
       <source>{call} needs the spindle to turn at a speed in rpm.</source>
       <translation>{call} necesita que el husillo gire a una velocidad en rpm.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
       <source>{call}: {name} is {value} rpm, but tapping with the C axis is limited to the C-axis maximum of {maximum} rpm.</source>
       <translation>{call}: {name} es {value} rpm, pero el roscado con el eje C está limitado al máximo del eje C, {maximum} rpm.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
       <source>{code} does not move along Z.</source>
       <translation>{code} no se mueve a lo largo de Z.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
       <source>{code} needs the lead K.</source>
       <translation>{code} necesita el paso K.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
       <source>{code} turns the spindle as the C axis, but the spindle is not locked as C.</source>
       <translation>{code} gira el husillo como eje C, pero el husillo no está bloqueado como C.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
       <source>{name} does not define a lead</source>
       <translation>{name} no define ningún paso</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
       <source>{name} does not define a speed</source>
       <translation>{name} no define ninguna velocidad</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
       <source>{name} does not reverse the spindle for the tap</source>
       <translation>{name} no invierte el husillo para el macho</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
       <source>{name} is 4, which specifies the lead as a module</source>
       <translation>{name} es 4, que indica el paso como módulo</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
       <source>{name} is {value} but must be 0, 1, 11 or 20</source>
       <translation>{name} es {value}, pero debe ser 0, 1, 11 o 20</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
       <source>{name} starts the spindle, but no S is programmed</source>
       <translation>{name} arranca el husillo, pero no hay ninguna S programada</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
       <source>{other}: {code} can tap only along Z.</source>
       <translation>{other}: {code} sólo puede roscar a lo largo de Z.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/third_axis.py" />
+      <location filename="core/interpreter/sinumerik/motion/third_axis.py" />
       <source>the end point {end} is outside the machine range of {low} to {high}</source>
       <translation>el punto final {end} está fuera del margen de la máquina de {low} a {high}</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/third_axis.py" />
+      <location filename="core/interpreter/sinumerik/motion/third_axis.py" />
       <source>{form} needs a modulo rotary axis</source>
       <translation>{form} necesita un eje giratorio módulo</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/third_axis.py" />
+      <location filename="core/interpreter/sinumerik/motion/third_axis.py" />
       <source>{value} is not a valid position of a modulo axis; valid positions are from 0 to less than 360</source>
       <translation>{value} no es una posición válida de un eje módulo; las posiciones válidas van de 0 a menos de 360</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/thread_cycle.py" />
+      <location filename="core/interpreter/sinumerik/cycles/thread_cycle.py" />
       <source>CYCLE99 supports only the functions of CYCLE97</source>
       <translation>CYCLE99 admite sólo las funciones de CYCLE97</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/thread_cycle.py" />
+      <location filename="core/interpreter/sinumerik/cycles/thread_cycle.py" />
       <source>Correct SPL or FPL.</source>
       <translation>Corrija SPL o FPL.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/thread_cycle.py" />
+      <location filename="core/interpreter/sinumerik/cycles/thread_cycle.py" />
       <source>Enter PIT, or MPIT from 3 to 68 for M3 to M68.</source>
       <translation>Indique PIT, o MPIT de 3 a 68 para M3 a M68.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/thread_cycle.py" />
+      <location filename="core/interpreter/sinumerik/cycles/thread_cycle.py" />
       <source>Enter a value from 300101 to 300104.</source>
       <translation>Indique un valor de 300101 a 300104.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/thread_cycle.py" />
+      <location filename="core/interpreter/sinumerik/cycles/thread_cycle.py" />
       <source>Enter half the thread angle.</source>
       <translation>Indique la mitad del ángulo de rosca.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/thread_cycle.py" />
+      <location filename="core/interpreter/sinumerik/cycles/thread_cycle.py" />
       <source>Enter the number of passes.</source>
       <translation>Indique el número de pasadas.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/thread_cycle.py" />
+      <location filename="core/interpreter/sinumerik/cycles/thread_cycle.py" />
       <source>Omit MPIT.</source>
       <translation>Omita MPIT.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/thread_cycle.py" />
+      <location filename="core/interpreter/sinumerik/cycles/thread_cycle.py" />
       <source>Reduce FAL.</source>
       <translation>Reduzca FAL.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/thread_cycle.py" />
+      <location filename="core/interpreter/sinumerik/cycles/thread_cycle.py" />
       <source>{name} does not continue the thread in the same Z direction</source>
       <translation>{name} no continúa la rosca en la misma dirección Z</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/thread_cycle.py" />
+      <location filename="core/interpreter/sinumerik/cycles/thread_cycle.py" />
       <source>{name} does not match a thread with lead {pit}</source>
       <translation>{name} no corresponde a una rosca de paso {pit}</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/thread_cycle.py" />
+      <location filename="core/interpreter/sinumerik/cycles/thread_cycle.py" />
       <source>{name} is 0, so nothing would be cut</source>
       <translation>{name} es 0, así que no se cortaría nada</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/thread_cycle.py" />
+      <location filename="core/interpreter/sinumerik/cycles/thread_cycle.py" />
       <source>{name} is a lead and must be greater than 0</source>
       <translation>{name} es un paso y debe ser mayor que 0</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/thread_cycle.py" />
+      <location filename="core/interpreter/sinumerik/cycles/thread_cycle.py" />
       <source>{name} is not less than TDEP, so no depth remains for roughing</source>
       <translation>{name} no es menor que TDEP, así que no queda profundidad para desbastar</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/thread_cycle.py" />
+      <location filename="core/interpreter/sinumerik/cycles/thread_cycle.py" />
       <source>{name} is the same position as the start of the thread</source>
       <translation>{name} es la misma posición que el inicio de la rosca</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/thread_cycle.py" />
+      <location filename="core/interpreter/sinumerik/cycles/thread_cycle.py" />
       <source>{name} is {value}: the last digit must be 1 to 4, and the sixth digit must be 3 (roughing and finishing together)</source>
       <translation>{name} es {value}: la última cifra debe ser de 1 a 4, y la sexta debe ser 3 (desbaste y acabado juntos)</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/thread_cycle.py" />
+      <location filename="core/interpreter/sinumerik/cycles/thread_cycle.py" />
       <source>{name} must be a flank angle of less than 60 degrees</source>
       <translation>{name} debe ser un ángulo de flanco de menos de 60 grados</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/thread_cycle.py" />
+      <location filename="core/interpreter/sinumerik/cycles/thread_cycle.py" />
       <source>{name} must be a start angle from 0 to less than 360 degrees</source>
       <translation>{name} debe ser un ángulo de entrada de 0 a menos de 360 grados</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/thread_moves.py" />
+      <location filename="core/interpreter/sinumerik/motion/thread_moves.py" />
       <source>C cannot turn while a thread is cut.</source>
       <translation>C no puede girar mientras se corta una rosca.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/thread_moves.py" />
+      <location filename="core/interpreter/sinumerik/motion/thread_moves.py" />
       <source>End the thread chain with G0.</source>
       <translation>Termine la cadena de roscas con G0.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/thread_moves.py" />
+      <location filename="core/interpreter/sinumerik/motion/thread_moves.py" />
       <source>Enter F as the lead change per revolution, in mm/rev.</source>
       <translation>Indique F como cambio del paso por vuelta, en mm/vuelta.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/thread_moves.py" />
+      <location filename="core/interpreter/sinumerik/motion/thread_moves.py" />
       <source>Enter Z of the end point and K.</source>
       <translation>Indique la Z del punto final y K.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/thread_moves.py" />
+      <location filename="core/interpreter/sinumerik/motion/thread_moves.py" />
       <source>G96 is active, but a thread needs the same spindle speed from the first pass to the last.</source>
       <translation>G96 está activo, pero una rosca necesita la misma velocidad de husillo de la primera a la última pasada.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/thread_moves.py" />
+      <location filename="core/interpreter/sinumerik/motion/thread_moves.py" />
       <source>G{motion} needs F, the lead change per revolution.</source>
       <translation>G{motion} necesita F, el cambio del paso por vuelta.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/thread_moves.py" />
+      <location filename="core/interpreter/sinumerik/motion/thread_moves.py" />
       <source>G{motion} needs K, the lead along Z.</source>
       <translation>G{motion} necesita K, el paso a lo largo de Z.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/thread_moves.py" />
+      <location filename="core/interpreter/sinumerik/motion/thread_moves.py" />
       <source>Start the spindle with S and M3 or M4.</source>
       <translation>Arranque el husillo con S y M3 o M4.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/thread_moves.py" />
+      <location filename="core/interpreter/sinumerik/motion/thread_moves.py" />
       <source>The lead of {lead} mm decreases by {growth} mm per revolution, so the thread can be only {lead2} mm long.</source>
       <translation>El paso de {lead} mm disminuye {growth} mm por vuelta, así que la rosca sólo puede tener {lead2} mm de largo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/thread_moves.py" />
+      <location filename="core/interpreter/sinumerik/motion/thread_moves.py" />
       <source>Use G34 to increase the lead and G35 to decrease it.</source>
       <translation>Use G34 para aumentar el paso y G35 para disminuirlo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/thread_moves.py" />
+      <location filename="core/interpreter/sinumerik/motion/thread_moves.py" />
       <source>Write K for angles up to 45 degrees and I for larger angles.</source>
       <translation>Escriba K para ángulos hasta 45 grados e I para ángulos mayores.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/thread_moves.py" />
+      <location filename="core/interpreter/sinumerik/motion/thread_moves.py" />
       <source>Write this word in the first block of the thread chain.</source>
       <translation>Escriba esta palabra en el primer bloque de la cadena de roscas.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/thread_moves.py" />
+      <location filename="core/interpreter/sinumerik/motion/thread_moves.py" />
       <source>a thread is cut along Z in sync with the spindle, but this block does not move along Z.</source>
       <translation>una rosca se corta a lo largo de Z en sincronía con el husillo, pero este bloque no se mueve a lo largo de Z.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/thread_moves.py" />
+      <location filename="core/interpreter/sinumerik/motion/thread_moves.py" />
       <source>a thread needs the spindle running, but the spindle is stopped.</source>
       <translation>una rosca necesita el husillo en marcha, pero el husillo está parado.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/thread_moves.py" />
+      <location filename="core/interpreter/sinumerik/motion/thread_moves.py" />
       <source>at this start point, the lead has already decreased to 0.</source>
       <translation>en este punto inicial, el paso ya ha disminuido a 0.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/thread_moves.py" />
+      <location filename="core/interpreter/sinumerik/motion/thread_moves.py" />
       <source>at {rpm} rpm, this lead requires {value} mm/min; the maximum is {limit} mm/min.</source>
       <translation>a {rpm} rpm, este paso requiere {value} mm/min; el máximo es {limit} mm/min.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/thread_moves.py" />
+      <location filename="core/interpreter/sinumerik/motion/thread_moves.py" />
       <source>the lead decreases to 0 before the end of the thread.</source>
       <translation>el paso disminuye a 0 antes del final de la rosca.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/thread_moves.py" />
+      <location filename="core/interpreter/sinumerik/motion/thread_moves.py" />
       <source>the previous block moved out of the thread and ended the thread chain.</source>
       <translation>el bloque anterior salió de la rosca y terminó la cadena de roscas.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/thread_moves.py" />
+      <location filename="core/interpreter/sinumerik/motion/thread_moves.py" />
       <source>the thread has both a lead along X and a lead along Z.</source>
       <translation>la rosca tiene un paso a lo largo de X y otro a lo largo de Z.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/thread_moves.py" />
+      <location filename="core/interpreter/sinumerik/motion/thread_moves.py" />
       <source>this thread runs in the opposite Z direction to the previous thread.</source>
       <translation>esta rosca va en Z en sentido contrario a la rosca anterior.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/thread_moves.py" />
+      <location filename="core/interpreter/sinumerik/motion/thread_moves.py" />
       <source>{word} cannot be used with G{motion}.</source>
       <translation>{word} no se puede usar con G{motion}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/thread_moves.py" />
+      <location filename="core/interpreter/sinumerik/motion/thread_moves.py" />
       <source>{word} is allowed only in the first block of a thread chain.</source>
       <translation>{word} sólo se permite en el primer bloque de una cadena de roscas.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/thread_moves.py" />
+      <location filename="core/interpreter/sinumerik/motion/thread_moves.py" />
       <source>{word} is the lead along X, but X does not move.</source>
       <translation>{word} es el paso a lo largo de X, pero X no se mueve.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/thread_moves.py" />
+      <location filename="core/interpreter/sinumerik/motion/thread_moves.py" />
       <source>{word}: a lead must be greater than 0.</source>
       <translation>{word}: un paso debe ser mayor que 0.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/thread_moves.py" />
+      <location filename="core/interpreter/sinumerik/motion/thread_moves.py" />
       <source>{word}: the lead change must be greater than 0.</source>
       <translation>{word}: el cambio del paso debe ser mayor que 0.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/tools_and_edges.py" />
+      <location filename="core/interpreter/sinumerik/setup/tools_and_edges.py" />
       <source>Enter the tool number as a whole number.</source>
       <translation>Indique el número de herramienta como número entero.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/tools_and_edges.py" />
+      <location filename="core/interpreter/sinumerik/setup/tools_and_edges.py" />
       <source>Enter this name as the remark of a tool (F8).</source>
       <translation>Introduzca este nombre como nota de una herramienta (F8).</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/tools_and_edges.py" />
+      <location filename="core/interpreter/sinumerik/setup/tools_and_edges.py" />
       <source>Set the offset of the tool on the TOOL OFFSETS page (F8); tools are T1 to T32.</source>
       <translation>Ponga el corrector de la herramienta en la página de correctores (F8); las herramientas son de T1 a T32.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/tools_and_edges.py" />
+      <location filename="core/interpreter/sinumerik/setup/tools_and_edges.py" />
       <source>Write T before this block.</source>
       <translation>Escriba T antes de este bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/tools_and_edges.py" />
+      <location filename="core/interpreter/sinumerik/setup/tools_and_edges.py" />
       <source>{edge}: no tool is active.</source>
       <translation>{edge}: no hay ninguna herramienta activa.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/tools_and_edges.py" />
+      <location filename="core/interpreter/sinumerik/setup/tools_and_edges.py" />
       <source>{key} has no tool offset, so 0 is used and the machine will not start.</source>
       <translation>{key} no tiene corrector de herramienta, así que se usa 0 y la máquina no arrancará.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/tools_and_edges.py" />
+      <location filename="core/interpreter/sinumerik/setup/tools_and_edges.py" />
       <source>{name} does not exist: {key} has no such cutting edge in the tool offsets.</source>
       <translation>{name} no existe: {key} no tiene ese filo en los correctores.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/tools_and_edges.py" />
+      <location filename="core/interpreter/sinumerik/setup/tools_and_edges.py" />
       <source>{word} calls tool {word2} on this control; write {meant}.</source>
       <translation>{word} llama a la herramienta {word2} en este control; escriba {meant}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/tools_and_edges.py" />
+      <location filename="core/interpreter/sinumerik/setup/tools_and_edges.py" />
       <source>{word} results in {value}, which is not a tool number.</source>
       <translation>{word} resulta en {value}, que no es un número de herramienta.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/tools_and_edges.py" />
+      <location filename="core/interpreter/sinumerik/setup/tools_and_edges.py" />
       <source>{word}: cutting edges are D1 to D9; D0 deselects the cutting edge.</source>
       <translation>{word}: los filos son de D1 a D9; D0 deselecciona el filo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/transformations.py" />
+      <location filename="core/interpreter/sinumerik/motion/transformations.py" />
       <source>DIAMON is active: in TRANSMIT, X is a diameter, but Y is not.</source>
       <translation>DIAMON está activo: en TRANSMIT, X es un diámetro, pero Y no.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/transformations.py" />
+      <location filename="core/interpreter/sinumerik/motion/transformations.py" />
       <source>Program the part with the Y axis of this machine.</source>
       <translation>Programe la pieza con el eje Y de esta máquina.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/transformations.py" />
+      <location filename="core/interpreter/sinumerik/motion/transformations.py" />
       <source>Select a machine file that has a C axis.</source>
       <translation>Elija un archivo de máquina que tenga eje C.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/transformations.py" />
+      <location filename="core/interpreter/sinumerik/motion/transformations.py" />
       <source>Set X of G{settable} to 0, or write G500.</source>
       <translation>Ponga X de G{settable} a 0, o escriba G500.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/transformations.py" />
+      <location filename="core/interpreter/sinumerik/motion/transformations.py" />
       <source>TRACYL needs the diameter on which Y is measured.</source>
       <translation>TRACYL necesita el diámetro sobre el que se mide Y.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/transformations.py" />
+      <location filename="core/interpreter/sinumerik/motion/transformations.py" />
       <source>Write DIAMOF before this block.</source>
       <translation>Escriba DIAMOF antes de este bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/transformations.py" />
+      <location filename="core/interpreter/sinumerik/motion/transformations.py" />
       <source>Write M5 or SPOS=0 before this block.</source>
       <translation>Escriba M5 o SPOS=0 antes de este bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/transformations.py" />
+      <location filename="core/interpreter/sinumerik/motion/transformations.py" />
       <source>Write the diameter, as in TRACYL(40).</source>
       <translation>Escriba el diámetro, como en TRACYL(40).</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/transformations.py" />
+      <location filename="core/interpreter/sinumerik/motion/transformations.py" />
       <source>Write {word} without a data set number or groove walls, and program the groove walls as contours.</source>
       <translation>Escriba {word} sin número de juego de datos ni paredes de ranura, y programe las paredes de la ranura como contornos.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/transformations.py" />
+      <location filename="core/interpreter/sinumerik/motion/transformations.py" />
       <source>{word} creates a Y axis from X and the spindle, but the third axis of this machine is Y.</source>
       <translation>{word} forma un eje Y con X y el husillo, pero el tercer eje de esta máquina es Y.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/transformations.py" />
+      <location filename="core/interpreter/sinumerik/motion/transformations.py" />
       <source>{word} must be in a separate block.</source>
       <translation>{word} debe ir en un bloque aparte.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/transformations.py" />
+      <location filename="core/interpreter/sinumerik/motion/transformations.py" />
       <source>{word} rotates the part with C, but the third axis of this machine is linear.</source>
       <translation>{word} gira la pieza con C, pero el tercer eje de esta máquina es lineal.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/transformations.py" />
+      <location filename="core/interpreter/sinumerik/motion/transformations.py" />
       <source>{word} rotates the part with C, but this machine has no third axis.</source>
       <translation>{word} gira la pieza con C, pero esta máquina no tiene tercer eje.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/transformations.py" />
+      <location filename="core/interpreter/sinumerik/motion/transformations.py" />
       <source>{word} selects groove walls or a data set other than the first, but only one data set, without groove walls, is available.</source>
       <translation>{word} selecciona un juego de datos distinto del primero, o paredes de ranura, pero sólo hay un juego de datos sin paredes de ranura.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/transformations.py" />
+      <location filename="core/interpreter/sinumerik/motion/transformations.py" />
       <source>{word}: G{settable} shifts X, but the part rotates about X0.</source>
       <translation>{word}: G{settable} desplaza X, pero la pieza gira alrededor de X0.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/transformations.py" />
+      <location filename="core/interpreter/sinumerik/motion/transformations.py" />
       <source>{word}: the spindle is turning, but it must be locked as the C axis.</source>
       <translation>{word}: el husillo está girando, pero debe estar bloqueado como eje C.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/transformed_plane.py" />
+      <location filename="core/interpreter/sinumerik/motion/transformed_plane.py" />
       <source>Change the tool or the zero point before the corner or after G40.</source>
       <translation>Cambie la herramienta o el cero antes de la esquina o después de G40.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/transformed_plane.py" />
+      <location filename="core/interpreter/sinumerik/motion/transformed_plane.py" />
       <source>Program the groove walls as contours after G40.</source>
       <translation>Programe las paredes de la ranura como contornos después de G40.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/transformed_plane.py" />
+      <location filename="core/interpreter/sinumerik/motion/transformed_plane.py" />
       <source>Use the arc center words for this plane.</source>
       <translation>Use las palabras de centro de arco de este plano.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/transformed_plane.py" />
+      <location filename="core/interpreter/sinumerik/motion/transformed_plane.py" />
       <source>a thread along Z needs the spindle running, but {word} uses the spindle as C.</source>
       <translation>una rosca a lo largo de Z necesita el husillo en marcha, pero {word} usa el husillo como C.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/transformed_plane.py" />
+      <location filename="core/interpreter/sinumerik/motion/transformed_plane.py" />
       <source>arcs, corners and radius compensation in {word} need G{plane}.</source>
       <translation>los arcos, las esquinas y la compensación de radio en {word} necesitan G{plane}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/transformed_plane.py" />
+      <location filename="core/interpreter/sinumerik/motion/transformed_plane.py" />
       <source>the tool or the zero point changes between two moves of a corner or a contour.</source>
       <translation>la herramienta o el cero cambia entre dos movimientos de una esquina o un contorno.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/transformed_plane.py" />
+      <location filename="core/interpreter/sinumerik/motion/transformed_plane.py" />
       <source>{word} cannot change a contour that is not finished yet.</source>
       <translation>{word} no puede cambiar un contorno que aún no está terminado.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/transformed_plane.py" />
+      <location filename="core/interpreter/sinumerik/motion/transformed_plane.py" />
       <source>{word} has no meaning in {word2}.</source>
       <translation>{word} no tiene significado en {word2}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/transformed_plane.py" />
+      <location filename="core/interpreter/sinumerik/motion/transformed_plane.py" />
       <source>{word} is half the groove width in TRACYL, but TurnDesk does not machine the groove walls from this value.</source>
       <translation>{word} es la mitad del ancho de la ranura en TRACYL, pero TurnDesk no mecaniza las paredes de la ranura a partir de este valor.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/transformed_plane.py" />
+      <location filename="core/interpreter/sinumerik/motion/transformed_plane.py" />
       <source>{word} is not an arc center word in G{plane}.</source>
       <translation>{word} no es una palabra de centro de arco en G{plane}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/transformed_plane.py" />
+      <location filename="core/interpreter/sinumerik/motion/transformed_plane.py" />
       <source>{word} moves the machine axes and cannot be used while {word2} is active.</source>
       <translation>{word} mueve los ejes de la máquina y no se puede usar con {word2} activo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/transformed_plane.py" />
+      <location filename="core/interpreter/sinumerik/motion/transformed_plane.py" />
       <source>{word}: {word2} already controls C.</source>
       <translation>{word}: {word2} ya controla C.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/undercut_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/undercut_cycles.py" />
       <source>Correct FORM, or use another tool.</source>
       <translation>Corrija FORM o use otra herramienta.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/undercut_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/undercut_cycles.py" />
       <source>Enter 1 for roughing, 2 for finishing or 3 for both.</source>
       <translation>Indique 1 para desbastar, 2 para acabar o 3 para ambos.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/undercut_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/undercut_cycles.py" />
       <source>Program the undercut block by block.</source>
       <translation>Programe la garganta bloque a bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/undercut_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/undercut_cycles.py" />
       <source>Use a tool with a smaller nose radius.</source>
       <translation>Use una herramienta con menor radio de punta.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/undercut_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/undercut_cycles.py" />
       <source>Write form "A", "B", "E" or "F". For forms C and D, use CYCLE96. Program a free form (T) block by block.</source>
       <translation>Escriba la forma "A", "B", "E" o "F". Para las formas C y D use CYCLE96. Programe la forma libre (T) bloque a bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/undercut_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/undercut_cycles.py" />
       <source>program the undercut block by block</source>
       <translation>programe la garganta bloque a bloque</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/undercut_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/undercut_cycles.py" />
       <source>the nose radius {nose_radius} does not fit into this undercut: {why}.</source>
       <translation>el radio de punta {nose_radius} no cabe en esta garganta: {why}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/undercut_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/undercut_cycles.py" />
       <source>the nose radius {nose} is larger than the radius {radius} of this undercut.</source>
       <translation>el radio de punta {nose} es mayor que el radio {radius} de esta garganta.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/undercut_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/undercut_cycles.py" />
       <source>the tip quadrant of the tool is {quadrant}, but an undercut needs a quadrant from 1 to 4.</source>
       <translation>el cuadrante de punta de la herramienta es {quadrant}, pero una garganta necesita un cuadrante de 1 a 4.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/undercut_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/undercut_cycles.py" />
       <source>{name} is {diameter}, but must be greater than 3 mm for an undercut</source>
       <translation>{name} es {diameter}, pero debe ser mayor que 3 mm para una garganta</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/undercut_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/undercut_cycles.py" />
       <source>{name} is {form}, which is not supported</source>
       <translation>{name} es {form}, que no se admite</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/undercut_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/undercut_cycles.py" />
       <source>{name} is {nominal}, which is not a coarse thread size from M3 to M{largest_of_all}</source>
       <translation>{name} es {nominal}, que no es una medida de rosca gruesa de M3 a M{largest_of_all}</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/undercut_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/undercut_cycles.py" />
       <source>{name} must be "A", "B", "C" or "D"</source>
       <translation>{name} debe ser "A", "B", "C" o "D"</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/undercut_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/undercut_cycles.py" />
       <source>{name} must be "E" or "F"</source>
       <translation>{name} debe ser "E" o "F"</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/undercut_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/undercut_cycles.py" />
       <source>{name} specifies a lead of {lead}, but no undercut is defined for that lead</source>
       <translation>{name} indica un paso de {lead}, pero no hay ninguna garganta definida para ese paso</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/undercut_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/undercut_cycles.py" />
       <source>{name} {form} is for inside undercuts, but the cutting edge of the tool is for outside undercuts</source>
       <translation>{name} {form} es para gargantas interiores, pero el filo de la herramienta es para gargantas exteriores</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/undercut_cycles.py" />
+      <location filename="core/interpreter/sinumerik/cycles/undercut_cycles.py" />
       <source>{name} {form} is for outside undercuts, but the cutting edge of the tool is for inside undercuts</source>
       <translation>{name} {form} es para gargantas exteriores, pero el filo de la herramienta es para gargantas interiores</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/variables.py" />
+      <location filename="core/interpreter/sinumerik/flow/variables.py" />
       <source>Use a variable of type REAL or INT.</source>
       <translation>Use una variable de tipo REAL o INT.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/variables.py" />
+      <location filename="core/interpreter/sinumerik/flow/variables.py" />
       <source>Use a whole number of 0 or more as the index.</source>
       <translation>Use como índice un número entero de 0 o más.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/variables.py" />
+      <location filename="core/interpreter/sinumerik/flow/variables.py" />
       <source>Use indices from 0; the last element is {letters}[{last}].</source>
       <translation>Use índices desde 0; el último elemento es {letters}[{last}].</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/variables.py" />
+      <location filename="core/interpreter/sinumerik/flow/variables.py" />
       <source>Write the value, or an R parameter that contains it.</source>
       <translation>Escriba el valor, o un parámetro R que lo contenga.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/variables.py" />
+      <location filename="core/interpreter/sinumerik/flow/variables.py" />
       <source>Write {name}=… before this block, or set the value in R PARAMETERS (F10).</source>
       <translation>Escriba {name}=… antes de este bloque, o ponga el valor en PARÁMETROS R (F10).</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/variables.py" />
+      <location filename="core/interpreter/sinumerik/flow/variables.py" />
       <source>{letters} is a system variable, which TurnDesk cannot read.</source>
       <translation>{letters} es una variable de sistema, que TurnDesk no puede leer.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/variables.py" />
+      <location filename="core/interpreter/sinumerik/flow/variables.py" />
       <source>{letters}[{item}] does not exist.</source>
       <translation>{letters}[{item}] no existe.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/variables.py" />
+      <location filename="core/interpreter/sinumerik/flow/variables.py" />
       <source>{name} has no value and is treated as 0: neither the program nor the operator has set it.</source>
       <translation>{name} no tiene valor y se trata como 0: ni el programa ni el operador lo ha puesto.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/variables.py" />
+      <location filename="core/interpreter/sinumerik/flow/variables.py" />
       <source>{name} is not an element of {letters}, which has {text} elements.</source>
       <translation>{name} no es un elemento de {letters}, que tiene {text} elementos.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/variables.py" />
+      <location filename="core/interpreter/sinumerik/flow/variables.py" />
       <source>{name} is text, not a number.</source>
       <translation>{name} es texto, no un número.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/turn_at_axis.py" />
+      <location filename="core/interpreter/shared/turn_at_axis.py" />
       <source>At the spindle centerline, the tool does not move while C turns; route the path around the centerline.</source>
       <translation>En el eje del husillo, la herramienta no se mueve mientras gira C; lleve la trayectoria por un lado del eje.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/turn_at_axis.py" />
+      <location filename="core/interpreter/shared/turn_at_axis.py" />
       <source>The path passes through the spindle centerline, where C turns by {angle} degrees.</source>
       <translation>La trayectoria pasa por el eje del husillo, donde C gira {angle} grados.</translation>
     </message>
@@ -26509,32 +26509,32 @@
       <translation>{name} PGM</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/contour_blocks.py" />
+      <location filename="core/language/klartext/cycle_blocks.py" />
       <source>CONTOUR DEF accepts only pockets (P) and islands (I)</source>
       <translation>CONTOUR DEF acepta sólo cajeras (P) e islas (I)</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/contour_blocks.py" />
+      <location filename="core/language/klartext/cycle_blocks.py" />
       <source>CONTOUR DEF does not name a contour</source>
       <translation>CONTOUR DEF no nombra ningún contorno</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/contour_blocks.py" />
+      <location filename="core/language/klartext/cycle_blocks.py" />
       <source>CONTOUR DEF with a separate depth for one contour</source>
       <translation>CONTOUR DEF con una profundidad aparte para un contorno</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/contour_blocks.py" />
+      <location filename="core/language/klartext/cycle_blocks.py" />
       <source>Expected a contour: LBL n, or a program name in quotes</source>
       <translation>Se esperaba un contorno: LBL n o un nombre de programa entre comillas</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/contour_blocks.py" />
+      <location filename="core/language/klartext/cycle_blocks.py" />
       <source>Write, for example, P1 = LBL 1 I2 = LBL 2.</source>
       <translation>Escriba, por ejemplo, P1 = LBL 1 I2 = LBL 2.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/contour_blocks.py" />
+      <location filename="core/language/klartext/cycle_blocks.py" />
       <source>Write, for example, P1 = LBL 1.</source>
       <translation>Escriba, por ejemplo, P1 = LBL 1.</translation>
     </message>
@@ -27184,27 +27184,27 @@
       <translation>{form} necesita {missing}</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/pattern_block.py" />
+      <location filename="core/language/klartext/cycle_blocks.py" />
       <source>After PATTERN DEF, write, for example, POS1 (X+0 Y+0 Z+0).</source>
       <translation>Después de PATTERN DEF, escriba, por ejemplo, POS1 (X+0 Y+0 Z+0).</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/pattern_block.py" />
+      <location filename="core/language/klartext/cycle_blocks.py" />
       <source>Close the parenthesis after the last word.</source>
       <translation>Cierre el paréntesis después de la última palabra.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/pattern_block.py" />
+      <location filename="core/language/klartext/cycle_blocks.py" />
       <source>PATTERN DEF accepts only POS1 (…), ROW1, PAT1, FRAME1, CIRC1 or PITCHCIRC1</source>
       <translation>PATTERN DEF acepta sólo POS1 (…), ROW1, PAT1, FRAME1, CIRC1 o PITCHCIRC1</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/pattern_block.py" />
+      <location filename="core/language/klartext/cycle_blocks.py" />
       <source>PATTERN DEF has no points</source>
       <translation>PATTERN DEF no tiene puntos</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/pattern_block.py" />
+      <location filename="core/language/klartext/cycle_blocks.py" />
       <source>Unexpected word in {form}</source>
       <translation>Palabra inesperada en {form}</translation>
     </message>
@@ -27429,57 +27429,57 @@
       <translation>Los parámetros {kind} llegan hasta {kind2}{highest}.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/refused_codes.py" />
+      <location filename="core/language/klartext/klartext_faults.py" />
       <source>A contour formula (QC, DECLARE CONTOUR, SEL CONTOUR)</source>
       <translation>Una fórmula de contorno (QC, DECLARE CONTOUR, SEL CONTOUR)</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/refused_codes.py" />
+      <location filename="core/language/klartext/klartext_faults.py" />
       <source>A freely definable table (FN 26, FN 27, FN 28)</source>
       <translation>Una tabla de libre definición (FN 26, FN 27, FN 28)</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/refused_codes.py" />
+      <location filename="core/language/klartext/klartext_faults.py" />
       <source>A string (QS, DECLARE STRING, TOCHAR, SUBSTR, SYSSTR, TONUMB, INSTR, STRLEN, STRCOMP)</source>
       <translation>Una cadena (QS, DECLARE STRING, TOCHAR, SUBSTR, SYSSTR, TONUMB, INSTR, STRLEN, STRCOMP)</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/refused_codes.py" />
+      <location filename="core/language/klartext/klartext_faults.py" />
       <source>Assign the values to Q parameters in the program.</source>
       <translation>Asigne los valores a parámetros Q en el programa.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/refused_codes.py" />
+      <location filename="core/language/klartext/klartext_faults.py" />
       <source>List the pockets and islands with CONTOUR DEF or cycle 14.</source>
       <translation>Enumere las cajeras y las islas con CONTOUR DEF o el ciclo 14.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/refused_codes.py" />
+      <location filename="core/language/klartext/klartext_faults.py" />
       <source>Mill the face with L moves, and repeat them with CALL LBL and REP.</source>
       <translation>Frese la cara con movimientos L y repítalos con CALL LBL y REP.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/refused_codes.py" />
+      <location filename="core/language/klartext/klartext_faults.py" />
       <source>Mill the thread along a helix (CP with IPA and IZ), or cut it with a tapping cycle.</source>
       <translation>Frese la rosca en una hélice (CP con IPA e IZ) o tállela con un ciclo de roscado.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/refused_codes.py" />
+      <location filename="core/language/klartext/klartext_faults.py" />
       <source>Use cycle 21 with the data of cycle 20.</source>
       <translation>Use el ciclo 21 con los datos del ciclo 20.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/refused_codes.py" />
+      <location filename="core/language/klartext/klartext_faults.py" />
       <source>Use cycle 22 with the data of cycle 20.</source>
       <translation>Use el ciclo 22 con los datos del ciclo 20.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/refused_codes.py" />
+      <location filename="core/language/klartext/klartext_faults.py" />
       <source>Use cycle 24 with the data of cycle 20.</source>
       <translation>Use el ciclo 24 con los datos del ciclo 20.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/refused_codes.py" />
+      <location filename="core/language/klartext/klartext_faults.py" />
       <source>Write names in quotes, and use Q parameters for numbers.</source>
       <translation>Escriba los nombres entre comillas y use parámetros Q para los números.</translation>
     </message>
@@ -27764,12 +27764,12 @@
       <translation>{what} necesita un palpador, pero esta máquina no lo tiene.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/foreign_program.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>Rewrite the program with the codes of this control; each message below names the code to use.</source>
       <translation>Reescriba el programa con los códigos de este control; cada mensaje siguiente indica el código que debe usar.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/foreign_program.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>This program was written for a {control} control. TurnDesk runs OmniTurn programs.</source>
       <translation>Este programa se escribió para un control {control}. TurnDesk ejecuta programas OmniTurn.</translation>
     </message>
@@ -28539,22 +28539,22 @@
       <translation>{word}: {letter} debe tener exactamente dos cifras.</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/array_values.py" />
+      <location filename="core/language/sinumerik/block_reader.py" />
       <source>REP accepts only a value and a number of elements</source>
       <translation>REP acepta sólo un valor y un número de elementos</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/array_values.py" />
+      <location filename="core/language/sinumerik/block_reader.py" />
       <source>The closing parenthesis of the list of values is missing</source>
       <translation>Falta el paréntesis de cierre de la lista de valores</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/array_values.py" />
+      <location filename="core/language/sinumerik/block_reader.py" />
       <source>Write ) after the last value.</source>
       <translation>Escriba ) después del último valor.</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/array_values.py" />
+      <location filename="core/language/sinumerik/block_reader.py" />
       <source>Write, for example, REP(0).</source>
       <translation>Escriba, por ejemplo, REP(0).</translation>
     </message>
@@ -29179,32 +29179,32 @@
       <translation>{name} está guardado como UTF-16.</translation>
     </message>
     <message>
-      <location filename="core/language/typography.py" />
+      <location filename="core/language/line_reading.py" />
       <source>a quotation mark, which this control does not allow</source>
       <translation>unas comillas, que este control no permite</translation>
     </message>
     <message>
-      <location filename="core/language/typography.py" />
+      <location filename="core/language/line_reading.py" />
       <source>a special decimal point, not the one on the keyboard</source>
       <translation>un punto decimal especial, no el del teclado</translation>
     </message>
     <message>
-      <location filename="core/language/typography.py" />
+      <location filename="core/language/line_reading.py" />
       <source>a special minus sign, not the one on the keyboard</source>
       <translation>un signo menos especial, no el del teclado</translation>
     </message>
     <message>
-      <location filename="core/language/typography.py" />
+      <location filename="core/language/line_reading.py" />
       <source>a special parenthesis, not the one on the keyboard</source>
       <translation>un paréntesis especial, no el del teclado</translation>
     </message>
     <message>
-      <location filename="core/language/typography.py" />
+      <location filename="core/language/line_reading.py" />
       <source>a special plus sign, not the one on the keyboard</source>
       <translation>un signo más especial, no el del teclado</translation>
     </message>
     <message>
-      <location filename="core/language/typography.py" />
+      <location filename="core/language/line_reading.py" />
       <source>an invisible character</source>
       <translation>un carácter invisible</translation>
     </message>

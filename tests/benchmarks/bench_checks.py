@@ -15,7 +15,7 @@ from unittest import mock
 from app.compose.known_part import known_part
 from app.compose.machine.machine_files import load_machine
 from app.compose.machine.machine_setup import setup_for
-from core.interpreter.job_setup import ToolOffset
+from core.interpreter.shared.job_setup import ToolOffset
 from core.language.source import Source
 from core.part.cutter import Cutter
 from core.part.stock import Clamping

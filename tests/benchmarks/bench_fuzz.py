@@ -12,7 +12,7 @@ import time
 
 from app.compose.machine.machine_files import shipped_machine
 from app.compose.machine.machine_setup import setup_for
-from core.interpreter.job_setup import SecondaryOffset, ToolOffset
+from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import Dialect, Source
 from core.machine.machine_model import Machine
 from core.proving.prove_program import prove

@@ -17,7 +17,7 @@ from core.executor.commands import CycleStart, EnableDrives, FeedHold, LoadJob
 from core.executor.executor import Executor
 from core.executor.job import Proof, make_job
 from core.executor.snapshot import State
-from core.interpreter.job_setup import ToolOffset
+from core.interpreter.shared.job_setup import ToolOffset
 from core.language.source import Source
 from drivers.waiting import StepClock
 

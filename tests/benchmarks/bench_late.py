@@ -25,7 +25,7 @@ import resources
 from app.compose.machine.machine_setup import setup_for
 from core.executor.commands import CycleStart, EnableDrives, FeedHold, Jog, LoadJob, Reset
 from core.executor.job import Proof, make_job
-from core.interpreter.job_setup import ToolOffset
+from core.interpreter.shared.job_setup import ToolOffset
 from core.language.source import Source
 from core.store.store_file import FILE_NAME
 from drivers.simulators.plant_hands import PlantHands

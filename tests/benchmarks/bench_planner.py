@@ -13,7 +13,7 @@ import sys
 import time
 from collections.abc import Callable
 
-from core.interpreter.elementary_blocks import Block
+from core.interpreter.shared.elementary_blocks import Block
 from core.motion.axis_limits import MotionLimits
 from core.motion.motion_plan import plan
 from core.motion.window_planner import ChunkPlanner

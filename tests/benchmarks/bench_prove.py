@@ -17,7 +17,7 @@ from pathlib import Path
 
 from app.compose.machine.machine_setup import read_machine, setup_for
 from core.interpreter.dialects import interpretation
-from core.interpreter.job_setup import Setup, ToolOffset
+from core.interpreter.shared.job_setup import Setup, ToolOffset
 from core.language.source import Source
 from core.proving.prove_program import prove
 from tests.benchmarks.installed import installed

@@ -18,7 +18,7 @@ from core.executor.commands import Command, CycleStart, EnableDrives, LoadJob
 from core.executor.executor import Executor
 from core.executor.job import Proof, make_job
 from core.executor.snapshot import Event, State
-from core.interpreter.job_setup import ToolOffset
+from core.interpreter.shared.job_setup import ToolOffset
 from core.language.source import Source
 from drivers.waiting import RealClock
 from tests.benchmarks.bench_hold import TICK, chords

@@ -25,7 +25,7 @@ from typing import Any
 
 from app.compose.machine.machine_files import load_machine
 from app.compose.machine.machine_setup import setup_for
-from core.interpreter.job_setup import Setup, ToolOffset
+from core.interpreter.shared.job_setup import Setup, ToolOffset
 from core.language.source import Source
 from core.machine.machine_model import Machine
 from core.motion.axis_limits import MotionLimits

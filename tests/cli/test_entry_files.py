@@ -9,7 +9,7 @@ import pytest
 from app.cli.program_options import read_inputs
 from app.compose.stored_offsets import NONE, read_offsets
 from app.desk.command_errors import CommandError
-from core.interpreter.job_setup import SecondaryOffset, ToolOffset
+from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
 from tests.coded import raises_code
 
 

@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 from app.cli.figures.omniturn_figures import block_json, decimals, rounded, row, series_json, series_rows
 from app.compose.machine.machine_files import load_machine
 from app.compose.machine.machine_setup import setup_for
-from core.interpreter.elementary_blocks import Series, TimedSeries
-from core.interpreter.job_setup import SecondaryOffset, ToolOffset
+from core.interpreter.shared.elementary_blocks import Series, TimedSeries
+from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import Source
 from core.proving.program_timeline import TimedBlock, Timeline, timed_blocks
 

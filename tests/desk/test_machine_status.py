@@ -12,7 +12,7 @@ from app.desk.status.readouts import Lamp, Readout, coordinates, drives_lamp
 from core.alarms import CATALOGUE
 from core.executor.raised_alarm import make_alarm
 from core.executor.snapshot import Alarm, Snapshot, State
-from core.interpreter.modal_state import Modal
+from core.interpreter.shared.modal_state import Modal
 from core.ports import ALL_UNKNOWN, Unknown
 from tests.texts import text
 

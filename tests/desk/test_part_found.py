@@ -21,7 +21,7 @@ from app.desk.status.prompt_line import announced, remedy
 from app.path.path_picture import Picture
 from core.executor.commands import Command, GiveProof, LoadJob, Renew
 from core.executor.snapshot import Snapshot, State
-from core.interpreter.job_setup import ToolOffset
+from core.interpreter.shared.job_setup import ToolOffset
 from core.language.diagnostics import Severity
 from core.machine.machine_model import ClampingModel, Machine
 from core.part.tool_shape import ToolKind, ToolShape

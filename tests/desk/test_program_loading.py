@@ -16,7 +16,7 @@ from core.executor.commands import Command, GiveProof, LoadJob
 from core.executor.job import Job, Proof
 from core.executor.snapshot import Snapshot, State
 from core.interpreter.dialects import ReadProgram
-from core.interpreter.job_setup import Setup
+from core.interpreter.shared.job_setup import Setup
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Source
 from tests.texts import text as wording

@@ -11,7 +11,7 @@ from core.executor.commands import Command, EnableDrives, Home
 from core.executor.job import Proof, make_job
 from core.executor.raised_alarm import make_alarm
 from core.executor.snapshot import Snapshot, State
-from core.interpreter.job_setup import Setup
+from core.interpreter.shared.job_setup import Setup
 from core.language.source import Source
 from drivers.waiting import StepClock
 

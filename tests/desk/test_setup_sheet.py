@@ -11,7 +11,7 @@ from app.compose.machine.machine_setup import setup_for
 from app.special.setup_sheet import SetupSheet, setup_sheet
 from core.geometry.rotary_axes import DatumPreset
 from core.interpreter.dialects import ReadProgram
-from core.interpreter.job_setup import MillTool, ToolOffset
+from core.interpreter.shared.job_setup import MillTool, ToolOffset
 from core.language.source import Source
 from core.part.stock import Stock, bar
 from core.part.tool_shape import ToolKind, ToolShape

@@ -32,8 +32,8 @@ from pathlib import Path
 from app.compose.machine.machine_files import shipped_machine
 from app.compose.machine.machine_setup import setup_for
 from core.interpreter.dialects import ReadProgram, code_book
-from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.job_setup import ToolOffset
+from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.job_setup import ToolOffset
 from core.language.code_book import Entry
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Dialect, Source

@@ -16,8 +16,8 @@ from __future__ import annotations
 
 import math
 
-from core.interpreter import actions
-from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.shared import actions
+from core.interpreter.shared.elementary_blocks import Block, Kind
 
 NEAR = 6e-7
 Row = list[str | float]

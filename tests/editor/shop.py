@@ -16,7 +16,7 @@ from app.editor.editor import Editor, LeftProgram
 from app.path.path_picture import Picture, picture_of
 from core.executor.job import Job
 from core.interpreter.dialects import ReadProgram
-from core.interpreter.job_setup import ToolOffset
+from core.interpreter.shared.job_setup import ToolOffset
 from core.language.source import Source, load_source
 from core.proving.program_timeline import Timeline, timed_blocks
 from core.proving.prove_program import prove

@@ -11,11 +11,11 @@ from app.searchto.searchto_plan import now_of
 from core.executor.commands import CycleStart, Prepare
 from core.executor.job import Job, make_job
 from core.executor.snapshot import Starts, State
-from core.interpreter.checkpoint import Begin, Checkpoint
-from core.interpreter.job_setup import Setup, ToolOffset
 from core.interpreter.restart.restart_approach import Choices, begin_at
 from core.interpreter.restart.restart_point import RestartPoint
 from core.interpreter.restart.state_rebuild import StateRebuild
+from core.interpreter.shared.checkpoint import Begin, Checkpoint
+from core.interpreter.shared.job_setup import Setup, ToolOffset
 from core.language.diagnostics import Diagnostic
 from core.language.source import Dialect, Source
 from core.proving.prove_program import prove

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from core.interpreter.actions import Action, ProgramEnd
-from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.modal_state import Modal
+from core.interpreter.shared.actions import Action, ProgramEnd
+from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.modal_state import Modal
 
 
 class Maker:

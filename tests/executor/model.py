@@ -32,7 +32,7 @@ from core.executor.commands import (
     WheelOff,
 )
 from core.executor.snapshot import ACTIVE, CYCLE, Starts, State
-from core.interpreter.job_setup import ToolOffset
+from core.interpreter.shared.job_setup import ToolOffset
 from core.ports import DriverError
 from core.proving.prove_program import prove
 from tests.executor.lines import line_job, restart_job

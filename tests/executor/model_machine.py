@@ -18,8 +18,8 @@ from core.executor.executor import Executor
 from core.executor.job import Job, ProgramPass
 from core.executor.snapshot import ACTIVE, BY_HAND, CYCLE, STOPPED, Snapshot, State
 from core.executor.start_conditions import TIME_TO_READ
-from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.job_setup import Setup
+from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.job_setup import Setup
 from core.ports import Unknown
 from tests.executor.rig import Rig
 from tests.texts import pattern

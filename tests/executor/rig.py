@@ -14,8 +14,8 @@ from core.executor.commands import Command, ConfirmStart, CycleStart, EnableDriv
 from core.executor.executor import Executor
 from core.executor.job import Job, ProgramPass, Proof, interpret, make_job
 from core.executor.snapshot import Event, InterruptedJob, Snapshot, State
-from core.interpreter.elementary_blocks import Block
-from core.interpreter.job_setup import Setup, ToolOffset
+from core.interpreter.shared.elementary_blocks import Block
+from core.interpreter.shared.job_setup import Setup, ToolOffset
 from core.language.source import Source
 from core.machine.machine_model import Machine
 from drivers.simulated.simulated_machine import Simulation

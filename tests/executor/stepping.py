@@ -9,10 +9,10 @@ from dataclasses import dataclass, field
 from core.executor.commands import CycleStart, LoadJob, SetSwitch
 from core.executor.job import Job, ProgramPass, Proof, interpret, make_job
 from core.executor.snapshot import State
-from core.interpreter.actions import Dwell, ProgramEnd
 from core.interpreter.dialects import interpretation
-from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.job_setup import Setup
+from core.interpreter.shared.actions import Dwell, ProgramEnd
+from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.job_setup import Setup
 from core.language.diagnostics import Severity
 from core.language.source import Source
 from core.machine.machine_model import Machine

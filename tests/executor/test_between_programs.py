@@ -17,8 +17,8 @@ from core.executor.commands import (
 )
 from core.executor.control_status import modal_given_up
 from core.executor.snapshot import Starts, State
-from core.interpreter.job_setup import SecondaryOffset, ToolOffset
-from core.interpreter.modal_state import Modal
+from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
+from core.interpreter.shared.modal_state import Modal
 from tests.executor.rig import INCH, Rig
 from tests.texts import text
 

@@ -11,7 +11,7 @@ from app.compose.machine.machine_setup import setup_for
 from core.executor.commands import CycleStart, FeedHold, FeedOverride, LoadJob, Reset, SetSwitch
 from core.executor.job import Proof, make_job
 from core.executor.snapshot import Snapshot, State
-from core.interpreter.job_setup import ToolOffset
+from core.interpreter.shared.job_setup import ToolOffset
 from core.language.source import Source
 from core.proving.prove_program import prove
 from tests.executor.rig import Rig

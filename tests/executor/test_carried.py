@@ -10,7 +10,7 @@ from app.compose.machine.machine_files import load_machine
 from core.executor.commands import CycleStart, LoadJob, Prepare, SetSwitch
 from core.executor.job import Job, Proof, make_job
 from core.executor.snapshot import State
-from core.interpreter.omniturn.carry_over import RAPID, UNITS, inherited_settings
+from core.interpreter.omniturn.setup.carry_over import RAPID, UNITS, inherited_settings
 from core.language.source import Dialect, Source
 from tests.executor.lines import mdi
 from tests.executor.rig import INCH, Rig

@@ -9,7 +9,7 @@ import pytest
 from core.executor.commands import CycleStart, FeedHold, LoadJob, Renew, Reset, SetSwitch
 from core.executor.job import Job, Proof, make_job
 from core.executor.snapshot import State
-from core.interpreter.job_setup import SecondaryOffset, ToolOffset
+from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import Source
 from tests.executor.lines import mdi
 from tests.executor.rig import INCH, Rig

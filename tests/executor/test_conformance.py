@@ -10,7 +10,7 @@ from app.compose.machine.machine_setup import setup_for
 from core.executor.commands import CycleStart, LoadJob
 from core.executor.job import Proof, make_job
 from core.executor.snapshot import State
-from core.interpreter.job_setup import SecondaryOffset, ToolOffset
+from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import Source
 from core.proving.prove_program import prove
 from tests.executor.rig import Rig

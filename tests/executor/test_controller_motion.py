@@ -11,9 +11,9 @@ from core.executor.job import ProgramPass, ReadAhead
 from core.executor.program_motion.controller_motion import LONGEST, ControllerMotion, Turning, parts_of
 from core.executor.program_motion.path_section import Progress
 from core.executor.raised_alarm import AlarmError
-from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.machine_requirements import first_needs, needs_of
-from core.interpreter.modal_state import Modal
+from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.machine_requirements import first_needs, needs_of
+from core.interpreter.shared.modal_state import Modal
 from core.ports import ArcOp, BlockOp, LineOp, RapidOp, ThreadOp
 from tests.coded import raises_code
 from tests.executor.played_controller import PlayedController, context_of, turn_feed_pot

@@ -12,7 +12,7 @@ from app.compose.machine.machine_files import load_machine
 from core.executor.commands import Command, CycleStart, EnableDrives, FeedHold, Home, Reset, SetSwitch
 from core.executor.safety.watchdog import ExecutorThread
 from core.executor.snapshot import Snapshot, State
-from core.interpreter.actions import Collet, Dwell, SpindleRun
+from core.interpreter.shared.actions import Collet, Dwell, SpindleRun
 from core.machine.machine_model import Machine
 from core.ports import ALL_UNKNOWN, StationState
 from drivers.waiting import RealClock

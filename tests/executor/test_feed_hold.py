@@ -9,8 +9,8 @@ import pytest
 
 from core.executor.commands import CycleStart, FeedHold, FeedOverride, Reset, SetSwitch
 from core.executor.snapshot import State
-from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.modal_state import Modal
+from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.modal_state import Modal
 from tests.executor.rig import INCH, TICK, Rig, off_line
 from tests.texts import text
 

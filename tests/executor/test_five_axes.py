@@ -12,9 +12,9 @@ from core.executor.commands import FeedHold
 from core.executor.snapshot import Snapshot, State
 from core.geometry.rotary_axes import Kinematics, PivotMove, Rotary, Slide
 from core.geometry.working_plane import Travel
-from core.interpreter.actions import ProgramEnd
-from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.modal_state import Modal
+from core.interpreter.shared.actions import ProgramEnd
+from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.modal_state import Modal
 from tests.executor.rig import Rig
 from tests.machine.mill import MILL
 from tests.texts import text

@@ -12,8 +12,8 @@ from app.compose.machine.machine_setup import setup_for
 from core.executor.commands import CycleStart, FeedHold, Reset, SetSwitch
 from core.executor.snapshot import State
 from core.interpreter.dialects import interpretation
-from core.interpreter.elementary_blocks import Block
-from core.interpreter.job_setup import ToolOffset
+from core.interpreter.shared.elementary_blocks import Block
+from core.interpreter.shared.job_setup import ToolOffset
 from core.language.source import Source
 from tests.executor.rig import Rig
 from tests.texts import text

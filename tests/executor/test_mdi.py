@@ -8,7 +8,7 @@ from app.compose.machine.machine_files import shipped_machine
 from app.compose.workshop import proof_of
 from core.executor.commands import CycleStart, FeedHold, Prepare, Reset, SetSwitch
 from core.executor.snapshot import Starts, State
-from core.interpreter.job_setup import ToolOffset
+from core.interpreter.shared.job_setup import ToolOffset
 from core.proving.prove_program import prove
 from tests.executor.lines import errors, line_job, mdi, press
 from tests.executor.rig import INCH, Rig

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from core.executor.commands import CycleStart, FeedHold, FeedOverride, SetSwitch
 from core.executor.snapshot import State
-from core.interpreter.job_setup import ToolOffset
+from core.interpreter.shared.job_setup import ToolOffset
 from tests.executor.rig import INCH, Rig
 
 TOOLS = {1: ToolOffset(), 2: ToolOffset()}

@@ -14,9 +14,9 @@ from core.executor.job import Proof
 from core.executor.snapshot import State
 from core.executor.start_conditions import lacking
 from core.interpreter.dialects import interpretation
-from core.interpreter.elementary_blocks import Block
-from core.interpreter.job_setup import ToolOffset
-from core.interpreter.machine_requirements import ORIENT, first_needs, needs_of
+from core.interpreter.shared.elementary_blocks import Block
+from core.interpreter.shared.job_setup import ToolOffset
+from core.interpreter.shared.machine_requirements import ORIENT, first_needs, needs_of
 from core.language.source import Source
 from core.proving.prove_program import prove
 from tests.executor.rig import Rig

@@ -20,10 +20,10 @@ from core.executor.signals import StationSignals
 from core.executor.snapshot import State
 from core.executor.spindle_control import SpindleAngle, SpindleControl, SpindleDemand
 from core.executor.start_conditions import hindrance, lacking
-from core.interpreter.elementary_blocks import Kind
-from core.interpreter.job_setup import Setup
-from core.interpreter.machine_requirements import ARC, THREAD, Need
-from core.interpreter.modal_state import Modal
+from core.interpreter.shared.elementary_blocks import Kind
+from core.interpreter.shared.job_setup import Setup
+from core.interpreter.shared.machine_requirements import ARC, THREAD, Need
+from core.interpreter.shared.modal_state import Modal
 from core.language.source import Source
 from core.motion.axis_limits import MotionLimits
 from tests.coded import raises_code

@@ -13,9 +13,9 @@ from core.executor.commands import CycleStart, FeedHold, LoadJob, Prepare, Reset
 from core.executor.control_status import Workpiece
 from core.executor.job import Job, Proof, make_job
 from core.executor.snapshot import Snapshot, Starts, State
-from core.interpreter.checkpoint import Leg
 from core.interpreter.restart.restart_approach import Choices
 from core.interpreter.restart.state_rebuild import StateRebuild
+from core.interpreter.shared.checkpoint import Leg
 from core.language.source import Source
 from core.proving.prove_program import prove
 from tests.executor import lines

@@ -11,7 +11,7 @@ from app.compose.machine.machine_setup import setup_for
 from app.compose.stored_offsets import read_offsets
 from core.executor.commands import CycleStart, FeedHold, SetSwitch
 from core.executor.snapshot import State
-from core.interpreter.job_setup import SecondaryOffset, Setup, ToolOffset
+from core.interpreter.shared.job_setup import SecondaryOffset, Setup, ToolOffset
 from core.language.called_files import with_called_files
 from core.language.source import Source, load_source
 from core.machine.machine_model import Machine

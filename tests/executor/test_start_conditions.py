@@ -22,8 +22,8 @@ from core.executor.commands import (
 )
 from core.executor.job import Proof, make_job
 from core.executor.snapshot import TRANSITIONS, State, TransitionError, demand_allowed
-from core.interpreter.job_setup import Setup, ToolOffset
-from core.interpreter.machine_requirements import THREAD, Need
+from core.interpreter.shared.job_setup import Setup, ToolOffset
+from core.interpreter.shared.machine_requirements import THREAD, Need
 from core.language.source import Dialect, Source
 from tests.executor.rig import Rig, unhomed_machine
 from tests.texts import pattern, text

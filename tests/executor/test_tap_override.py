@@ -10,7 +10,7 @@ from app.compose.machine.machine_setup import setup_for
 from core.executor.program_motion.path_section import Overrides, PathSection
 from core.executor.snapshot_publisher import _feed
 from core.interpreter.dialects import interpretation
-from core.interpreter.job_setup import ToolOffset
+from core.interpreter.shared.job_setup import ToolOffset
 from core.language.source import Source
 from core.motion.axis_limits import MotionLimits
 

@@ -14,8 +14,8 @@ from core.executor.program_motion.thread_curve import curve_of
 from core.executor.program_motion.thread_path import ThreadPath, ThreadRetract
 from core.executor.raised_alarm import AlarmError
 from core.executor.spindle_control import SpindleDemand
-from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.modal_state import Modal
+from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.modal_state import Modal
 from core.motion.axis_limits import MotionLimits
 from core.ports import Segments
 from tests.coded import raises_code

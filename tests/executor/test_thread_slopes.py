@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 
 from core.executor.commands import CycleStart, FeedHold
 from core.executor.snapshot import Snapshot, State
-from core.interpreter.job_setup import ToolOffset
+from core.interpreter.shared.job_setup import ToolOffset
 from core.ports import DriverError
 from drivers.waiting import StepClock
 from tests.executor.rig import INCH, CreepingClock, Rig

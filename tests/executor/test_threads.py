@@ -14,7 +14,7 @@ import pytest
 from core.executor.commands import CycleStart, FeedHold, Reset
 from core.executor.snapshot import Snapshot, State
 from core.executor.spindle_control import SpindleAngle
-from core.interpreter.job_setup import ToolOffset
+from core.interpreter.shared.job_setup import ToolOffset
 from core.motion.axis_limits import FloatArray
 from tests.executor.rig import FINE, INCH, CreepingClock, Rig
 from tests.texts import text

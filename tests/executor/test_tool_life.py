@@ -14,7 +14,7 @@ from core.executor.commands import (
     SetSwitch,
 )
 from core.executor.snapshot import Starts, State
-from core.interpreter.job_setup import ToolOffset
+from core.interpreter.shared.job_setup import ToolOffset
 from tests.executor.lines import mdi
 from tests.executor.rig import Rig
 from tests.texts import text

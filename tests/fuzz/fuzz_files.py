@@ -25,7 +25,7 @@ from app.compose.machine.setup_archive import FORMAT, MANIFEST
 from app.compose.machine.setup_file import check_setup
 from app.desk.command_errors import CommandError
 from app.offsets.offsets_file import read_rows, read_tool_shapes
-from core.interpreter.job_setup import SecondaryOffset, ToolOffset
+from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import Dialect, SourceError, source_of
 from core.machine.machine_file import text_of
 from core.part.stock_spec import StockError, profile_stock

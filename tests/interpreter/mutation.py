@@ -6,7 +6,7 @@ import random
 from functools import cache
 
 from core.interpreter.dialects import code_book
-from core.interpreter.omniturn.code_table import CHAPTERS
+from core.interpreter.omniturn.codes.code_table import CHAPTERS
 from core.language.source import Dialect
 
 SEEDS = tuple(code.program for _, codes in CHAPTERS for code in codes)

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-from core.interpreter.actions import Action
-from core.interpreter.elementary_blocks import Block
-from core.interpreter.job_setup import ControlLimits, SecondaryOffset, Setup, ToolOffset
 from core.interpreter.omniturn.omniturn_interpreter import Interpreter
 from core.interpreter.omniturn.omniturn_program import Program, read_program
+from core.interpreter.shared.actions import Action
+from core.interpreter.shared.elementary_blocks import Block
+from core.interpreter.shared.job_setup import ControlLimits, SecondaryOffset, Setup, ToolOffset
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Source
 

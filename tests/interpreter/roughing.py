@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from itertools import pairwise
 
 from core.geometry.lines_and_arcs import Arc, Element, Line, Point, arc_between, distance
-from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.shared.elementary_blocks import Block, Kind
 
 
 def element_of(block: Block) -> Element:

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import pytest
 
-from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.machine_requirements import (
+from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.machine_requirements import (
     SURFACE,
     SURFACE_THREAD,
     THREAD,
@@ -17,7 +17,7 @@ from core.interpreter.machine_requirements import (
     first_needs,
     needs_of,
 )
-from core.interpreter.sinumerik.programmed_frame import ProgrammedFrame
+from core.interpreter.sinumerik.setup.programmed_frame import ProgrammedFrame
 from tests.interpreter.programs import lines, passed, setup
 from tests.motion.moves import arc, line
 

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.job_setup import ControlLimits
+from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.job_setup import ControlLimits
 from core.language.source import load_source
 from tests.interpreter.programs import INCH, OUTPUTS, Pass, passed, setup
 

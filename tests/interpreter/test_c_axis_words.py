@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from core.interpreter.actions import SpindleLock, SpindleRun
-from core.interpreter.elementary_blocks import Kind
-from core.interpreter.job_setup import ControlLimits
+from core.interpreter.shared.actions import SpindleLock, SpindleRun
+from core.interpreter.shared.elementary_blocks import Kind
+from core.interpreter.shared.job_setup import ControlLimits
 from tests.interpreter.programs import INCH, Pass, lines, passed, setup
 
 HEAD = "G90G94F300"

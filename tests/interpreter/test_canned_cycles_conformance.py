@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from core.geometry.lines_and_arcs import Element
-from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.shared.elementary_blocks import Block, Kind
 from core.language.source import load_source
 from tests.interpreter.programs import INCH, Pass, in_feed, passed
 from tests.interpreter.roughing import Bar, contour_of, nearest

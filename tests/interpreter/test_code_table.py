@@ -12,11 +12,7 @@ import pytest
 
 from app.compose.machine.machine_files import load_machine
 from app.compose.machine.machine_setup import setup_for
-from core.interpreter.actions import Dwell
-from core.interpreter.elementary_blocks import Block
-from core.interpreter.job_setup import SecondaryOffset, ToolOffset
-from core.interpreter.omniturn import dwell
-from core.interpreter.omniturn.code_entry import (
+from core.interpreter.omniturn.codes.code_entry import (
     HEAD,
     TAIL,
     Acts,
@@ -28,7 +24,7 @@ from core.interpreter.omniturn.code_entry import (
     WordRule,
     names,
 )
-from core.interpreter.omniturn.code_table import (
+from core.interpreter.omniturn.codes.code_table import (
     CHAPTERS,
     FLOW_CODES,
     G_CODES,
@@ -36,9 +32,13 @@ from core.interpreter.omniturn.code_table import (
     M_CODES,
     carry_out,
 )
-from core.interpreter.omniturn.language_page import page
+from core.interpreter.omniturn.codes.language_page import page
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
+from core.interpreter.omniturn.setup import spindle_and_dwell
+from core.interpreter.shared.actions import Dwell
+from core.interpreter.shared.elementary_blocks import Block
+from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
 from core.language.diagnostics import Severity
 from core.language.omniturn.omniturn_words import RANGES
 from core.language.source import Source
@@ -49,12 +49,14 @@ from tests.interpreter.programs import passed
 CODES = [code for _, codes in CHAPTERS for code in codes]
 PAGE = Path(__file__).parents[2] / "docs" / "language.md"
 ROOM = Path(__file__).parents[2] / "core" / "interpreter" / "omniturn"
-SHARED = ROOM.parent / "turn_at_axis.py"  # what all languages say alike
+SHARED = ROOM.parent / "shared" / "turn_at_axis.py"  # what all languages say alike
 REFUSAL = re.compile(r'"([a-z0-9]+(?:-[a-z0-9]+)+)"')
 NOSE = 0.015 * 25.4
 
 OF_NO_CODE = names("m-disabled m-unknown no-effect")  # of codes that only the machine file could know
-FAMILIES = sorted({code.handler.split(".")[0] for code in CODES} - {"omniturn_statement"})
+FAMILIES = sorted(
+    {code.handler.partition(":")[0].replace(".", "/") for code in CODES} - {"omniturn_statement"}
+)
 
 
 def test_no_code_has_two_entries() -> None:
@@ -95,7 +97,8 @@ def test_each_refusal_of_a_family_stands_in_an_entry(family: str) -> None:
 
 
 def test_no_entry_names_a_refusal_that_is_none() -> None:
-    files = [*(file for file in ROOM.glob("*.py") if file.name != "code_table.py"), SHARED]
+    tables = {"move_codes.py", "cycle_codes.py", "flow_codes.py"}
+    files = [*(file for file in ROOM.rglob("*.py") if file.name not in tables), SHARED]
     text = "".join(file.read_text(encoding="utf-8") for file in files)
     further = frozenset().union(*(code.further for code in CODES))
     stated = {each.code for code in CODES for each in code.plain_refusals}
@@ -151,7 +154,7 @@ def test_a_rule_in_the_entry_is_what_is_asked(monkeypatch: pytest.MonkeyPatch) -
 
 def test_the_page_is_written_from_the_table() -> None:
     assert PAGE.read_text(encoding="utf-8") == page(), (
-        "python -m core.interpreter.omniturn.language_page > docs/language.md"
+        "python -m core.interpreter.omniturn.codes.language_page > docs/language.md"
     )
 
 
@@ -165,7 +168,8 @@ def wait_in_turns(state: State, made: Statement) -> Iterator[Block]:
 
 
 TRIAL = Code(
-    "G05", "G05Fn", "Waits for n turns.", "G05F2", acts=Acts.MOTION, handler="dwell.wait_in_turns",
+    "G05", "G05Fn", "Waits for n turns.", "G05F2", acts=Acts.MOTION,
+    handler="setup.spindle_and_dwell:wait_in_turns",
     words=names("F S T D"), f=FWord.SECONDS, least_blocks=1, not_in_mdi="{code} is a trial.",
 )  # fmt: skip
 
@@ -180,7 +184,7 @@ def test_a_code_without_an_entry_does_not_exist() -> None:
 
 def test_one_entry_makes_a_code(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(G_CODES, 5, TRIAL)
-    monkeypatch.setattr(dwell, "wait_in_turns", wait_in_turns, raising=False)
+    monkeypatch.setattr(spindle_and_dwell, "wait_in_turns", wait_in_turns, raising=False)
     result = passed(program("Z0", "G05F2", "Z-.1"))
     assert result.errors == []
     waits, cut = result.blocks[-3], result.blocks[-2]
@@ -196,7 +200,7 @@ def test_a_code_whose_f_means_nothing_is_none() -> None:
     with raises_code(CodeEntryError, "f-word", "G05"):
         replace(TRIAL, words=names("S T D"))
     with pytest.raises(TypeError):
-        Code("G05", "G05Fn", "Waits.", "G05F2", acts=Acts.MOTION, handler="dwell.dwell")  # type: ignore[call-arg]
+        Code("G05", "G05Fn", "Waits.", "G05F2", acts=Acts.MOTION, handler="setup.spindle_and_dwell:dwell")  # type: ignore[call-arg]
     with raises_code(CodeEntryError, "rule-without-word", "G05"):
         replace(TRIAL, rules={"K": WordRule("a lead")})
     with raises_code(CodeEntryError, "no-group", "G05"):
@@ -205,4 +209,4 @@ def test_a_code_whose_f_means_nothing_is_none() -> None:
 
 def test_a_handler_that_is_nowhere_is_an_error() -> None:
     with pytest.raises(AttributeError):
-        carry_out(replace(TRIAL, handler="dwell.nowhere"))
+        carry_out(replace(TRIAL, handler="setup.spindle_and_dwell:nowhere"))

@@ -7,8 +7,8 @@ from math import sqrt, tan
 
 import pytest
 
-from core.interpreter.actions import Coolant
-from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.shared.actions import Coolant
+from core.interpreter.shared.elementary_blocks import Block, Kind
 from tests.interpreter.programs import INCH, Pass, body, lines, passed, setup
 from tests.texts import text
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from core.interpreter.equal_passes import equal_depths, pass_count
+from core.interpreter.shared.contour_passes import equal_depths, pass_count
 
 
 @pytest.mark.parametrize(

@@ -9,10 +9,10 @@ from unittest.mock import patch
 
 import pytest
 
-from core.interpreter.job_setup import ControlLimits, Setup, ToolOffset
-from core.interpreter.omniturn import straight_moves
+from core.interpreter.omniturn.motion import straight_moves
 from core.interpreter.omniturn.omniturn_interpreter import Interpreter
 from core.interpreter.omniturn.omniturn_program import read_program
+from core.interpreter.shared.job_setup import ControlLimits, Setup, ToolOffset
 from core.language.diagnostics import Diagnostic
 from core.language.source import Source
 

@@ -17,11 +17,11 @@ from pathlib import Path
 
 import pytest
 
-from core.interpreter import actions
-from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.job_setup import Setup, ToolOffset
 from core.interpreter.omniturn.omniturn_interpreter import Interpreter
 from core.interpreter.omniturn.omniturn_program import read_program
+from core.interpreter.shared import actions
+from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.job_setup import Setup, ToolOffset
 from core.language.diagnostics import Severity
 from core.language.source import Source
 from tests.dialects.golden_rows import flow_words, switch_words

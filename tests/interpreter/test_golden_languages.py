@@ -21,7 +21,7 @@ import pytest
 from app.compose.machine.machine_files import shipped_machine
 from app.compose.machine.machine_setup import setup_for
 from core.interpreter.dialects import ReadProgram
-from core.interpreter.job_setup import ToolOffset
+from core.interpreter.shared.job_setup import ToolOffset
 from core.language.diagnostics import Severity
 from core.language.source import Dialect, Source
 from tests.dialects.golden_rows import row, same

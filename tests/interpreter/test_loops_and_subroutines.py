@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from core.interpreter.actions import AskInput
 from core.interpreter.omniturn.omniturn_interpreter import Interpreter
+from core.interpreter.shared.actions import AskInput
 from tests.interpreter.programs import body, lines, passed, setup
 
 SUBS = ("}1", "X1", "X2", "M99", "}2", "Z5", "M98P1", "M99")

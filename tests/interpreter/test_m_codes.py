@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from core.interpreter.actions import (
+from core.interpreter.shared.actions import (
     Action,
     Collet,
     Coolant,
@@ -16,7 +16,7 @@ from core.interpreter.actions import (
     SpindleStop,
     WaitInput,
 )
-from core.interpreter.job_setup import ControlLimits
+from core.interpreter.shared.job_setup import ControlLimits
 from tests.interpreter.programs import body, lines, passed, setup
 
 

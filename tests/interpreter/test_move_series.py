@@ -16,11 +16,11 @@ from hypothesis import strategies as st
 
 from app.compose.machine.machine_files import load_machine
 from app.compose.machine.machine_setup import setup_for
-from core.interpreter.elementary_blocks import Block, Series
-from core.interpreter.job_setup import Setup, ToolOffset
+from core.interpreter.omniturn.motion.plain_moves import Columns, read_columns, read_move
 from core.interpreter.omniturn.omniturn_interpreter import Interpreter
 from core.interpreter.omniturn.omniturn_program import read_program
-from core.interpreter.omniturn.plain_moves import Columns, read_columns, read_move
+from core.interpreter.shared.elementary_blocks import Block, Series
+from core.interpreter.shared.job_setup import Setup, ToolOffset
 from core.language.diagnostics import Diagnostic
 from core.language.source import Source
 from core.proving.prove_program import prove
@@ -39,10 +39,10 @@ def at_once(least: int, most: int = 20_000) -> Iterator[None]:
     long = NEVER if least == NEVER else 1
     with (
         patch("core.interpreter.omniturn.omniturn_interpreter.LONG", long),
-        patch("core.interpreter.omniturn.move_series.LEAST", least),
-        patch("core.interpreter.omniturn.move_series.MOST", most),
-        patch("core.interpreter.omniturn.plain_moves.MOST", most),
-        patch("core.interpreter.omniturn.plain_moves._FEW", long),
+        patch("core.interpreter.omniturn.motion.move_series.LEAST", least),
+        patch("core.interpreter.omniturn.motion.move_series.MOST", most),
+        patch("core.interpreter.omniturn.motion.plain_moves.MOST", most),
+        patch("core.interpreter.omniturn.motion.plain_moves._FEW", long),
     ):
         yield
 
@@ -116,7 +116,7 @@ def test_any_lines(moves: list[str], most: int) -> None:
 @given(st.lists(MOVE, min_size=1, max_size=30))
 def test_numbers_are_those_of_single_lines(moves: list[str]) -> None:
     read, alone = Columns.empty(len(moves)), Columns.empty(len(moves))
-    with patch("core.interpreter.omniturn.plain_moves._FEW", 1):
+    with patch("core.interpreter.omniturn.motion.plain_moves._FEW", 1):
         read_columns(moves, read)
     for at, text in enumerate(moves):
         if (move := read_move(text)) is not None:

@@ -8,11 +8,11 @@ from math import sqrt
 import pytest
 
 from core.geometry.contour_offset import WINDOW
-from core.interpreter.actions import Dwell, ProgramStop
-from core.interpreter.elementary_blocks import Kind
-from core.interpreter.job_setup import Setup
 from core.interpreter.omniturn.omniturn_interpreter import Interpreter
 from core.interpreter.omniturn.omniturn_program import read_program
+from core.interpreter.shared.actions import Dwell, ProgramStop
+from core.interpreter.shared.elementary_blocks import Kind
+from core.interpreter.shared.job_setup import Setup
 from core.language.source import Source
 from tests.interpreter.programs import INCH, Pass, body, lines, passed, setup
 

@@ -10,8 +10,8 @@ from hypothesis import assume, event, given, settings
 from hypothesis import strategies as st
 
 from core.geometry.lines_and_arcs import Element, Point, centre_from_radius, distance
-from core.interpreter.adjusted_moves import element_of
-from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.shared.contour_stage import element_of
+from core.interpreter.shared.elementary_blocks import Block, Kind
 from tests.geometry.contours import sampled
 from tests.interpreter.programs import INCH, Pass, lines, passed, setup
 

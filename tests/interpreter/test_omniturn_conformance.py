@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from core.interpreter.actions import Dwell, SpindleRun
-from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.shared.actions import Dwell, SpindleRun
+from core.interpreter.shared.elementary_blocks import Block, Kind
 from core.language.source import load_source
 from tests.interpreter.programs import INCH, Pass, in_feed, passed, setup
 

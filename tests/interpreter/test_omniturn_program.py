@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from core.interpreter.omniturn.motion.plain_moves import read_move
 from core.interpreter.omniturn.omniturn_program import read_program
-from core.interpreter.omniturn.plain_moves import read_move
 from core.language.source import Source
 from tests.interpreter.programs import lines
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from core.interpreter.job_setup import ControlLimits
 from core.interpreter.omniturn.omniturn_interpreter import Interpreter
 from core.interpreter.omniturn.omniturn_program import read_program
+from core.interpreter.shared.job_setup import ControlLimits
 from core.language.source import Source
 from tests.interpreter.programs import body, lines, passed, setup
 

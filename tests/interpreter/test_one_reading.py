@@ -7,11 +7,11 @@ from itertools import zip_longest
 import pytest
 
 from core.interpreter.dialects import ReadProgram
-from core.interpreter.job_setup import Setup, ToolOffset
 from core.interpreter.omniturn import omniturn_program
+from core.interpreter.omniturn.motion.plain_moves import read_lines, read_move
 from core.interpreter.omniturn.omniturn_interpreter import LONG
 from core.interpreter.omniturn.omniturn_statement import statement_of
-from core.interpreter.omniturn.plain_moves import read_lines, read_move
+from core.interpreter.shared.job_setup import Setup, ToolOffset
 from core.language.omniturn import lex_line
 from core.language.source import Source
 

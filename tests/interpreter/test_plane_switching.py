@@ -6,7 +6,7 @@ from math import atan2, degrees, hypot, pi
 
 import pytest
 
-from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.shared.elementary_blocks import Block, Kind
 from tests.interpreter.programs import INCH, Pass, lines, passed, setup
 
 LATHE = ("G90G94F300", "M19", "X-.5Z-.1F5")

@@ -87,7 +87,7 @@ def test_lines_are_not_lexed_again_in_a_loop(monkeypatch: pytest.MonkeyPatch) ->
         lexed.append(number)
         return lex_line(number, text)
 
-    monkeypatch.setattr("core.interpreter.omniturn.straight_moves.lex_line", counted)
+    monkeypatch.setattr("core.interpreter.omniturn.motion.straight_moves.lex_line", counted)
     monkeypatch.setattr(omniturn_interpreter, "lex_line", counted)
     assert sum(1 for _ in Interpreter(program, setup()).blocks()) == 252
     assert len(lexed) == len(set(lexed))

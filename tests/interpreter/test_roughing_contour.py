@@ -6,7 +6,7 @@ from math import sqrt
 
 import pytest
 
-from core.interpreter.elementary_blocks import Kind
+from core.interpreter.shared.elementary_blocks import Kind
 from tests.interpreter.programs import INCH, Pass, body, passed, setup
 from tests.texts import text
 

@@ -10,11 +10,11 @@ import pytest
 from app.compose.machine.machine_files import load_machine
 from app.compose.machine.machine_setup import setup_for
 from app.compose.stored_offsets import read_offsets
-from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.job_setup import SecondaryOffset, ToolOffset
-from core.interpreter.omniturn.code_table import CHAPTERS
+from core.interpreter.omniturn.codes.code_table import CHAPTERS
 from core.interpreter.omniturn.omniturn_interpreter import Interpreter
 from core.interpreter.omniturn.omniturn_program import read_program
+from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import Source, load_source
 from tests.worked import FOLDER
 

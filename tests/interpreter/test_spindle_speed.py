@@ -6,8 +6,8 @@ from math import pi
 
 import pytest
 
-from core.interpreter.actions import SpindleRun, SpindleStop
-from core.interpreter.job_setup import ControlLimits
+from core.interpreter.shared.actions import SpindleRun, SpindleStop
+from core.interpreter.shared.job_setup import ControlLimits
 from tests.interpreter.programs import body, lines, passed, setup
 
 HEAD = "G90G94F300"

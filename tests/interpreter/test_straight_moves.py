@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from core.interpreter.elementary_blocks import Kind
+from core.interpreter.shared.elementary_blocks import Kind
 from tests.interpreter.programs import INCH, body, lines, passed, setup
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from core.interpreter.actions import Preset, ToolChange, WorkShift
-from core.interpreter.job_setup import ToolOffset
+from core.interpreter.shared.actions import Preset, ToolChange, WorkShift
+from core.interpreter.shared.job_setup import ToolOffset
 from tests.interpreter.programs import INCH, Pass, body, passed, setup
 
 TOOLS = {1: ToolOffset(0.5 * INCH, -2 * INCH), 2: ToolOffset(-0.25 * INCH, 1 * INCH)}

@@ -10,7 +10,7 @@ from app.compose.machine.machine_files import load_machine
 from app.jog.held_jog import CONTINUOUS, HeldJog, JogSpeeds
 from core.executor.commands import Command, Jog, JogStep, JogStop
 from core.executor.snapshot import Snapshot, State
-from core.interpreter.modal_state import Modal
+from core.interpreter.shared.modal_state import Modal
 from tests.texts import shows, text
 
 INCH = 25.4

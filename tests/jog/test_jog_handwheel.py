@@ -12,7 +12,7 @@ from app.jog.held_jog import CONTINUOUS, HeldJog, JogSpeeds
 from app.jog.jog_handwheel import JogHandwheel
 from core.executor.commands import Command, Jog, JogStop, Wheel, WheelOff
 from core.executor.snapshot import Snapshot, State
-from core.interpreter.modal_state import Modal
+from core.interpreter.shared.modal_state import Modal
 from core.machine.hardware_model import AnalogModel
 from core.machine.machine_model import InputModel
 from tests.texts import shows, text

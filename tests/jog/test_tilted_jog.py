@@ -15,7 +15,7 @@ from core.executor.commands import Jog, JogStep, JogStop
 from core.executor.hand_motion.jog_line import JogLine
 from core.executor.snapshot import Snapshot, State
 from core.geometry.rotation_frames import IDENTITY, X_AXIS, turned
-from core.interpreter.working_plane import PlaneSystem, Swivel
+from core.interpreter.shared.working_plane import PlaneSystem, Swivel
 from tests.executor.rig import Rig
 from tests.machine.mill import MILL
 from tests.texts import begins, shows, text

@@ -6,11 +6,11 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from core.geometry.rotary_axes import Kinematics
-from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.job_setup import ControlLimits, Setup, ToolOffset
 from core.interpreter.klartext.klartext_interpreter import Interpreter
 from core.interpreter.klartext.klartext_program import read_program
 from core.interpreter.klartext.klartext_state import State
+from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.job_setup import ControlLimits, Setup, ToolOffset
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Source
 from tests.klartext.table import AC

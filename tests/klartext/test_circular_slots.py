@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from core.interpreter.elementary_blocks import Kind
+from core.interpreter.shared.elementary_blocks import Kind
 from tests.klartext.running import Ran, run
 from tests.klartext.test_pocket_cycles import Points, cuts, left_standing, rounded, way
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from core.interpreter.elementary_blocks import Kind
-from core.language.klartext.called_programs import called_programs
+from core.interpreter.shared.elementary_blocks import Kind
+from core.language.klartext.named_files import called_programs
 from core.language.source import Source
 from tests.klartext.running import Ran, run, run_source, whole
 from tests.klartext.test_pocket_cycles import Points, cuts, left_standing, rounded, way

@@ -7,8 +7,9 @@ from itertools import pairwise
 
 import pytest
 
-from core.interpreter.actions import SpindleRun
-from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.shared.actions import SpindleRun
+from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.language.klartext.klartext_faults import INPUT_VALUE
 from tests.klartext.running import Ran, run
 from tests.klartext.test_klartext_cycles import ran_of
 
@@ -98,6 +99,27 @@ def test_a_pocket_is_milled_in_whole_rectangles_from_the_middle_outwards() -> No
         assert {(abs(x), abs(y)) for x, y in rings[-1]} == {(16.0, 6.0)}
         widths = [0.0, *(abs(ring[0][1]) for ring in rings)]
         assert max(b - a for a, b in pairwise(widths)) <= OVERLAP * DIAMETER
+
+
+SLOT = (
+    "CYCL DEF 3.0 SLOT MILLING\nCYCL DEF 3.1 SET UP2\nCYCL DEF 3.2 DEPTH-6\nCYCL DEF 3.3 PECKG3 F100\n"
+    "CYCL DEF 3.4 X{}\nCYCL DEF 3.5 Y+{}\nCYCL DEF 3.6 F300\nL Z+2 FMAX M99"
+)
+
+
+@pytest.mark.parametrize("width", [20, 8])
+def test_a_slot_is_as_long_as_its_first_side(width: int) -> None:
+    ran = ran_of(SLOT.format("+40", width))
+    assert ran.codes == []
+    assert {x - 10.0 for x, _, z in ends(ran.blocks) if z == -6.0} == {0.0, 40.0}
+
+
+@pytest.mark.parametrize("width", [20, 8])
+@pytest.mark.parametrize("length", ["+0", "-0"])
+def test_a_slot_without_a_length_is_refused(length: str, width: int) -> None:
+    ran = ran_of(SLOT.format(length, width))
+    assert ran.codes == [INPUT_VALUE]
+    assert all(z >= 2.0 for _, _, z in ends(ran.blocks))
 
 
 def test_a_round_pocket_leaves_nothing_between_its_circles() -> None:

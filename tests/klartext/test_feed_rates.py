@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from core.interpreter.elementary_blocks import Kind
-from core.interpreter.job_setup import MillTool
+from core.interpreter.shared.elementary_blocks import Kind
+from core.interpreter.shared.job_setup import MillTool
 from tests.klartext.running import Ran, run
 
 CUTTER = {1: MillTool(radius=5.0, teeth=4)}

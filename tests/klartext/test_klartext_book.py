@@ -10,12 +10,13 @@ from app.compose.machine.machine_files import shipped_machine
 from app.compose.machine.machine_setup import setup_for
 from core.interpreter.code_book_page import page
 from core.interpreter.dialects import code_book
-from core.interpreter.job_setup import ToolOffset
-from core.interpreter.klartext import contour_cycles, cycles, m_functions, older_cycles
+from core.interpreter.klartext.cycles import contour_cycles, cycle_calls, older_cycles
+from core.interpreter.klartext.setup import m_functions
+from core.interpreter.shared.job_setup import ToolOffset
 from core.language.code_book import Entry
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.klartext import klartext_line, path_block, plane_block, q_parameters
-from core.language.klartext.refused_codes import INSTEAD_OF_CYCLE
+from core.language.klartext.klartext_faults import INSTEAD_OF_CYCLE
 from core.language.source import Dialect, Source
 from core.proving.prove_program import prove
 
@@ -53,12 +54,12 @@ def test_every_construct_has_its_entry() -> None:
     }
     planes = {f"PLANE {form}" for form in plane_block.FORMS}
     told = {
-        *cycles._MACHINING,
+        *cycle_calls._MACHINING,
         *contour_cycles.CONTOURS,
         *older_cycles.OLDER,
-        *cycles._NO_CYCLE,
+        *cycle_calls._NO_CYCLE,
     }
-    told |= {*cycles._TRANSFORMS, *cycles._AT_ONCE, 7}
+    told |= {*cycle_calls._TRANSFORMS, *cycle_calls._AT_ONCE, 7}
     codes = m_functions.BEFORE | m_functions._BEHIND | m_functions._OF_THE_BLOCK | m_functions.UNHEEDED
     known = blocks | planes | {f"CYCL DEF {number}" for number in told} | {f"M{code}" for code in codes}
     jumps_and_sums = {*q_parameters._JUMPS, *q_parameters._TWO, *q_parameters._ONE, 0, q_parameters._ANGLE}

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from core.interpreter.elementary_blocks import Kind
+from core.interpreter.shared.elementary_blocks import Kind
 from tests.klartext.running import Ran, run_file
 
 SPECIFICATION = Path(__file__).parents[2].parent / "shared" / "spec" / "klartext-planes.md"

@@ -8,9 +8,9 @@ from typing import Any
 import pytest
 
 from core.geometry.rotary_axes import DatumPreset
-from core.interpreter.actions import Dwell, ProgramStop, SpindleRun, SpindleStop
-from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.job_setup import MillTool, ToolOffset
+from core.interpreter.shared.actions import Dwell, ProgramStop, SpindleRun, SpindleStop
+from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.job_setup import MillTool, ToolOffset
 from tests.klartext.running import Ran, run
 from tests.klartext.table import ORIGIN
 

@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from core.interpreter.actions import (
+from core.interpreter.klartext.klartext_interpreter import Interpreter
+from core.interpreter.klartext.klartext_program import read_program
+from core.interpreter.shared.actions import (
     Action,
     Coolant,
     ProgramEnd,
@@ -14,10 +16,8 @@ from core.interpreter.actions import (
     SpindleStop,
     ToolChange,
 )
-from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.job_setup import ControlLimits, Setup, ToolOffset
-from core.interpreter.klartext.klartext_interpreter import Interpreter
-from core.interpreter.klartext.klartext_program import read_program
+from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.job_setup import ControlLimits, Setup, ToolOffset
 from core.language.klartext import read_line
 from core.language.klartext.canonical_text import written
 from core.language.source import Source

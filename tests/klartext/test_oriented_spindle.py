@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from core.interpreter.actions import ProgramEnd, ProgramStop, SpindleOrient, SpindleRun
-from core.interpreter.elementary_blocks import Block
-from core.interpreter.job_setup import ControlLimits
+from core.interpreter.shared.actions import ProgramEnd, ProgramStop, SpindleOrient, SpindleRun
+from core.interpreter.shared.elementary_blocks import Block
+from core.interpreter.shared.job_setup import ControlLimits
 from tests.klartext.running import Ran, run
 
 ABLE = ControlLimits(max_rpm=12000.0, spindle_oriented=True)

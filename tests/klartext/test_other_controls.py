@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from core.interpreter.actions import Dwell
-from core.interpreter.job_setup import MillTool
+from core.interpreter.shared.actions import Dwell
+from core.interpreter.shared.job_setup import MillTool
 from tests.klartext.running import Ran, run
 
 R4 = "TOOL DEF 5 L+0 R+4\nTOOL CALL 5 Z S2000 F500\nL X+0 Y+0 Z+50 R0 FMAX M3\n"

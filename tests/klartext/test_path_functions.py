@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from core.geometry.working_plane import HelixMove
-from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.shared.elementary_blocks import Block, Kind
 from core.language.source import Source
 from tests.klartext.running import Ran, run, run_file, run_source, whole
 

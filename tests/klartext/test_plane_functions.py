@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from core.geometry.rotary_axes import Kinematics
 from core.geometry.working_plane import Figure
-from core.interpreter.elementary_blocks import Kind
+from core.interpreter.shared.elementary_blocks import Kind
 from tests.klartext.running import Ran, run
 from tests.klartext.table import AC, C, limited
 

@@ -9,7 +9,7 @@ import numpy.typing as npt
 import pytest
 
 from core.geometry.working_plane import HelixMove
-from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.shared.elementary_blocks import Block, Kind
 from tests.klartext.running import Ran, run
 
 R = 4.0

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.shared.elementary_blocks import Block, Kind
 from tests.klartext.running import Ran, run
 from tests.klartext.test_path_functions import on_the_way
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from core.language.klartext.refused_codes import CONTOUR_FORMULA, FREE_TABLE, INSTEAD_OF_CYCLE, STRING
+from core.language.klartext.klartext_faults import CONTOUR_FORMULA, FREE_TABLE, INSTEAD_OF_CYCLE, STRING
 from tests.klartext.running import run
 
 CONTOURS = "\nCYCL DEF 20 DATA Q1=-5 Q2=+1\nCYCL DEF 22 ROUGH-OUT Q10=-5 Q11=150 Q12=400\nCYCL CALL"

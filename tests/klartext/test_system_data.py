@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from core.interpreter.job_setup import MillTool, ToolOffset
+from core.interpreter.shared.job_setup import MillTool, ToolOffset
 from tests.klartext.running import Ran, run
 
 TABLE = {

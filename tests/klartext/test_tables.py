@@ -6,11 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from core.interpreter.elementary_blocks import Kind
+from core.interpreter.shared.elementary_blocks import Kind
 from core.language.called_files import with_called_files
 from core.language.klartext import read_line
-from core.language.klartext.called_programs import called_programs
-from core.language.klartext.table_file import table_rows
+from core.language.klartext.named_files import called_programs, table_rows
 from core.language.source import Source, load_source
 from tests.klartext.running import TOOL, Ran, run_source, whole
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.shared.elementary_blocks import Block, Kind
 from tests.klartext.running import Ran, run
 from tests.klartext.table import AC, ORIGIN
 from tests.klartext.test_chains import on_the_workpiece

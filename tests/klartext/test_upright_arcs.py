@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from core.interpreter.elementary_blocks import Kind
+from core.interpreter.shared.elementary_blocks import Kind
 from tests.klartext.running import Ran, run
 from tests.klartext.test_path_functions import end, on_the_way
 

@@ -16,8 +16,8 @@ from app.working_plane.plane_drawing import ASPECTS, Camera, Figure, camera_for,
 from app.working_plane.plane_instant import Instant, at_line, plane_words, running, title_of
 from app.working_plane.plane_scene import Ink, Scene
 from core.executor.snapshot import Snapshot
-from core.interpreter.elementary_blocks import Block
-from core.interpreter.modal_state import Modal
+from core.interpreter.shared.elementary_blocks import Block
+from core.interpreter.shared.modal_state import Modal
 from tests.klartext.chamfers import AXIAL
 from tests.klartext.running import run, run_file
 from tests.klartext.table import AC

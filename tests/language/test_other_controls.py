@@ -6,7 +6,7 @@ import pytest
 
 from app.compose.machine.machine_files import load_machine, named_machine
 from app.compose.machine.machine_setup import setup_for
-from core.interpreter.job_setup import ToolOffset
+from core.interpreter.shared.job_setup import ToolOffset
 from core.language.diagnostics import Diagnostic
 from core.language.omniturn import lex_line
 from core.language.source import Source

@@ -11,11 +11,11 @@ import pytest
 from app.compose.machine.machine_files import named_machine
 from app.compose.machine.machine_setup import setup_for
 from core.executor.control_status import modal_given_up
-from core.interpreter.actions import ToolChange
-from core.interpreter.checkpoint import Begin, Checkpoint
 from core.interpreter.dialects import line_alone
-from core.interpreter.job_setup import ToolOffset
-from core.interpreter.modal_state import Modal
+from core.interpreter.shared.actions import ToolChange
+from core.interpreter.shared.checkpoint import Begin, Checkpoint
+from core.interpreter.shared.job_setup import ToolOffset
+from core.interpreter.shared.modal_state import Modal
 from core.language.source import Dialect, Source
 from tests.texts import text as wording
 

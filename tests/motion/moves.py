@@ -9,8 +9,8 @@ from itertools import pairwise
 
 from hypothesis import strategies as st
 
-from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.modal_state import Modal
+from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.modal_state import Modal
 from core.motion.axis_limits import MotionLimits
 
 Point = tuple[float, float]

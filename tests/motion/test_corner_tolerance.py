@@ -11,8 +11,8 @@ import resources
 from app.cli.figures.proof_json import report_json
 from app.compose.machine.machine_files import parse_machine
 from app.compose.machine.machine_setup import setup_for
-from core.interpreter.elementary_blocks import Block
-from core.interpreter.job_setup import ToolOffset
+from core.interpreter.shared.elementary_blocks import Block
+from core.interpreter.shared.job_setup import ToolOffset
 from core.language.source import Source
 from core.machine.machine_model import Machine
 from core.motion.axis_limits import MotionLimits

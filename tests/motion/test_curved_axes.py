@@ -12,8 +12,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from core.geometry.virtual_mill import Face, PlaneMove, Side, Spot
-from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.modal_state import Modal
+from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.modal_state import Modal
 from core.motion.axis_limits import OVERRIDE_MAX, FloatArray, MotionError, MotionLimits
 from core.motion.motion_path import CHORD_ERROR, Path, chords
 from core.motion.motion_plan import plan

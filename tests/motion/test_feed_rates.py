@@ -12,8 +12,8 @@ import pytest
 
 from core.geometry.surface_speed import surface_rpm
 from core.geometry.working_plane import Travel
-from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.modal_state import Modal
+from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.modal_state import Modal
 from core.motion.axis_limits import MotionError
 from core.motion.block_table import read_blocks
 from core.motion.motion_plan import plan

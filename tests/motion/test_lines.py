@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from core.interpreter.elementary_blocks import Kind
+from core.interpreter.shared.elementary_blocks import Kind
 from core.motion.axis_limits import MotionError, MotionLimits
 from core.motion.motion_plan import plan
 from tests.coded import raises_code

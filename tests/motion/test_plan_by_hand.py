@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import pytest
 
-from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.shared.elementary_blocks import Block, Kind
 from core.motion.axis_limits import FloatArray, IntArray, MotionError, MotionLimits
 from core.motion.block_table import table_of
 from core.motion.motion_path import PathBuilder

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.shared.elementary_blocks import Block, Kind
 from core.motion.axis_limits import FloatArray
 from core.motion.motion_path import Path
 from core.motion.motion_plan import plan, reachable_backward, reachable_forward

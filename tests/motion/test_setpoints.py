@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from core.interpreter.elementary_blocks import Block
+from core.interpreter.shared.elementary_blocks import Block
 from core.motion.axis_limits import FloatArray, MotionLimits
 from core.motion.motion_plan import plan
 from core.motion.motion_profile import SegmentArrays

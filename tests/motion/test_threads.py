@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.shared.elementary_blocks import Block, Kind
 from core.motion.axis_limits import MotionError
 from core.motion.motion_plan import plan
 from tests.coded import raises_code

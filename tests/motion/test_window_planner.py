@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from core.interpreter.elementary_blocks import Block
+from core.interpreter.shared.elementary_blocks import Block
 from core.motion.axis_limits import MotionError, MotionLimits
 from core.motion.motion_plan import plan
 from core.motion.window_planner import Chunk, ChunkPlanner, sample_positions

@@ -17,7 +17,7 @@ from app.offsets.tool_offsets import ToolOffsets
 from app.path.path_picture import PictureBuilder
 from core.executor.job import Proof, make_job
 from core.executor.snapshot import Snapshot, State
-from core.interpreter.job_setup import Setup
+from core.interpreter.shared.job_setup import Setup
 from core.language.source import Source
 from core.store.store import Store
 from tests.screen.yes import read

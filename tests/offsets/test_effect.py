@@ -14,7 +14,7 @@ from app.desk.background_work import Watch
 from app.offsets.offset_effect import Compared, Effect, Tables
 from app.path.path_picture import Picture
 from core.executor.job import Job, make_job
-from core.interpreter.job_setup import SecondaryOffset, ToolOffset
+from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import Source
 
 INCH = 25.4

@@ -18,7 +18,7 @@ from app.offsets.mill_touch import MillLives, MillTouch
 from app.offsets.offsets_in_force import MillOffsets, with_mill
 from app.offsets.zero_offsets import Presets
 from core.executor.snapshot import State
-from core.interpreter.job_setup import ToolOffset
+from core.interpreter.shared.job_setup import ToolOffset
 from core.production.tool_life import ToolLife
 from core.store.store_rows import Kind, MillRow, PresetRow
 from tests.offsets.conftest import LIMIT, Room

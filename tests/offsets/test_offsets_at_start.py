@@ -10,7 +10,7 @@ import pytest
 from app.desk.status.prompt_line import NOT_HERE, STALE
 from core.executor.commands import Command, CycleStart, UseOffsets
 from core.executor.snapshot import State
-from core.interpreter.job_setup import SecondaryOffset
+from core.interpreter.shared.job_setup import SecondaryOffset
 from core.store.store_rows import Kind
 from tests.offsets.conftest import LIMIT, Room
 from tests.texts import pattern

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from app.path.polyline import Polyline, Stroke
-from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.modal_state import Modal
+from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.modal_state import Modal
 
 LOCKED = Modal(c_locked=True, tool=1)
 

@@ -12,9 +12,9 @@ from app.compose.machine.machine_setup import read_machine, setup_for
 from app.path.path_picture import Picture, PictureBuilder, face_point, picture_of
 from app.path.polyline import CHORD_ERROR, Polyline, Stroke
 from core.geometry.virtual_mill import Face, PlaneMove, Side
-from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.job_setup import ToolOffset
-from core.interpreter.modal_state import Modal
+from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.job_setup import ToolOffset
+from core.interpreter.shared.modal_state import Modal
 from core.language.source import load_source
 from core.proving.program_timeline import Timeline, timed_blocks
 from tests.path.made import LOCKED, turned

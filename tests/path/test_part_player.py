@@ -13,7 +13,7 @@ from app.compose.workshop import workshop
 from app.path.part_player import FAST, PartPlayer, PartPlayers, SolidLook
 from app.path.path_aspects import Aspect, views_of
 from app.path.path_picture import Picture
-from core.interpreter.job_setup import ToolOffset
+from core.interpreter.shared.job_setup import ToolOffset
 from core.language.source import Source
 from core.part.solid_view import SolidView
 from tests.texts import begins

@@ -9,9 +9,9 @@ import pytest
 
 from app.path.path_picture import PictureBuilder, picture_of
 from app.path.polyline import CHORD_ERROR, Stroke, arc_pieces
-from core.interpreter.actions import SpindleStop
-from core.interpreter.elementary_blocks import Block, Kind, Series, TimedSeries
-from core.interpreter.modal_state import Modal
+from core.interpreter.shared.actions import SpindleStop
+from core.interpreter.shared.elementary_blocks import Block, Kind, Series, TimedSeries
+from core.interpreter.shared.modal_state import Modal
 
 TURNING = Modal(spindle=1, tool=1)
 

@@ -6,7 +6,7 @@ import pytest
 
 from app.compose.machine.machine_files import load_machine
 from app.compose.machine.machine_setup import setup_for
-from core.interpreter.job_setup import ToolOffset
+from core.interpreter.shared.job_setup import ToolOffset
 from core.language.source import Source
 from core.proving.prove_program import MAX_FINDINGS, prove
 

@@ -11,7 +11,7 @@ import pytest
 from app.cli.main import main
 from app.compose.machine.machine_files import load_machine
 from app.compose.machine.machine_setup import setup_for
-from core.interpreter.job_setup import ToolOffset
+from core.interpreter.shared.job_setup import ToolOffset
 from core.language.source import Source
 from core.machine.machine_model import Machine
 from core.proving.proof_report import Report

@@ -9,7 +9,7 @@ import pytest
 from app.compose.machine.machine_files import load_machine
 from app.compose.machine.machine_setup import setup_for
 from app.compose.stored_offsets import read_offsets
-from core.interpreter.job_setup import SecondaryOffset, Setup
+from core.interpreter.shared.job_setup import SecondaryOffset, Setup
 from core.language.source import Source, load_source
 from core.proving.program_timeline import Timeline, timed_series
 from core.proving.prove_program import prove

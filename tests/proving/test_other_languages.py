@@ -9,7 +9,7 @@ import pytest
 
 from app.compose.machine.machine_files import shipped_machine
 from app.compose.machine.machine_setup import setup_for
-from core.interpreter.job_setup import ToolOffset
+from core.interpreter.shared.job_setup import ToolOffset
 from core.language.source import Source
 from core.proving.proof_pass import turned_range
 from core.proving.proof_report import Report

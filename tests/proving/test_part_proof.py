@@ -14,7 +14,7 @@ import pytest
 from app.compose.known_part import known_part
 from app.compose.machine.machine_files import load_machine
 from app.compose.machine.machine_setup import setup_for
-from core.interpreter.job_setup import SecondaryOffset, ToolOffset
+from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import Source
 from core.part.stock import Clamping, Stock, bar, tube
 from core.part.tool_shape import ToolKind, ToolShape

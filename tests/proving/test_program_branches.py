@@ -14,8 +14,8 @@ from app.compose.machine.machine_files import load_machine, shipped_machine
 from app.compose.machine.machine_setup import setup_for
 from app.compose.stored_offsets import read_offsets
 from core.interpreter.dialects import ReadProgram
-from core.interpreter.job_setup import Setup, ToolOffset
 from core.interpreter.omniturn.omniturn_interpreter import Interpreter
+from core.interpreter.shared.job_setup import Setup, ToolOffset
 from core.language.diagnostics import Severity
 from core.language.source import Source, load_source
 from core.proving import program_branches

@@ -6,8 +6,8 @@ import pytest
 
 from app.compose.machine.machine_files import load_machine
 from app.compose.machine.machine_setup import setup_for
-from core.interpreter.elementary_blocks import Kind
-from core.interpreter.job_setup import ToolOffset
+from core.interpreter.shared.elementary_blocks import Kind
+from core.interpreter.shared.job_setup import ToolOffset
 from core.language.source import Dialect, Source
 from core.proving.program_timeline import Timeline, timed_blocks
 from core.proving.prove_program import prove

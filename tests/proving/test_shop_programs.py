@@ -15,7 +15,7 @@ from app.compose.known_part import known_part
 from app.compose.machine.machine_files import load_machine
 from app.compose.machine.machine_setup import setup_for
 from app.offsets.offsets_file import read_tool_shapes
-from core.interpreter.job_setup import SecondaryOffset, ToolOffset
+from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import Source
 from core.machine.machine_model import ClampingModel
 from core.part.stock_spec import stock_spec

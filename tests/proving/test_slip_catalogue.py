@@ -21,7 +21,7 @@ from app.compose.machine.machine_files import load_machine
 from app.compose.machine.machine_setup import setup_for
 from app.compose.said_stock import ProgramBefore, said_stock
 from app.offsets.offsets_file import read_tool_shapes
-from core.interpreter.job_setup import SecondaryOffset, ToolOffset
+from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import Source
 from core.machine.machine_model import ClampingModel
 from core.proving.part_proof import prove_with_part, refusing_missing_offsets

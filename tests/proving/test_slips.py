@@ -15,7 +15,7 @@ import pytest
 from app.compose.known_part import known_part
 from app.compose.machine.machine_files import load_machine
 from app.compose.machine.machine_setup import setup_for
-from core.interpreter.job_setup import SecondaryOffset, ToolOffset
+from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import Source
 from core.proving.checks.part_checks import is_serious
 from core.proving.part_proof import prove_with_part

@@ -10,10 +10,10 @@ import pytest
 from app.compose.machine.machine_files import load_machine
 from app.compose.machine.machine_setup import setup_for
 from core.executor.job import Job, interpret, make_job
-from core.interpreter.checkpoint import Begin, Checkpoint
-from core.interpreter.elementary_blocks import Block
-from core.interpreter.job_setup import ToolOffset
-from core.interpreter.modal_state import Modal
+from core.interpreter.shared.checkpoint import Begin, Checkpoint
+from core.interpreter.shared.elementary_blocks import Block
+from core.interpreter.shared.job_setup import ToolOffset
+from core.interpreter.shared.modal_state import Modal
 from core.language.source import Source
 from core.part.stock import Clamping, bar
 from core.part.tool_shape import ToolKind, ToolShape

@@ -9,7 +9,7 @@ import pytest
 
 from app.compose.machine.machine_files import shipped_machine
 from app.compose.machine.machine_setup import setup_for
-from core.interpreter.job_setup import ToolOffset
+from core.interpreter.shared.job_setup import ToolOffset
 from core.language.diagnostics import Diagnostic
 from core.language.source import Source
 from core.part.stock import Clamping, Stock, bar, tube

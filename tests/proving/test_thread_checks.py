@@ -10,9 +10,9 @@ import pytest
 from app.compose.known_part import known_part
 from app.compose.machine.machine_files import load_machine
 from app.compose.machine.machine_setup import setup_for
-from core.interpreter.elementary_blocks import Kind
-from core.interpreter.job_setup import ToolOffset
-from core.interpreter.modal_state import Modal
+from core.interpreter.shared.elementary_blocks import Kind
+from core.interpreter.shared.job_setup import ToolOffset
+from core.interpreter.shared.modal_state import Modal
 from core.language.source import Source
 from core.part.stock import Stock, bar, tube
 from core.part.tool_shape import Hand, ToolKind, ToolShape

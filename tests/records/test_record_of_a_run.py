@@ -11,7 +11,7 @@ import pytest
 from app.compose.machine.machine_files import load_machine
 from app.compose.machine.machine_setup import setup_for
 from app.desk.command_errors import EXIT_OK
-from core.interpreter.job_setup import ToolOffset
+from core.interpreter.shared.job_setup import ToolOffset
 from core.language.source import Source
 from core.proving.program_timeline import Timeline
 from core.proving.setpoint_trace import setpoints

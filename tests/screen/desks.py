@@ -25,7 +25,7 @@ from app.scope.scope_curves import LiveSamples
 from core.executor.job import Job
 from core.executor.snapshot import Snapshot
 from core.interpreter.dialects import ReadProgram
-from core.interpreter.job_setup import SecondaryOffset, ToolOffset
+from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import Source, load_source
 from core.proving.program_timeline import Timeline, timed_blocks
 from core.proving.prove_program import prove

@@ -22,8 +22,8 @@ from core.executor.commands import (
 )
 from core.executor.job import Job, Proof
 from core.executor.snapshot import Alarm, Event, Snapshot, State
-from core.interpreter.actions import ProgramEnd, ProgramStop
-from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.shared.actions import ProgramEnd, ProgramStop
+from core.interpreter.shared.elementary_blocks import Block, Kind
 
 STOPPED = frozenset({State.HOLD, State.BLOCK_END, State.PROGRAM_STOP})
 

@@ -22,7 +22,7 @@ from app.compose.stored_offsets import read_offsets
 from app.compose.workshop import samples
 from app.path.part_pane_view import quarter
 from app.screen.look import FAMILY, load_fonts
-from core.interpreter.job_setup import SecondaryOffset, Setup, ToolOffset
+from core.interpreter.shared.job_setup import SecondaryOffset, Setup, ToolOffset
 from core.language.called_files import with_called_files
 from core.language.source import Dialect, Source, load_source
 from core.part.solid_picture import SolidPicture

@@ -12,7 +12,7 @@ from app.compose.screen_desk import build_desk
 from app.compose.stored_offsets import NONE, book_of, chosen_offsets, stored_offsets
 from app.desk.command_errors import CommandError
 from core.executor.snapshot import Event
-from core.interpreter.job_setup import SecondaryOffset
+from core.interpreter.shared.job_setup import SecondaryOffset
 from core.language.source import Source
 from core.store.store import Store
 from core.store.store_rows import Kind

@@ -16,7 +16,7 @@ from app.compose.stored_offsets import Offsets
 from app.screen.look import DARK, Look
 from app.screen.window.main_window import MainWindow
 from core.executor.snapshot import State
-from core.interpreter.job_setup import SecondaryOffset, ToolOffset
+from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import load_source
 from core.proving.proof_report import Report
 from core.proving.prove_program import prove

@@ -27,8 +27,8 @@ from app.special.machine_records import event_row
 from core.alarms import CATALOGUE, Code, Entry
 from core.executor.raised_alarm import log_line, make_alarm
 from core.executor.snapshot import Alarm
-from core.interpreter.checkpoint import Checkpoint
-from core.interpreter.modal_state import Modal
+from core.interpreter.shared.checkpoint import Checkpoint
+from core.interpreter.shared.modal_state import Modal
 from core.store.store_rows import EventRow
 from resources.translations.collect import (
     _NO_TEXT,

@@ -19,9 +19,9 @@ from app.path.path_picture import Picture, PictureBuilder
 from app.path.path_view import PathView
 from app.screen.look import DARK, Look
 from core.executor.snapshot import State
-from core.interpreter.elementary_blocks import Block
-from core.interpreter.elementary_blocks import Kind as BlockKind
-from core.interpreter.modal_state import Modal
+from core.interpreter.shared.elementary_blocks import Block
+from core.interpreter.shared.elementary_blocks import Kind as BlockKind
+from core.interpreter.shared.modal_state import Modal
 from tests.path.made import turned
 from tests.screen.colours import apart
 from tests.screen.hands import LIMIT, Hands

@@ -28,7 +28,11 @@ OF_LATER = (
         "pyqtgraph",
     ),
     *("core.extras.drawings.profile_program", "core.interpreter.klartext", "core.interpreter.sinumerik"),
-    *("core.interpreter.omniturn.loops_and_subroutines", "drivers.canopen.canopen_machine", "drivers.feeder"),
+    *(
+        "core.interpreter.omniturn.flow.loops_and_subroutines",
+        "drivers.canopen.canopen_machine",
+        "drivers.feeder",
+    ),
     *(
         "drivers.hal.hal_machine",
         "drivers.inverter.inverter_spindle",

@@ -9,11 +9,11 @@ import pytest
 from app.searchto.searchto_plan import jog_words, way_out_of
 from core.executor.job import make_job
 from core.executor.snapshot import CONTROL_LOST, InterruptedJob, Snapshot
-from core.interpreter.modal_state import Modal
 from core.interpreter.restart.restart_approach import Choices, MachineNow, retract_from_work
 from core.interpreter.restart.restart_point import Interruption
 from core.interpreter.restart.restart_retract import Retract, RetractLeg, ToolPlace
 from core.interpreter.restart.state_rebuild import StateRebuild
+from core.interpreter.shared.modal_state import Modal
 from core.language.source import Source
 from tests.interpreter.programs import INCH, setup
 from tests.interrupted import broken_off

@@ -13,7 +13,7 @@ from app.shopfloor.floor_reading import PLACES, FloorReader, Value, condition_ke
 from core.alarms import CATALOGUE, Code
 from core.executor.raised_alarm import AlarmError, alarm_and_reaction, make_alarm
 from core.executor.snapshot import Alarm, Snapshot, State
-from core.interpreter.modal_state import Modal
+from core.interpreter.shared.modal_state import Modal
 from core.machine.machine_model import InputModel, Machine
 from core.ports import ALL_UNKNOWN
 from tests.interrupted import broken_off

@@ -9,8 +9,8 @@ from typing import NamedTuple
 from app.compose.machine.machine_files import shipped_machine
 from app.compose.machine.machine_setup import setup_for
 from core.interpreter.dialects import interpretation
-from core.interpreter.elementary_blocks import Block
-from core.interpreter.job_setup import Setup, ZeroOffset
+from core.interpreter.shared.elementary_blocks import Block
+from core.interpreter.shared.job_setup import Setup, ZeroOffset
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Dialect, Source
 from core.machine.machine_model import Machine

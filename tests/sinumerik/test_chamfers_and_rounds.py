@@ -8,7 +8,7 @@ from math import asin, cos, dist, pi, sin, sqrt
 import pytest
 
 from core.geometry.lines_and_arcs import arc_length
-from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.shared.elementary_blocks import Block, Kind
 from tests.sinumerik.lathe import good, refused, run, setup
 
 AT = setup(start=(10.0, 0.0, 0.0))

@@ -7,8 +7,8 @@ from collections import Counter
 
 import pytest
 
-from core.interpreter.actions import Coolant
-from core.interpreter.sinumerik import control_structures
+from core.interpreter.shared.actions import Coolant
+from core.interpreter.sinumerik.flow import control_structures
 from core.language.sinumerik.sinumerik_lexer import lex_line
 from core.language.sinumerik.sinumerik_words import Line
 from tests.sinumerik.lathe import good, refused, run

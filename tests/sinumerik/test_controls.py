@@ -10,7 +10,7 @@ import pytest
 from app.compose.machine.machine_files import parse_machine, shipped_machine
 from app.compose.machine.machine_setup import control_limits
 from core.interpreter.dialects import code_book
-from core.interpreter.job_setup import Setup
+from core.interpreter.shared.job_setup import Setup
 from core.language.sinumerik.control_differences import CONTROLS, LACKS
 from core.language.source import Dialect
 from core.table_schema import MachineFileError

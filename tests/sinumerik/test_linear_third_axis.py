@@ -7,8 +7,8 @@ import re
 import pytest
 
 from app.compose.machine.machine_files import parse_machine, shipped_machine
-from core.interpreter.elementary_blocks import Block
-from core.interpreter.job_setup import ZeroOffset
+from core.interpreter.shared.elementary_blocks import Block
+from core.interpreter.shared.job_setup import ZeroOffset
 from core.machine.machine_model import Machine
 from core.proving.prove_program import prove
 from tests.sinumerik.lathe import refused, run, setup, source, times

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from core.interpreter.actions import SpindleOrient
+from core.interpreter.shared.actions import SpindleOrient
 from core.machine.machine_model import Machine
 from tests.sinumerik.lathe import LINEAR, MODULO, refused, run, setup
 

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import pytest
 
-from core.interpreter.actions import SpindleRun
-from core.interpreter.elementary_blocks import Kind
-from core.interpreter.job_setup import ToolOffset
+from core.interpreter.shared.actions import SpindleRun
+from core.interpreter.shared.elementary_blocks import Kind
+from core.interpreter.shared.job_setup import ToolOffset
 from tests.sinumerik.lathe import refused, run, setup
 
 TOOLS = replace(setup(), tools={1: ToolOffset(quadrant=3)})

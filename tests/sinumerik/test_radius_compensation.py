@@ -10,9 +10,9 @@ from math import cos, dist, hypot, pi, sin, sqrt
 
 import pytest
 
-from core.interpreter.adjusted_moves import element_of
-from core.interpreter.elementary_blocks import Block
-from core.interpreter.job_setup import Setup, ToolOffset
+from core.interpreter.shared.contour_stage import element_of
+from core.interpreter.shared.elementary_blocks import Block
+from core.interpreter.shared.job_setup import Setup, ToolOffset
 from tests.sinumerik.lathe import good, refused, run, setup
 
 R = 0.8

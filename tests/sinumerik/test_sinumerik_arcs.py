@@ -7,7 +7,7 @@ from math import dist, pi
 import pytest
 
 from core.geometry.lines_and_arcs import arc_length
-from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.shared.elementary_blocks import Block, Kind
 from tests.sinumerik.lathe import good, refused, setup
 
 

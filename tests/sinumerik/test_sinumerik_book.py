@@ -10,7 +10,7 @@ from app.compose.machine.machine_files import shipped_machine
 from app.compose.machine.machine_setup import setup_for
 from core.interpreter.code_book_page import page
 from core.interpreter.dialects import code_book
-from core.interpreter.job_setup import ToolOffset
+from core.interpreter.shared.job_setup import ToolOffset
 from core.language.code_book import Entry
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.sinumerik import sinumerik_words

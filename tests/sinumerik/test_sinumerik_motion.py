@@ -14,8 +14,8 @@ from core.executor.commands import CycleStart, EnableDrives, LoadJob
 from core.executor.executor import Executor
 from core.executor.job import make_job
 from core.executor.snapshot import Event, Snapshot, State
-from core.interpreter.elementary_blocks import Block
-from core.interpreter.job_setup import ZeroOffset
+from core.interpreter.shared.elementary_blocks import Block
+from core.interpreter.shared.job_setup import ZeroOffset
 from core.language.source import Dialect, Source
 from core.machine.machine_model import Machine
 from core.proving.program_timeline import MotionSpan, Timeline

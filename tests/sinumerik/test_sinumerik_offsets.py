@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from core.interpreter.elementary_blocks import Block
-from core.interpreter.job_setup import ZeroOffset
-from core.interpreter.omniturn.carry_over import after_end
+from core.interpreter.omniturn.setup.carry_over import after_end
+from core.interpreter.shared.elementary_blocks import Block
+from core.interpreter.shared.job_setup import ZeroOffset
 from tests.sinumerik.lathe import good, refused, run, setup
 
 ROWS = [  # MCS at the start, word, travel, MCS and WCS at the end; TRANS C30

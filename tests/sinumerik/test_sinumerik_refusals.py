@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from core.interpreter.job_setup import Setup
+from core.interpreter.shared.job_setup import Setup
 from core.language.diagnostics import Severity
 from tests.sinumerik.lathe import LINEAR, MODULO, good, refused, run, setup
 

@@ -7,8 +7,8 @@ from math import radians, tan
 
 import pytest
 
-from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.job_setup import Setup, ToolOffset
+from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.job_setup import Setup, ToolOffset
 from core.language.diagnostics import Severity
 from tests.sinumerik.lathe import good, run, setup
 

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from core.geometry.lines_and_arcs import Arc, distance
-from core.interpreter.actions import Dwell
-from core.interpreter.adjusted_moves import element_of
-from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.job_setup import Setup, ToolOffset
+from core.interpreter.shared.actions import Dwell
+from core.interpreter.shared.contour_stage import element_of
+from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.job_setup import Setup, ToolOffset
 from core.language.source import Dialect, Source
 from tests.sinumerik.lathe import good, refused, run, setup, source
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from core.interpreter.actions import ProgramEnd
+from core.interpreter.shared.actions import ProgramEnd
 from core.language.called_files import with_called_files
 from core.language.diagnostics import AT_THE_STOP
 from core.language.source import Dialect, Source, load_source

@@ -7,9 +7,9 @@ from dataclasses import replace
 import pytest
 
 from app.compose.machine.machine_files import shipped_machine
-from core.interpreter.actions import ProgramStop, SpindleLock, SpindleRun, SpindleStop
-from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.job_setup import Setup
+from core.interpreter.shared.actions import ProgramStop, SpindleLock, SpindleRun, SpindleStop
+from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.job_setup import Setup
 from tests.sinumerik.lathe import run, setup
 
 LIVE = shipped_machine("sinumerik-live")

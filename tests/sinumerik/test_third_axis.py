@@ -6,8 +6,13 @@ import random
 
 import pytest
 
-from core.interpreter.sinumerik import third_axis
-from core.interpreter.sinumerik.third_axis import TargetError, check_reach, linear_travel, modulo_travel
+from core.interpreter.sinumerik.motion import third_axis
+from core.interpreter.sinumerik.motion.third_axis import (
+    TargetError,
+    check_reach,
+    linear_travel,
+    modulo_travel,
+)
 from core.language.sinumerik.sinumerik_words import Form
 from tests.coded import raises_code
 from tests.sinumerik.lathe import LINEAR, good, refused, setup

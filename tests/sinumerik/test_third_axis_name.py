@@ -11,8 +11,8 @@ from app.compose.machine.machine_setup import control_limits
 from app.desk.status.readouts import Readout, position_figures
 from app.jog.held_jog import directions_of
 from core.executor.snapshot import Snapshot
-from core.interpreter.checkpoint import Begin, Checkpoint
-from core.interpreter.job_setup import Setup, ZeroOffset
+from core.interpreter.shared.checkpoint import Begin, Checkpoint
+from core.interpreter.shared.job_setup import Setup, ZeroOffset
 from core.language.sinumerik import lex_line
 from core.machine.machine_model import Machine
 from core.table_schema import MachineFileError

@@ -9,8 +9,7 @@ import pytest
 
 from core.executor.program_motion.thread_curve import curve_of
 from core.executor.program_motion.thread_path import ThreadPath
-from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.path_sections import SectionEnds
+from core.interpreter.shared.elementary_blocks import Block, Kind, SectionEnds
 from core.motion.axis_limits import MotionLimits
 from tests.sinumerik.lathe import good, refused, run
 

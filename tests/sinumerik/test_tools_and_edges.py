@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import pytest
 
-from core.interpreter.actions import ToolChange
 from core.interpreter.dialects import interpretation
-from core.interpreter.job_setup import Setup, ToolOffset, ZeroOffset
+from core.interpreter.shared.actions import ToolChange
+from core.interpreter.shared.job_setup import Setup, ToolOffset, ZeroOffset
 from core.language.diagnostics import Severity
 from core.tool_edges import edge_key
 from tests.sinumerik.lathe import good, refused, run, setup, source

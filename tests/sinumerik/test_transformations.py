@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from app.compose.machine.machine_files import shipped_machine
-from core.interpreter.actions import Output, SpindleLock
-from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.job_setup import Setup, ToolOffset, ZeroOffset
+from core.interpreter.shared.actions import Output, SpindleLock
+from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.job_setup import Setup, ToolOffset, ZeroOffset
 from core.language.diagnostics import Severity
 from core.part.ray_cuts import plane_path
 from core.proving.prove_program import prove

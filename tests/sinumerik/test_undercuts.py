@@ -8,9 +8,9 @@ from math import cos, radians, sin, tan
 import pytest
 
 from core.geometry.lines_and_arcs import Point, distance
-from core.interpreter.adjusted_moves import element_of
-from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.job_setup import Setup, ToolOffset
+from core.interpreter.shared.contour_stage import element_of
+from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.job_setup import Setup, ToolOffset
 from core.tool_edges import TIP_DIRECTIONS
 from tests.sinumerik.lathe import good, refused, run, setup
 

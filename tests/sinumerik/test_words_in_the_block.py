@@ -9,9 +9,9 @@ from math import cos, hypot, radians, sin, sqrt
 import pytest
 
 from app.compose.machine.machine_files import load_machine
-from core.interpreter.actions import Dwell, Output, SpindleLock
-from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.job_setup import Setup, ToolOffset
+from core.interpreter.shared.actions import Dwell, Output, SpindleLock
+from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.job_setup import Setup, ToolOffset
 from core.language.diagnostics import Severity
 from tests.sinumerik.lathe import good, refused, run, setup
 

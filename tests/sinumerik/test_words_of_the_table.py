@@ -8,8 +8,8 @@ import pytest
 
 from app.compose.machine.machine_files import shipped_machine
 from core.interpreter.dialects import code_book
-from core.interpreter.elementary_blocks import Kind
-from core.interpreter.job_setup import Setup, ToolOffset, ZeroOffset
+from core.interpreter.shared.elementary_blocks import Kind
+from core.interpreter.shared.job_setup import Setup, ToolOffset, ZeroOffset
 from core.language.diagnostics import Severity
 from core.language.sinumerik.outside_words import OUTSIDE
 from core.language.sinumerik.word_table import FUNCTIONS, IDLE, M_FUNCTIONS, WORDS

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from app.cli.figures.units import Json, block_head, degrees, millimetres, path_feed, seconds
 
 if TYPE_CHECKING:
-    from core.interpreter.elementary_blocks import Block
-    from core.interpreter.working_plane import Swivel
+    from core.interpreter.shared.elementary_blocks import Block
+    from core.interpreter.shared.working_plane import Swivel
     from core.proving.proof_report import MillFigures, Report
 
 HEAD = (

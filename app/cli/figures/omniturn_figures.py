@@ -25,7 +25,7 @@ from app.cli.figures.units import (
 )
 
 if TYPE_CHECKING:
-    from core.interpreter.elementary_blocks import Block, Floats, Ints, TimedSeries
+    from core.interpreter.shared.elementary_blocks import Block, Floats, Ints, TimedSeries
 
 
 _SURE = 1e12  # a number of steps up to which it is a whole one, with digits to spare

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from app.cli.figures.units import Json, block_head, degrees, millimetres, path_feed, seconds
 
 if TYPE_CHECKING:
-    from core.interpreter.elementary_blocks import Block
+    from core.interpreter.shared.elementary_blocks import Block
 
 HEAD = (
     "    n  line  kind             X          Z          C        dC"

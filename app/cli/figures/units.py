@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from core.language.source import Dialect
 
 if TYPE_CHECKING:
-    from core.interpreter.elementary_blocks import Block
+    from core.interpreter.shared.elementary_blocks import Block
 
 MM_PER_INCH = 25.4
 

@@ -12,7 +12,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from core.interpreter.job_setup import Setup
+    from core.interpreter.shared.job_setup import Setup
     from core.language.source import Source
     from core.machine.machine_model import Machine
     from core.proving.program_tools import PartSetting

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.desk.command_errors import CommandError, as_command_error
-from core.interpreter.job_setup import ControlLimits, SecondaryOffset, Setup, ToolOffset, ZeroOffset
+from core.interpreter.shared.job_setup import ControlLimits, SecondaryOffset, Setup, ToolOffset, ZeroOffset
 from core.message import Message
 
 if TYPE_CHECKING:

@@ -24,7 +24,7 @@ from core.tool_edges import edge_name
 
 if TYPE_CHECKING:
     from app.path.path_picture import Picture
-    from core.interpreter.elementary_blocks import Block
+    from core.interpreter.shared.elementary_blocks import Block
     from core.proving.part_history import PartHistory
     from core.proving.start_check import FirstMove, StartCheck, StartNow
 

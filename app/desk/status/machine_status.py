@@ -25,7 +25,7 @@ from app.desk.status.readouts import (
 from app.desk.translation import tr
 from core.alarms import CATALOGUE, Reaction
 from core.executor.snapshot import Alarm, Snapshot, State
-from core.interpreter.modal_state import Modal
+from core.interpreter.shared.modal_state import Modal
 from core.message import Message, join_messages
 from core.tool_edges import edge_name, tool_of
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 from app.desk.status import formats
 from app.desk.translation import data, tr
-from core.interpreter.checkpoint import Checkpoint
-from core.interpreter.modal_state import Modal
+from core.interpreter.shared.checkpoint import Checkpoint
+from core.interpreter.shared.modal_state import Modal
 from core.message import Message
 from core.tool_edges import edge_name
 

@@ -10,7 +10,7 @@ from enum import StrEnum
 from app.desk.status import formats
 from app.desk.translation import tr
 from core.executor.snapshot import Snapshot
-from core.interpreter.working_plane import Swivel
+from core.interpreter.shared.working_plane import Swivel
 from core.message import Message, join_messages
 from core.ports import Unknown
 

@@ -12,7 +12,7 @@ from app.cli.program_options import out_file
 from app.cli.who_changes import add_as_option
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError, as_command_error
 from app.extras.shapes.shapes_command import may_write, write_made
-from core.extras.drawings.contour_walk import UNITS
+from core.extras.drawings.unit_check import UNITS
 from core.extras.shapes.cutting_data import MATERIALS
 from core.json_key import Output, keys
 from core.language.source import Dialect, dialect_of
@@ -194,7 +194,7 @@ def _run(args: argparse.Namespace) -> int:
 def _check_unit(drawing: Drawing, view: View, net: Net, machine: Machine) -> None:
     """Refuse a contour that is too large for the machine only because of the unit that its file states."""
     from app.extras.shapes.shapes_desk import shop_of
-    from core.extras.drawings.contour_walk import wrong_unit
+    from core.extras.drawings.unit_check import wrong_unit
 
     if (wrong := wrong_unit(net, view.unit, shop_of(machine, {}).travel)) is not None:
         size, name = wrong[0], wrong[1].lower()

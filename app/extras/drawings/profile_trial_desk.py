@@ -10,7 +10,7 @@ from app.compose.machine.machine_setup import setup_for
 from core.extras.drawings.drawing_view import Profile, Side
 from core.extras.drawings.part_against_drawing import Comparison, compared
 from core.extras.drawings.profile_program import NoseOffset
-from core.interpreter.job_setup import SecondaryOffset, ToolOffset
+from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Dialect, Source
 from core.machine.machine_model import Machine

@@ -18,7 +18,7 @@ from core.executor.program_motion.standstill import Wait, at_speed
 from core.executor.raised_alarm import AlarmError
 from core.geometry.lines_and_arcs import arc_sweep
 from core.geometry.surface_speed import surface_rpm
-from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.shared.elementary_blocks import Block, Kind
 from core.message import Message
 from core.motion.axis_limits import CENTRIPETAL_SHARE, MotionLimits
 from core.ports import ArcOp, BlockOp, BlockSink, BlockState, LineOp, RapidOp, ThreadOp

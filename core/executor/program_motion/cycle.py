@@ -19,10 +19,9 @@ from core.executor.program_motion.setpoint_motion import SetpointMotion
 from core.executor.program_motion.standstill import Next, Standstill, Wait, at_speed
 from core.executor.raised_alarm import AlarmError, code_of_hold
 from core.executor.snapshot import State
-from core.interpreter.actions import ProgramEnd, ProgramStop, SpindleLock, SpindleOrient, SpindleStop
-from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.modal_state import Modal
-from core.interpreter.path_sections import needs_speed
+from core.interpreter.shared.actions import ProgramEnd, ProgramStop, SpindleLock, SpindleOrient, SpindleStop
+from core.interpreter.shared.elementary_blocks import Block, Kind, needs_speed
+from core.interpreter.shared.modal_state import Modal
 
 PathMotion = SetpointMotion | ControllerMotion
 """What moves the blocks from rest to rest: our own setpoints, or a controller that plans by itself."""

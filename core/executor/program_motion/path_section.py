@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from core.interpreter.elementary_blocks import Block
+from core.interpreter.shared.elementary_blocks import Block
 from core.motion.axis_limits import MotionLimits
 from core.motion.motion_path import Path, PathBuilder
 from core.motion.motion_plan import plan

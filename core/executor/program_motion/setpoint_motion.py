@@ -15,7 +15,7 @@ from core.executor.machine_context import MachineContext
 from core.executor.program_motion.path_section import Overrides, PathSection, PlanQueue, Progress, Track
 from core.executor.program_motion.thread_pass import GearedThreadPass, ThreadPass
 from core.executor.program_motion.thread_path import ThreadRetract
-from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.shared.elementary_blocks import Block, Kind
 from core.motion.axis_limits import MotionLimits
 from core.motion.motion_path import Path
 from core.motion.motion_plan import plan

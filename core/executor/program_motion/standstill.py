@@ -15,7 +15,7 @@ from core.executor.job import ReadAhead
 from core.executor.machine_context import MachineContext
 from core.executor.raised_alarm import AlarmError
 from core.executor.spindle_control import SpindleDemand
-from core.interpreter.actions import (
+from core.interpreter.shared.actions import (
     Collet,
     Coolant,
     Dwell,
@@ -27,8 +27,7 @@ from core.interpreter.actions import (
     SpindleStop,
     WaitInput,
 )
-from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.path_sections import needs_speed
+from core.interpreter.shared.elementary_blocks import Block, Kind, needs_speed
 from core.message import Message
 
 # --- waits and actions ----------------------------------------------------------------------------------

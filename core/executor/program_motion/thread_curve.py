@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from core.interpreter.elementary_blocks import Block
+from core.interpreter.shared.elementary_blocks import Block
 from core.motion.axis_limits import MotionLimits
 
 Floats = npt.NDArray[np.float64]

@@ -17,7 +17,7 @@ import numpy as np
 from core.executor.program_motion.thread_curve import turns_of
 from core.executor.program_motion.thread_path import Phases, ThreadPath
 from core.executor.spindle_control import SpindleAngle
-from core.interpreter.elementary_blocks import Block
+from core.interpreter.shared.elementary_blocks import Block
 from core.motion.axis_limits import MotionLimits
 from core.ports import AxisSink, Cam, DriverError, Gear, Geared, Segments, Stop
 

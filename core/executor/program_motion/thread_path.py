@@ -16,7 +16,7 @@ import numpy.typing as npt
 from core.executor.program_motion.thread_curve import ThreadCurve, curve_of, turns_of
 from core.executor.raised_alarm import AlarmError
 from core.executor.spindle_control import SpindleControl
-from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.shared.elementary_blocks import Block, Kind
 from core.message import Message
 from core.motion.axis_limits import MotionLimits
 from core.ports import Segments

@@ -367,33 +367,3 @@ def turned_about(elements: Iterable[Element]) -> Iterator[Element]:
             yield replace(each, start=a, end=b, centre=c, clockwise=not each.clockwise)
         else:
             yield Line((-each.start[0], each.start[1]), (-each.end[0], each.end[1]))
-
-
-UNITS = {"MM": 1.0, "INCH": 25.4}
-"""The units that a user can choose, mm."""
-
-
-def wrong_unit(net: Net, unit: float, travel: tuple[float, float]) -> tuple[str, str] | None:
-    """Return the size that is too large, and the name of the unit in which the contour would fit.
-
-    ``unit`` is that of the drawing, mm; ``travel`` that of X (as a radius) and Z, mm, 0 if it is not known.
-    None if the contour fits, or does not fit in a smaller unit either.
-    """
-    low, high, radius = net.reach
-    if not all(travel) or _fits(high - low, radius, travel):
-        return None
-    smaller = sorted(((mm, name) for name, mm in UNITS.items() if mm < unit), reverse=True)
-    for mm, name in smaller:
-        if _fits((high - low) * mm / unit, radius * mm / unit, travel):
-            return _too_large(high - low, radius, unit, travel[1]), name
-    return None
-
-
-def _fits(long: float, radius: float, travel: tuple[float, float]) -> bool:
-    return radius <= travel[0] and long <= travel[1]
-
-
-def _too_large(long: float, radius: float, unit: float, most: float) -> str:
-    size, template = (long, "{size} {unit} long") if long > most else (2.0 * radius, "{size} {unit} across")
-    mm, name = (25.4, "in") if unit == UNITS["INCH"] else (1.0, "mm")
-    return Message(template, size=f"{size / mm:.4g}", unit=name)

@@ -5,37 +5,33 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from core.geometry.rotary_axes import Kinematics
-from core.interpreter.actions import ProgramEnd, ProgramStop
-from core.interpreter.checkpoint import Begin, Checkpoint
-from core.interpreter.control_flow import LoopWatch
-from core.interpreter.diagnostic_log import Log
-from core.interpreter.elementary_blocks import Block
-from core.interpreter.interpretation import MOST_LINES_WITHOUT_BLOCK
-from core.interpreter.job_setup import Setup
-from core.interpreter.klartext import (
-    feed_rates,
-    m_functions,
-    mid_program_startup,
-    tip_control,
-)
-from core.interpreter.klartext.blocks_without_motion import Reckoned, go_on, reckon, refuse_endless
 from core.interpreter.klartext.consequent_faults import Consequences, ends_the_pass
-from core.interpreter.klartext.contour_figures import ContourFigure, FigureRunner, copy_of
-from core.interpreter.klartext.coordinate_transformations import datum, transform
-from core.interpreter.klartext.cycles import Cycles
+from core.interpreter.klartext.cycles.contour_figures import ContourFigure, FigureRunner, copy_of
+from core.interpreter.klartext.cycles.cycle_calls import Cycles
+from core.interpreter.klartext.flow import mid_program_startup
+from core.interpreter.klartext.flow.blocks_without_motion import Reckoned, go_on, reckon, refuse_endless
+from core.interpreter.klartext.flow.mid_program_startup import Parts
 from core.interpreter.klartext.klartext_program import Flow, Program
 from core.interpreter.klartext.klartext_state import State
-from core.interpreter.klartext.mid_program_startup import Parts
-from core.interpreter.klartext.path_functions import PathRunner
-from core.interpreter.klartext.plane_functions import plane
-from core.interpreter.klartext.tool_call import define_tool, tool_call
-from core.interpreter.line_pass import LinePass
-from core.interpreter.modal_state import Modal
+from core.interpreter.klartext.motion import feed_rates, plane_functions
+from core.interpreter.klartext.motion.path_functions import PathRunner
+from core.interpreter.klartext.motion.plane_functions import plane
+from core.interpreter.klartext.setup import m_functions
+from core.interpreter.klartext.setup.coordinate_transformations import datum, transform
+from core.interpreter.klartext.setup.tool_call import define_tool, tool_call
+from core.interpreter.shared.actions import ProgramEnd, ProgramStop
+from core.interpreter.shared.checkpoint import Begin, Checkpoint
+from core.interpreter.shared.control_flow import LoopWatch
+from core.interpreter.shared.diagnostic_log import Log
+from core.interpreter.shared.elementary_blocks import Block
+from core.interpreter.shared.interpretation import MOST_LINES_WITHOUT_BLOCK, LinePass
+from core.interpreter.shared.job_setup import Setup
+from core.interpreter.shared.modal_state import Modal
 from core.language.diagnostics import ProgramError
 from core.language.klartext import klartext_nodes as nodes
 from core.language.klartext.canonical_text import name_text
 from core.language.klartext.klartext_faults import FILE_MISSING, LABEL, unsupported
-from core.language.klartext.table_file import Row
+from core.language.klartext.named_files import Row
 from core.message import Message
 
 
@@ -194,7 +190,7 @@ class Interpreter(LinePass[nodes.KlartextLine]):
             case nodes.Transform():
                 transform(state, node)
             case nodes.TipControl():
-                tip_control.switch(state, on=node.on)
+                plane_functions.switch(state, on=node.on)
             case nodes.Cycle() | nodes.CycleLine() | nodes.PatternDef() | nodes.ContourDef():
                 yield from self._cycles.told(node)
             case nodes.Selection():

@@ -7,14 +7,13 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 from core.geometry.rotation_frames import Vector
-from core.interpreter.control_flow import ControlFlow, Frame
-from core.interpreter.diagnostic_log import MOST_OF_A_KIND
 from core.interpreter.klartext.consequent_faults import told_once
-from core.interpreter.units import MM_PER_INCH
-from core.interpreter.working_plane import Corners
+from core.interpreter.shared.control_flow import ControlFlow, Frame
+from core.interpreter.shared.diagnostic_log import MOST_OF_A_KIND
+from core.interpreter.shared.units import MM_PER_INCH
+from core.interpreter.shared.working_plane import Corners
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.klartext import read_line
-from core.language.klartext.called_programs import file_name
 from core.language.klartext.canonical_text import name_text, written
 from core.language.klartext.klartext_faults import LABEL, LABEL_TWICE, NESTING, NOT_SUPPORTED, fault, syntax
 from core.language.klartext.klartext_line import CONTINUED
@@ -31,7 +30,7 @@ from core.language.klartext.klartext_nodes import (
     RoundBlank,
     SystemRead,
 )
-from core.language.klartext.table_file import Row, is_table, table_rows
+from core.language.klartext.named_files import Row, file_name, is_table, table_rows
 from core.language.line_reading import comment_start
 from core.language.source import Source
 from core.message import Message

@@ -9,16 +9,16 @@ from dataclasses import dataclass
 from core.geometry.rotary_axes import Kinematics, Place, Rotary
 from core.geometry.rotation_frames import IDENTITY, Matrix, Vector, applied, plus, product, transposed
 from core.geometry.working_plane import XY, CurvedMove, Figure, Order, Travel
-from core.interpreter.actions import Action, Dwell, ProgramStop
-from core.interpreter.diagnostic_log import Log
-from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.job_setup import Setup
-from core.interpreter.modal_state import Modal
-from core.interpreter.units import MM_PER_INCH
-from core.interpreter.working_plane import Angles, Corners, PlaneSystem, Swivel
+from core.interpreter.shared.actions import Action, Dwell, ProgramStop
+from core.interpreter.shared.diagnostic_log import Log
+from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.job_setup import Setup
+from core.interpreter.shared.modal_state import Modal
+from core.interpreter.shared.units import MM_PER_INCH
+from core.interpreter.shared.working_plane import Angles, Corners, PlaneSystem, Swivel
 from core.language.diagnostics import AT_THE_STOP, Diagnostic, ProgramError, Severity, resting_on
 from core.language.klartext.klartext_faults import fault
-from core.language.klartext.table_file import Row
+from core.language.klartext.named_files import Row
 from core.message import Message, worded
 
 ORIGIN: Vector = (0.0, 0.0, 0.0)

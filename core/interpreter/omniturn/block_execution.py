@@ -4,22 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from core.interpreter.elementary_blocks import Block
-from core.interpreter.interpretation import ToolUse
-from core.interpreter.omniturn.arc_moves import arc_move
-from core.interpreter.omniturn.c_axis import c_move, lock, positions
-from core.interpreter.omniturn.canned_cycles import blocks_of_moves, check_ready
-from core.interpreter.omniturn.coarse_feeds import coarse_line
-from core.interpreter.omniturn.code_entry import Acts
-from core.interpreter.omniturn.code_table import carry_out
-from core.interpreter.omniturn.corners import read_corner, refuse_radius
-from core.interpreter.omniturn.feeds import feed_words, warn_of_crash_feed
-from core.interpreter.omniturn.m_codes import after_motion, before_motion
+from core.interpreter.omniturn.codes.code_entry import Acts
+from core.interpreter.omniturn.codes.code_table import carry_out
+from core.interpreter.omniturn.cycles.canned_cycles import blocks_of_moves, check_ready
+from core.interpreter.omniturn.motion.arc_moves import arc_move
+from core.interpreter.omniturn.motion.c_axis import c_move, lock, positions
+from core.interpreter.omniturn.motion.coarse_feeds import coarse_line
+from core.interpreter.omniturn.motion.corners import read_corner, refuse_radius
+from core.interpreter.omniturn.motion.feeds import feed_words, warn_of_crash_feed
+from core.interpreter.omniturn.motion.straight_moves import geometry_modes, statement_move
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import ReadyLine, Statement
-from core.interpreter.omniturn.spindle_speed import run_block, speed_word, spindle_modes
-from core.interpreter.omniturn.straight_moves import geometry_modes, statement_move
-from core.interpreter.omniturn.tools_and_offsets import secondary, tool_change
+from core.interpreter.omniturn.setup.m_codes import after_motion, before_motion
+from core.interpreter.omniturn.setup.spindle_and_dwell import run_block, speed_word, spindle_modes
+from core.interpreter.omniturn.setup.tools_and_offsets import secondary, tool_change
+from core.interpreter.shared.elementary_blocks import Block
+from core.interpreter.shared.interpretation import ToolUse
 
 Ahead = Sequence[ReadyLine]
 _ARC = Acts.ARC  # asked of every line

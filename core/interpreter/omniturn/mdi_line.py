@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from core.interpreter.omniturn.code_table import FLOW_CODES, G_CODES
-from core.interpreter.omniturn.loops_and_subroutines import Structure
+from core.interpreter.omniturn.codes.code_table import FLOW_CODES, G_CODES
+from core.interpreter.omniturn.flow.loops_and_subroutines import Structure
+from core.interpreter.omniturn.motion.plain_moves import Columns, ReadyLines
 from core.interpreter.omniturn.omniturn_program import Program, of_machine_file, read_statement
 from core.interpreter.omniturn.omniturn_statement import PLANE, UNREADABLE, Statement
-from core.interpreter.omniturn.plain_moves import Columns, ReadyLines
 from core.language.diagnostics import Diagnostic, ProgramError, refusal
 from core.language.source import Source
 from core.message import Message

@@ -6,33 +6,31 @@ from collections.abc import Iterator
 from itertools import chain
 from typing import TYPE_CHECKING
 
-from core.interpreter.actions import AskInput, ProgramEnd
-from core.interpreter.checkpoint import Checkpoint
-from core.interpreter.diagnostic_log import Log
-from core.interpreter.elementary_blocks import Block, Series
-from core.interpreter.interpretation import MOST_BLOCKS, MOST_LINES, Interpretation
-from core.interpreter.job_setup import Setup
-from core.interpreter.lathe_approach import approach_blocks
-from core.interpreter.modal_state import Modal
 from core.interpreter.omniturn.block_execution import execute
-from core.interpreter.omniturn.checkpoint_restore import checkpoint_of, restore
-from core.interpreter.omniturn.coarse_feeds import looks_ahead
-from core.interpreter.omniturn.consequences import Consequences
-from core.interpreter.omniturn.contour_modification import ContourModifier
-from core.interpreter.omniturn.loops_and_subroutines import Flow, takes_call, terminal
-from core.interpreter.omniturn.m_codes import check_m_codes
-from core.interpreter.omniturn.nose_compensation import nose_code, switch
+from core.interpreter.omniturn.consequent_faults import Consequences
+from core.interpreter.omniturn.flow.loops_and_subroutines import Flow, takes_call, terminal
+from core.interpreter.omniturn.flow.program_size import refuse_too_large
+from core.interpreter.omniturn.motion.coarse_feeds import looks_ahead
+from core.interpreter.omniturn.motion.corners import ContourModifier
+from core.interpreter.omniturn.motion.nose_compensation import nose_code, switch
+from core.interpreter.omniturn.motion.straight_moves import go, on_step, plain_move
 from core.interpreter.omniturn.omniturn_program import Program
-from core.interpreter.omniturn.omniturn_state import State
+from core.interpreter.omniturn.omniturn_state import State, checkpoint_of, restore
 from core.interpreter.omniturn.omniturn_statement import PLANE, UNREADABLE, ReadyLine, Statement, statement_of
-from core.interpreter.omniturn.program_size import refuse_too_large
-from core.interpreter.omniturn.straight_moves import go, on_step, plain_move
-from core.interpreter.omniturn.tools_and_offsets import warn_of_idle_shifts
+from core.interpreter.omniturn.setup.m_codes import check_m_codes
+from core.interpreter.omniturn.setup.tools_and_offsets import warn_of_idle_shifts
+from core.interpreter.shared.actions import AskInput, ProgramEnd
+from core.interpreter.shared.checkpoint import Checkpoint
+from core.interpreter.shared.diagnostic_log import Log
+from core.interpreter.shared.elementary_blocks import Block, Series
+from core.interpreter.shared.interpretation import MOST_BLOCKS, MOST_LINES, Interpretation, approach_blocks
+from core.interpreter.shared.job_setup import Setup
+from core.interpreter.shared.modal_state import Modal
 from core.language.diagnostics import ProgramError, refusal
 from core.language.omniturn import lex_line
 
 if TYPE_CHECKING:
-    from core.interpreter.omniturn.move_series import SeriesLookAhead
+    from core.interpreter.omniturn.motion.move_series import SeriesLookAhead
 
 # --- what can be said before the first block
 
@@ -126,7 +124,7 @@ class Interpreter(Interpretation):
     def series(self) -> Iterator[Block | Series]:
         """The same, whole series of straight moves in one: for whoever goes through all of a program."""
         if self._program.structure.loop_ends or len(self._program.ready) >= LONG:
-            from core.interpreter.omniturn.move_series import SeriesLookAhead
+            from core.interpreter.omniturn.motion.move_series import SeriesLookAhead
 
             self._ahead = SeriesLookAhead(self._state, self._program, self._flow)
         return (each for each in chain(self._approach(), self._pass()) if not self._stopped)
@@ -197,7 +195,7 @@ class Interpreter(Interpretation):
             yield from self._call(statement)
         elif statement.flow == PLANE:
             self._modifier.check(statement)
-            from core.interpreter.omniturn.plane_switching import plane_line  # as rare as it is large
+            from core.interpreter.omniturn.motion.plane_switching import plane_line  # as rare as it is large
 
             for block in plane_line(self._state, statement):
                 yield from self._modified(block)

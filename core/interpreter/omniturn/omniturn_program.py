@@ -6,10 +6,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import islice
 
-from core.interpreter.diagnostic_log import without_repeats
-from core.interpreter.omniturn.code_table import FLOW_CODES
-from core.interpreter.omniturn.follow_ups import without_follow_ups
-from core.interpreter.omniturn.loops_and_subroutines import Structure, call_target, find_structure
+from core.interpreter.omniturn.codes.code_table import FLOW_CODES
+from core.interpreter.omniturn.consequent_faults import without_follow_ups
+from core.interpreter.omniturn.flow.loops_and_subroutines import Structure, call_target, find_structure
+from core.interpreter.omniturn.motion.plain_moves import ReadyLines, read_lines, read_move
 from core.interpreter.omniturn.omniturn_statement import (
     PLANE,
     UNREADABLE,
@@ -18,10 +18,10 @@ from core.interpreter.omniturn.omniturn_statement import (
     statement_of,
     unreadable,
 )
-from core.interpreter.omniturn.plain_moves import ReadyLines, read_lines, read_move
+from core.interpreter.shared.diagnostic_log import without_repeats
 from core.language.diagnostics import Diagnostic, ProgramError, Severity, refusal
 from core.language.omniturn import Line, lex_line
-from core.language.omniturn.foreign_program import recognize
+from core.language.omniturn.other_controls import recognize
 from core.language.omniturn.plane_switching_lines import (
     PlaneLine,
     ends_program,

@@ -1,16 +1,17 @@
-"""Everything that changes while a program is gone through, kept flat because every move reads it."""
+"""Everything that changes while a program is gone through, flat as every move reads it; its checkpoint."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
-from core.interpreter.actions import Action, Dwell
-from core.interpreter.diagnostic_log import Log
-from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.job_setup import Setup
-from core.interpreter.modal_state import Modal
-from core.interpreter.units import MM_PER_INCH
+from core.interpreter.shared.actions import Action, Dwell
+from core.interpreter.shared.checkpoint import Begin, Checkpoint
+from core.interpreter.shared.diagnostic_log import Log
+from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.job_setup import Setup
+from core.interpreter.shared.modal_state import Modal
+from core.interpreter.shared.units import MM_PER_INCH
 
 if TYPE_CHECKING:
     from core.geometry.virtual_mill import PlaneMove
@@ -181,3 +182,30 @@ class State:
             self.blocks, line, kind, text, *start, self.x, self.z, self.c, self.offset_x, self.offset_z,
             self.modal, feed, per_rev, rpm, css, *centre, clockwise, plane=plane,
         )  # fmt: skip
+
+
+_NOT_OF_THE_STATE = ("flow", "kept", "at")  # the flow is the interpreter's, the others are other dialects'
+_KEPT = tuple(name for name in Checkpoint._fields if name not in _NOT_OF_THE_STATE)
+
+
+def checkpoint_of(state: State) -> Checkpoint:
+    """All that the line that comes next inherits, to go on from there in another pass."""
+    return Checkpoint(*(getattr(state, name) for name in _KEPT))
+
+
+def restore(state: State, begin: Begin) -> None:
+    """Put back what the line of ``begin`` inherits.
+
+    A line of MDI begins where the slides stand. A restart begins at its checkpoint, to which its way leads;
+    C stays where it is unless it is locked.
+    """
+    point = begin.checkpoint
+    for name in _KEPT:
+        setattr(state, name, getattr(point, name))
+    state.derive()
+    start_x, start_z, start_c = state.setup.start[:3]
+    if begin.single:
+        state.x, state.z = start_x - state.offset_x, start_z - state.offset_z
+        state.px, state.pz = state.x - state.dx, state.z - state.dz
+    if begin.single or not point.modal.c_locked:
+        state.c = start_c - point.modal.offset_c

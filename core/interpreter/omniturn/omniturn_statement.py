@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from core.interpreter.omniturn.code_entry import Acts, Code, FWord, SWord
-from core.interpreter.omniturn.code_table import FLOW_CODES, G_CODES, M_CODES, PLAIN
+from core.interpreter.omniturn.codes.code_entry import Acts, Code, FWord, SWord
+from core.interpreter.omniturn.codes.code_table import FLOW_CODES, G_CODES, M_CODES, PLAIN
 from core.language.diagnostics import ProgramError, program_error
 from core.language.omniturn import Line, Word, other_controls
 from core.language.omniturn.plane_switching_lines import PlaneLine

@@ -16,8 +16,8 @@ import numpy.typing as npt
 
 from core.geometry.lines_and_arcs import arc_sweep
 from core.geometry.virtual_mill import Side
-from core.interpreter.actions import Collet
-from core.interpreter.elementary_blocks import Block, Kind, Series
+from core.interpreter.shared.actions import Collet
+from core.interpreter.shared.elementary_blocks import Block, Kind, Series
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]

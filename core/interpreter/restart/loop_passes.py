@@ -6,14 +6,14 @@ from bisect import bisect_left
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from core.interpreter.actions import ProgramEnd
-from core.interpreter.checkpoint import FlowPlace
-from core.interpreter.job_setup import Setup
-from core.interpreter.omniturn.loops_and_subroutines import call_target
+from core.interpreter.omniturn.flow.loops_and_subroutines import call_target
 from core.interpreter.omniturn.omniturn_interpreter import PassToLine
 from core.interpreter.omniturn.omniturn_program import Program
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.restart.restart_point import Called, LineVisit, LoopPass
+from core.interpreter.shared.actions import ProgramEnd
+from core.interpreter.shared.checkpoint import FlowPlace
+from core.interpreter.shared.job_setup import Setup
 from core.message import Message
 
 MOST = 20_000

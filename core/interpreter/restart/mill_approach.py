@@ -12,10 +12,10 @@ from math import inf
 
 from core.geometry.rotary_axes import Kinematics
 from core.geometry.rotation_frames import Vector, plus, scaled
-from core.interpreter.actions import ProgramStop, SpindleStop, ToolChange
-from core.interpreter.checkpoint import ApproachStep, AxesLeg, Begin, FunctionStep
 from core.interpreter.restart.restart_approach import Choices, MachineNow, starting, stopping
 from core.interpreter.restart.restart_point import RestartPoint
+from core.interpreter.shared.actions import ProgramStop, SpindleStop, ToolChange
+from core.interpreter.shared.checkpoint import ApproachStep, AxesLeg, Begin, FunctionStep
 from core.message import Message
 
 SHORT_OF_LIMIT = 0.01  # mm that the way stays away from the software limits

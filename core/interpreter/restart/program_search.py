@@ -12,16 +12,16 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import inf, isclose
 
-from core.interpreter.actions import ProgramEnd
-from core.interpreter.checkpoint import Checkpoint
 from core.interpreter.dialects import ReadProgram
-from core.interpreter.elementary_blocks import Block
-from core.interpreter.interpretation import Interpretation
-from core.interpreter.job_setup import Setup
 from core.interpreter.restart.cut_record import CutRecord, record_cuts
 from core.interpreter.restart.restart_point import Interruption, LineVisit, NoRestart, RestartPoint
 from core.interpreter.restart.restart_retract import NEAR, Retract, ToolPlace
 from core.interpreter.restart.state_rebuild import found_on_lathe, in_uncut_material
+from core.interpreter.shared.actions import ProgramEnd
+from core.interpreter.shared.checkpoint import Checkpoint
+from core.interpreter.shared.elementary_blocks import Block
+from core.interpreter.shared.interpretation import Interpretation
+from core.interpreter.shared.job_setup import Setup
 from core.message import Message
 
 Watch = Callable[[float], None]

@@ -10,9 +10,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from math import hypot
 
-from core.interpreter.actions import Coolant, Output, SpindleLock, SpindleOrient, SpindleRun, SpindleStop
-from core.interpreter.checkpoint import ApproachStep, Begin, CTurn, FunctionStep, Leg
-from core.interpreter.modal_state import Modal
 from core.interpreter.restart.cut_record import CutRecord
 from core.interpreter.restart.restart_point import Interruption, RestartPoint
 from core.interpreter.restart.restart_retract import (
@@ -26,6 +23,16 @@ from core.interpreter.restart.restart_retract import (
     off_row,
     retract,
 )
+from core.interpreter.shared.actions import (
+    Coolant,
+    Output,
+    SpindleLock,
+    SpindleOrient,
+    SpindleRun,
+    SpindleStop,
+)
+from core.interpreter.shared.checkpoint import ApproachStep, Begin, CTurn, FunctionStep, Leg
+from core.interpreter.shared.modal_state import Modal
 from core.message import Message
 
 _SAME = 1e-6  # mm

@@ -6,10 +6,10 @@ from collections.abc import Iterator
 from operator import attrgetter
 from typing import NamedTuple
 
-from core.interpreter.omniturn.loops_and_subroutines import call_target
+from core.interpreter.omniturn.flow.loops_and_subroutines import call_target
+from core.interpreter.omniturn.motion.plain_moves import ReadyLines
 from core.interpreter.omniturn.omniturn_program import Program
 from core.interpreter.omniturn.omniturn_statement import PLANE, Statement
-from core.interpreter.omniturn.plain_moves import ReadyLines
 from core.message import Message
 
 _NOSE_ON, _NOSE_OFF = frozenset({41, 42}), 40

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from core.interpreter.checkpoint import Checkpoint
 from core.interpreter.restart.cut_record import CutRecord
 from core.interpreter.restart.restart_retract import Retract, ToolPlace
+from core.interpreter.shared.checkpoint import Checkpoint
 
 
 class LoopPass(NamedTuple):

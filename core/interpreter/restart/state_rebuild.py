@@ -11,9 +11,6 @@ from collections.abc import Callable
 from dataclasses import replace
 from math import hypot
 
-from core.interpreter.actions import AskInput, ProgramEnd
-from core.interpreter.checkpoint import Begin, Checkpoint
-from core.interpreter.job_setup import Setup
 from core.interpreter.omniturn.omniturn_interpreter import Interpreter, PassToLine
 from core.interpreter.omniturn.omniturn_program import Program, read_program
 from core.interpreter.omniturn.omniturn_statement import Statement
@@ -22,6 +19,9 @@ from core.interpreter.restart.loop_passes import Visits, visits_of
 from core.interpreter.restart.restart_lines import RestartLines
 from core.interpreter.restart.restart_point import Interruption, LineVisit, NoRestart, RestartPoint
 from core.interpreter.restart.restart_retract import NEAR, Place, Retract, ToolPlace, retract
+from core.interpreter.shared.actions import AskInput, ProgramEnd
+from core.interpreter.shared.checkpoint import Begin, Checkpoint
+from core.interpreter.shared.job_setup import Setup
 from core.language.source import Source
 from core.message import Message
 

@@ -7,26 +7,31 @@ from collections.abc import Iterator
 from dataclasses import replace
 from functools import cached_property, partial
 
-from core.interpreter.actions import Dwell, ProgramEnd, ProgramStop
-from core.interpreter.checkpoint import Begin, Checkpoint
-from core.interpreter.control_flow import ENDLESS
-from core.interpreter.diagnostic_log import Log
-from core.interpreter.elementary_blocks import Block
-from core.interpreter.interpretation import MOST_BLOCKS, MOST_LINES
-from core.interpreter.job_setup import Setup
-from core.interpreter.lathe_approach import approach_blocks
-from core.interpreter.line_pass import LinePass
-from core.interpreter.modal_state import Modal
-from core.interpreter.sinumerik.block_search import Parts, checkpoint_of, take_up
-from core.interpreter.sinumerik.chamfers_and_rounds import Corner, Corners, corner_of
-from core.interpreter.sinumerik.cycle_calls import cycle_blocks
-from core.interpreter.sinumerik.fixed_points import fixed_point, home
-from core.interpreter.sinumerik.hole_patterns import PATTERNS, no_cycle, places
-from core.interpreter.sinumerik.linear_moves import straight
-from core.interpreter.sinumerik.live_tool import live_tool, live_words
-from core.interpreter.sinumerik.m_functions import check_m, functions_after, functions_before
-from core.interpreter.sinumerik.mda_block import needs_others
-from core.interpreter.sinumerik.modes_and_offsets import (
+from core.interpreter.shared.actions import Dwell, ProgramEnd, ProgramStop
+from core.interpreter.shared.checkpoint import Begin, Checkpoint
+from core.interpreter.shared.control_flow import ENDLESS
+from core.interpreter.shared.diagnostic_log import Log
+from core.interpreter.shared.elementary_blocks import Block
+from core.interpreter.shared.interpretation import MOST_BLOCKS, MOST_LINES, LinePass, approach_blocks
+from core.interpreter.shared.job_setup import Setup
+from core.interpreter.shared.modal_state import Modal
+from core.interpreter.sinumerik.cycles.cycle_calls import cycle_blocks
+from core.interpreter.sinumerik.cycles.drilling_cycles import PATTERNS, no_cycle, places
+from core.interpreter.sinumerik.cycles.tapping_cycles import tap
+from core.interpreter.sinumerik.flow.block_search import Parts, checkpoint_of, needs_others, take_up
+from core.interpreter.sinumerik.flow.subprogram_flow import Flow, ends_main
+from core.interpreter.sinumerik.flow.variables import place_name
+from core.interpreter.sinumerik.motion.chamfers_and_rounds import Corner, Corners, corner_of
+from core.interpreter.sinumerik.motion.fixed_points import fixed_point, home
+from core.interpreter.sinumerik.motion.linear_moves import straight
+from core.interpreter.sinumerik.motion.radius_compensation import Compensation
+from core.interpreter.sinumerik.motion.sinumerik_arcs import arc
+from core.interpreter.sinumerik.motion.sinumerik_feeds import feed_words
+from core.interpreter.sinumerik.motion.thread_moves import thread
+from core.interpreter.sinumerik.motion.transformations import transform
+from core.interpreter.sinumerik.motion.transformed_plane import Transformation
+from core.interpreter.sinumerik.setup.m_functions import check_m, functions_after, functions_before
+from core.interpreter.sinumerik.setup.modes_and_offsets import (
     check_y,
     frame_block,
     leave_offsets,
@@ -34,19 +39,16 @@ from core.interpreter.sinumerik.modes_and_offsets import (
     programmed_frame,
     tell_idle_words,
 )
-from core.interpreter.sinumerik.radius_compensation import Compensation
-from core.interpreter.sinumerik.sinumerik_arcs import arc
-from core.interpreter.sinumerik.sinumerik_feeds import feed_words
+from core.interpreter.sinumerik.setup.spindle_and_dwell import (
+    dwell,
+    live_tool,
+    live_words,
+    spindle_words,
+    turns_spindle,
+)
+from core.interpreter.sinumerik.setup.tools_and_edges import tool_words
 from core.interpreter.sinumerik.sinumerik_state import ARCS, TAPS, THREADS, State
 from core.interpreter.sinumerik.sinumerik_statement import Statement, statement_of
-from core.interpreter.sinumerik.spindle_and_dwell import dwell, spindle_words, turns_spindle
-from core.interpreter.sinumerik.subprogram_flow import Flow, ends_main
-from core.interpreter.sinumerik.tapping_cycles import tap
-from core.interpreter.sinumerik.thread_moves import thread
-from core.interpreter.sinumerik.tools_and_edges import tool_words
-from core.interpreter.sinumerik.transformations import transform
-from core.interpreter.sinumerik.transformed_plane import Transformation
-from core.interpreter.sinumerik.variables import place_name
 from core.language.diagnostics import Diagnostic, ProgramError, Severity
 from core.language.sinumerik.control_differences import lacking
 from core.language.sinumerik.cycle_names import CYCLES, CYCLES_TAKEN, SWIVELS

@@ -4,24 +4,56 @@ from __future__ import annotations
 
 from dataclasses import replace
 from enum import IntEnum
+from typing import Protocol
 
-from core.interpreter.actions import Action, Dwell, ProgramStop
-from core.interpreter.diagnostic_log import Log
-from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.formula_values import worth
-from core.interpreter.job_setup import Setup, ToolOffset, ZeroOffset
-from core.interpreter.modal_state import Modal
-from core.interpreter.sinumerik.plane_in_force import PlaneInForce
-from core.interpreter.sinumerik.programmed_frame import ProgrammedFrame
+from core.interpreter.shared.actions import Action, Dwell, ProgramStop
+from core.interpreter.shared.diagnostic_log import Log
+from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.formula_values import worth
+from core.interpreter.shared.job_setup import Setup, ToolOffset, ZeroOffset
+from core.interpreter.shared.modal_state import Modal
+from core.interpreter.shared.units import MM_PER_INCH
+from core.interpreter.sinumerik.flow.variables import UNSET, Refuse, Variables, position_asked, system_value
+from core.interpreter.sinumerik.motion.third_axis import wrapped
+from core.interpreter.sinumerik.setup.programmed_frame import ProgrammedFrame
 from core.interpreter.sinumerik.sinumerik_statement import Statement
-from core.interpreter.sinumerik.system_variables import position_asked, system_value
-from core.interpreter.sinumerik.third_axis import wrapped
-from core.interpreter.sinumerik.variables import UNSET, Refuse, Variables
-from core.interpreter.units import MM_PER_INCH
 from core.language.diagnostics import AT_THE_STOP, Diagnostic, ProgramError, Severity, resting_on
 from core.language.formulas import Formula, Parameter
 from core.language.sinumerik.sinumerik_words import Line, Word
 from core.message import Message
+
+
+class PlaneInForce(Protocol):
+    """The plane of a transformation; see ``transformed_plane``."""
+
+    @property
+    def name(self) -> str:
+        """The word that has begun it."""
+        ...
+
+    @property
+    def along_z(self) -> bool:
+        """Whether the depth is Z, along which drilling cycles drill."""
+        ...
+
+    @property
+    def plane(self) -> int:
+        """G17 or G19, in which its arcs and its compensation lie."""
+        ...
+
+    @property
+    def depth(self) -> float:
+        """Where the tool stands square to the plane, as the program counts: mm."""
+        ...
+
+    def down_to(self, statement: Statement, depth: float, feed: float | None, text: str) -> Block:
+        """A move square to the plane to a depth as the program counts it, in mm; feed None is a rapid."""
+        ...
+
+    def over(self, statement: Statement, x: float, y: float, text: str) -> Block:
+        """A rapid to a place of the plane, mm."""
+        ...
+
 
 NO_OFFSET = ZeroOffset()
 NO_FRAME = ProgrammedFrame()

@@ -1,4 +1,7 @@
-"""CYCL DEF and CYCL CALL: cycles from 200 on with Q parameters, older ones line by line."""
+"""CYCL DEF and CYCL CALL: cycles from 200 on with Q parameters, older ones line by line; what they work on.
+
+That are the contours of CONTOUR DEF and the machining points of PATTERN DEF.
+"""
 
 from __future__ import annotations
 
@@ -6,9 +9,11 @@ import re
 
 from core.language.formulas import Parameter
 from core.language.klartext import q_parameters
-from core.language.klartext.klartext_faults import unsupported
+from core.language.klartext.klartext_faults import CONTOUR_FORMULA, unsupported
 from core.language.klartext.klartext_nodes import (
     AxisWord,
+    ContourDef,
+    ContourPart,
     Cycle,
     CycleCall,
     CycleLine,
@@ -17,9 +22,11 @@ from core.language.klartext.klartext_nodes import (
     Feed,
     GlobalDef,
     Node,
+    PatternDef,
+    PatternPart,
     Transform,
 )
-from core.language.klartext.line_cursor import Cursor, axis_words, feed
+from core.language.klartext.line_cursor import Cursor, axis_words, feed, words_once
 from core.language.klartext.path_block import TURN, codes_to_the_end
 from core.message import Message
 
@@ -228,3 +235,83 @@ def contour_labels(text: str) -> tuple[int | str, ...]:
         int(match.group(1)) if match.group(1) else match.group(2)
         for match in _LABEL.finditer(text[first.start() :] if first else "")
     )
+
+
+_CONTOUR = re.compile(r"([PI])\s*[0-9]+\s*=?\s*")
+_DEPTH = re.compile(r"DEPTH|V(?=[0-9])")
+_QC = re.compile(r"QC\s*[0-9]")
+
+
+def contour_definition(cursor: Cursor, column: int) -> ContourDef:
+    """Behind ``CONTOUR DEF``: ``P1 = LBL 1 I2 = "ISLE.H"``; one depth for all is what is milled."""
+    parts: list[ContourPart] = []
+    while not cursor.done:
+        match = cursor.take(_CONTOUR)
+        if match is None:
+            if cursor.keyword("VOID") or cursor.take(_DEPTH):
+                raise unsupported(
+                    cursor.line, cursor.column, "CONTOUR DEF with a separate depth for one contour"
+                )
+            raise cursor.expected(
+                "CONTOUR DEF accepts only pockets (P) and islands (I)",
+                "Write, for example, P1 = LBL 1 I2 = LBL 2.",
+            )
+        parts.append(_where(cursor)._replace(pocket=match.group(1) == "P"))
+    if not parts:
+        raise cursor.expected("CONTOUR DEF does not name a contour", "Write, for example, P1 = LBL 1.")
+    return ContourDef(tuple(parts), column)
+
+
+def _where(cursor: Cursor) -> ContourPart:
+    """A subprogram, or a program of its own."""
+    if cursor.keyword("LBL"):
+        return ContourPart(cursor.name("LBL", q_parameters.MOST_LABEL), None)
+    if file := cursor.quoted():
+        return ContourPart(0, None, file)
+    if _QC.match(cursor.upper, cursor.at):
+        raise CONTOUR_FORMULA.error(cursor.line, cursor.column)
+    raise cursor.expected("Expected a contour: LBL n, or a program name in quotes")
+
+
+_KIND = re.compile(r"(PITCHCIRC|CIRC|FRAME|PAT|ROW|POS)\s*[0-9]{1,2}\s*\(")
+_WORD = re.compile(r"(NUMX|NUMY|NUM|ROTX|ROTY|ROT|START|STEP|DX|DY|D|X|Y|Z)(?=\s*[+\-0-9.,Q])")
+_CLOSED = re.compile(r"\)")
+_GRID = ("X", "Y", "DX", "DY", "NUMX", "NUMY")
+NEEDS = {
+    "POS": ("X", "Y"),
+    "ROW": ("X", "Y", "D", "NUM"),
+    "PAT": _GRID,
+    "FRAME": _GRID,
+    "CIRC": ("X", "Y", "D", "NUM"),
+    "PITCHCIRC": ("X", "Y", "D", "STEP", "NUM"),
+}
+"""The words that each form needs."""
+
+
+def pattern(cursor: Cursor, column: int) -> PatternDef:
+    """Behind ``PATTERN DEF``. Raises ProgramError for what is missing, unknown or doubled."""
+    parts = []
+    while not cursor.done:
+        at, match = cursor.column, cursor.take(_KIND)
+        if match is None:
+            raise cursor.expected(
+                "PATTERN DEF accepts only POS1 (…), ROW1, PAT1, FRAME1, CIRC1 or PITCHCIRC1"
+            )
+        parts.append(PatternPart(match.group(1), _words(cursor, match.group(1)), at))
+    if not parts:
+        raise cursor.expected(
+            "PATTERN DEF has no points", "After PATTERN DEF, write, for example, POS1 (X+0 Y+0 Z+0)."
+        )
+    return PatternDef(tuple(parts), column)
+
+
+def _words(cursor: Cursor, form: str) -> tuple[AxisWord, ...]:
+    found = words_once(cursor, _WORD)
+    if not cursor.take(_CLOSED):
+        raise cursor.expected(
+            Message("Unexpected word in {form}", form=form), "Close the parenthesis after the last word."
+        )
+    missing = [name for name in NEEDS[form] if name not in found]
+    if missing:
+        raise cursor.expected(Message("{form} needs {missing}", form=form, missing=" and ".join(missing)))
+    return tuple(found.values())

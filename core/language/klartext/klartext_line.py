@@ -6,16 +6,8 @@ import re
 from collections.abc import Callable, Iterable
 
 from core.language.diagnostics import ProgramError
-from core.language.klartext import (
-    contour_blocks,
-    cycle_blocks,
-    path_block,
-    pattern_block,
-    plane_block,
-    q_parameters,
-    structure_blocks,
-)
-from core.language.klartext.klartext_faults import syntax
+from core.language.klartext import cycle_blocks, path_block, plane_block, q_parameters, structure_blocks
+from core.language.klartext.klartext_faults import CONTOUR_FORMULA, STRING, Refused, syntax
 from core.language.klartext.klartext_nodes import (
     AxisWord,
     Feed,
@@ -27,7 +19,6 @@ from core.language.klartext.klartext_nodes import (
     Value,
 )
 from core.language.klartext.line_cursor import Cursor
-from core.language.klartext.refused_codes import CONTOUR_FORMULA, STRING, Refused
 from core.language.line_reading import comment_start
 from core.message import Message
 
@@ -170,8 +161,8 @@ _KEYWORDS: dict[str, Callable[[Cursor, int], Node]] = {
     "TRANS": structure_blocks.transformation,
     "CYCL DEF": cycle_blocks.cycle,
     "CYCL CALL": cycle_blocks.call,
-    "PATTERN DEF": pattern_block.pattern,
-    "CONTOUR DEF": contour_blocks.definition,
+    "PATTERN DEF": cycle_blocks.pattern,
+    "CONTOUR DEF": cycle_blocks.contour_definition,
     "GLOBAL DEF": cycle_blocks.global_definition,
     "PRESET SELECT": cycle_blocks.preset,
     "WMAT": structure_blocks.material,

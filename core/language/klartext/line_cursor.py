@@ -6,11 +6,9 @@ import re
 from functools import lru_cache
 
 from core.language.diagnostics import ProgramError
-from core.language.klartext.klartext_faults import INPUT_VALUE, fault, syntax, unsupported
+from core.language.klartext.klartext_faults import INPUT_VALUE, STRING, fault, syntax, unsupported
 from core.language.klartext.klartext_nodes import AxisWord, Feed, Retract, Value
-from core.language.klartext.refused_codes import STRING
-from core.language.line_reading import LineReader, after_blanks
-from core.language.typography import ascii_upper, typed
+from core.language.line_reading import LineReader, after_blanks, ascii_upper, typed
 from core.message import Message
 
 NUMBER = r"(?:[0-9]+(?:[.,][0-9]*)?|[.,][0-9]+)"

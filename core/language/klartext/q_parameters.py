@@ -14,7 +14,7 @@ from core.language.formulas import (
     Operation,
     Parameter,
 )
-from core.language.klartext.klartext_faults import syntax, unsupported
+from core.language.klartext.klartext_faults import FREE_TABLE, STRING, syntax, unsupported
 from core.language.klartext.klartext_nodes import (
     Assign,
     ErrorMessage,
@@ -25,7 +25,6 @@ from core.language.klartext.klartext_nodes import (
     Unheeded,
 )
 from core.language.klartext.line_cursor import NUMBER, Cursor
-from core.language.klartext.refused_codes import FREE_TABLE, STRING
 from core.message import Message
 
 _PARAMETER = re.compile(r"(Q[LR]?)\s*([0-9]{1,4})(?![0-9])")

@@ -7,11 +7,10 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from core.language.diagnostics import Diagnostic, refusal
-from core.language.line_reading import SIGNED
+from core.language.line_reading import SIGNED, ascii_upper
 from core.language.omniturn import other_controls, word_faults
 from core.language.omniturn.intended_code import intent_of, with_digit_one
 from core.language.omniturn.omniturn_words import BARE, Line, Word
-from core.language.typography import ascii_upper
 from core.message import Message
 
 LONGEST_LINE = 8192

@@ -1,13 +1,58 @@
-"""A place in a SINUMERIK block, from which formulas and what stands beside them are read."""
+"""A place in a SINUMERIK block, from which formulas, values of arrays and what stands beside are read."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from typing import TypeVar
+from typing import NamedTuple, TypeVar
 
-from core.language.formulas import FormulaError, FormulaReader
-from core.language.sinumerik.sinumerik_formulas import GRAMMAR
+from core.language.formulas import FUNCTIONS, Formula, FormulaError, FormulaReader, Grammar
+from core.language.line_reading import UNSIGNED
+
+GRAMMAR = Grammar(
+    number=re.compile(rf"{UNSIGNED}(?:EX[+-]?[0-9]{{1,3}})?"),
+    # $P_… and the like are system variables, their indices are part of the name.
+    parameter=re.compile(r"(R(?=[0-9\[])|\$[A-Z][A-Z0-9_]*(?:\[[^\]]*\])?|[A-Z_][A-Z_][A-Z0-9_]*)([0-9]*)"),
+    operators={
+        "*": (80, "times"),
+        "/": (80, "over"),
+        "DIV": (80, "integer quotient"),
+        "MOD": (80, "remainder"),
+        "+": (70, "plus"),
+        "-": (70, "minus"),
+        "AND": (40, "and"),
+        "XOR": (30, "exclusive or"),
+        "OR": (20, "or"),
+        "==": (10, "equal"),
+        "<>": (10, "unequal"),
+        ">=": (10, "greater than or equal"),
+        "<=": (10, "less than or equal"),
+        ">": (10, "greater"),
+        "<": (10, "less"),
+    },
+    functions={
+        **FUNCTIONS,
+        "ATAN2": "direction",
+        "POT": "square",
+        "TRUNC": "integer part",
+        "ROUND": "nearest whole number",
+        "MINVAL": "smaller",
+        "MAXVAL": "larger",
+        "NOT": "not",
+    },
+    constants={"TRUE": 1.0, "FALSE": 0.0, "$PI": 3.141592653589793},
+    separator=",",
+    negation=90,
+    indexed=True,
+)
+"""Formulas behind ``=``, in brackets of a target, and of conditions. Comparisons bind weakest of all."""
+
+
+def formula_at(text: str, at: int) -> tuple[Formula, int]:
+    """Return the formula that begins at ``at``, and the index behind it. Raises FormulaError."""
+    reader = FormulaReader(GRAMMAR, text, at)
+    return reader.formula(), reader.at
+
 
 NEXT = re.compile(r"\s*([,)])")
 """A comma or the closing parenthesis behind an item."""
@@ -48,3 +93,40 @@ class BlockReader(FormulaReader):
             found.append(read())
             if self.demand(NEXT, why, hint)[1] == ")":
                 return found
+
+
+_LIST = re.compile(r"\s*(SET|REP)?\s*\(")
+
+
+class Values(NamedTuple):
+    """What elements are given, one after the other; None for one that keeps what it has.
+
+    Of REP there is one formula, for ``times`` elements, or without it for all that are left.
+    """
+
+    formulas: tuple[Formula | None, ...]
+    repeated: bool = False
+    times: Formula | None = None
+
+
+def read_values(reader: BlockReader, *, bare: bool) -> Values | None:
+    """The list that begins here; None where none does. Raises FormulaError.
+
+    ``bare`` takes brackets without SET before them, which elsewhere begin a formula.
+    """
+    match = _LIST.match(reader.upper, reader.at)
+    if match is None or not (match[1] or bare):
+        return None
+    reader.at = match.end()
+    found = reader.items(
+        lambda: None if NEXT.match(reader.upper, reader.at) else reader.formula(),
+        "The closing parenthesis of the list of values is missing",
+        "Write ) after the last value.",
+    )
+    if match[1] != "REP":
+        return Values(tuple(found))
+    if found[0] is None or len(found) > 2:
+        raise FormulaError(
+            match.end(), "REP accepts only a value and a number of elements", "Write, for example, REP(0)."
+        )
+    return Values((found[0],), repeated=True, times=found[1] if found[1:] else None)

@@ -7,8 +7,7 @@ from enum import StrEnum
 from typing import NamedTuple
 
 from core.language.formulas import Formula, FormulaError, indices_of
-from core.language.sinumerik.array_values import Values, read_values
-from core.language.sinumerik.block_reader import BlockReader
+from core.language.sinumerik.block_reader import BlockReader, Values, read_values
 from core.language.sinumerik.call_arguments import Parameter, read_parameters
 from core.message import Message
 

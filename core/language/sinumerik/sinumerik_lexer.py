@@ -6,19 +6,16 @@ import re
 
 from core.language.diagnostics import Diagnostic
 from core.language.formulas import FormulaError
-from core.language.line_reading import SIGNED, after_blanks, comment_start
+from core.language.line_reading import SIGNED, after_blanks, ascii_upper, comment_start, typed
 from core.language.sinumerik import sinumerik_words as known
-from core.language.sinumerik.array_values import read_values
-from core.language.sinumerik.block_reader import BlockReader
+from core.language.sinumerik.block_reader import BlockReader, read_values
 from core.language.sinumerik.call_arguments import Argument, read_arguments
 from core.language.sinumerik.cycle_names import CYCLES, CYCLES_OUTSIDE, CYCLES_TAKEN
 from core.language.sinumerik.iso_words import iso_habit
 from core.language.sinumerik.program_jumps import Jump, Steering, read_jump, steering_word
 from core.language.sinumerik.sinumerik_alarms import SYNTAX, fault
-from core.language.sinumerik.sinumerik_words import LONGEST_LINE, Form, Line, Word
-from core.language.sinumerik.third_axis_name import OWN, words_as_c
+from core.language.sinumerik.sinumerik_words import LONGEST_LINE, OWN, Form, Line, Word, words_as_c
 from core.language.sinumerik.word_values import PARAMETER, Value, beyond, demand_parameters, value_at
-from core.language.typography import ascii_upper, typed
 from core.message import Message
 
 _NUMBER = re.compile(SIGNED)

@@ -1,13 +1,19 @@
-"""What a SINUMERIK line is made of: words with a number, an R parameter, or a target in brackets."""
+"""What a SINUMERIK line is made of: words with a number, an R parameter, or a target in brackets.
+
+The third axis has the name that the machine's builder has given it: B, Y or Q1 in the place of C. Inside it
+is C all the same: its words are read as those of C, and told as they are written.
+"""
 
 from __future__ import annotations
 
+import re
 from enum import StrEnum
+from functools import lru_cache
 from typing import NamedTuple
 
 from core.language.diagnostics import Diagnostic, ProgramError
 from core.language.formulas import Formula
-from core.language.sinumerik.array_values import Values
+from core.language.sinumerik.block_reader import Values
 from core.language.sinumerik.call_arguments import Argument
 from core.language.sinumerik.outside_words import OUTSIDE
 from core.language.sinumerik.program_jumps import Jump
@@ -173,3 +179,24 @@ NAMES_OUTSIDE = OUTSIDE.keys() - ASSIGNED
 
 WHY_OUTSIDE = OUTSIDE
 """What to do instead."""
+
+
+OWN = "C"
+
+
+def words_as_c(text: str, name: str) -> tuple[str, int]:
+    """A line's code, in capitals, with the words of the axis ``name`` as words of C at the same columns.
+
+    Beside it the index of a word of C, which this machine has not; -1 without one.
+    """
+    own = _pattern(OWN).search(text)
+    pieces = text.split('"')  # every other one is a text in quotes
+    pieces[::2] = [_pattern(name).sub(OWN.ljust(len(name)), piece) for piece in pieces[::2]]
+    return '"'.join(pieces), own.start() if own and text.count('"', 0, own.start()) % 2 == 0 else -1
+
+
+@lru_cache(maxsize=16)
+def _pattern(name: str) -> re.Pattern[str]:
+    """A word of the axis: with = behind it, or for a single letter a number."""
+    behind = r"\s*=(?!=)" if len(name) > 1 else r"(?:\s*=(?!=)|[-+]?\.?[0-9]+(?![0-9]*\s*=))"
+    return re.compile(rf"(?<![A-Z_$]){name}(?={behind})")

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from core.language.formulas import Formula, FormulaError, Number, Operation, Parameter
 from core.language.sinumerik import sinumerik_words as known
-from core.language.sinumerik.sinumerik_formulas import formula_at
+from core.language.sinumerik.block_reader import formula_at
 from core.language.sinumerik.sinumerik_words import Word
 from core.message import Message
 

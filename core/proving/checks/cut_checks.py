@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
-from core.interpreter.elementary_blocks import Kind
+from core.interpreter.shared.elementary_blocks import Kind
 from core.message import Message
 from core.part.cutter import Cutter, Side
 from core.part.insert_codes import Insert, InsertCodeError, decoded, insert_of

@@ -9,7 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from core.interpreter.elementary_blocks import Kind
+from core.interpreter.shared.elementary_blocks import Kind
 from core.message import Message
 from core.part.cutter import Cutter, Side
 from core.part.stock import Stock

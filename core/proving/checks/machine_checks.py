@@ -7,9 +7,17 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 from core.geometry.surface_speed import surface_rpm
-from core.interpreter.actions import AskInput, Collet, Preset, ProgramEnd, SpindleRun, ToolChange, WaitInput
-from core.interpreter.elementary_blocks import Block, Kind, Series
-from core.interpreter.modal_state import Modal
+from core.interpreter.shared.actions import (
+    AskInput,
+    Collet,
+    Preset,
+    ProgramEnd,
+    SpindleRun,
+    ToolChange,
+    WaitInput,
+)
+from core.interpreter.shared.elementary_blocks import Block, Kind, Series
+from core.interpreter.shared.modal_state import Modal
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Dialect
 from core.machine.machine_model import Axis, Machine

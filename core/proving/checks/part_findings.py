@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from core.interpreter.elementary_blocks import Kind
-from core.interpreter.modal_state import Modal
+from core.interpreter.shared.elementary_blocks import Kind
+from core.interpreter.shared.modal_state import Modal
 from core.language.diagnostics import Diagnostic, Severity
 from core.message import Message, join_messages
 from core.part.cutter import Cutter, Neighbours, Side

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from core.interpreter.elementary_blocks import Kind
+from core.interpreter.shared.elementary_blocks import Kind
 from core.message import Message
 from core.part.swept_edge import FloatArray
 from core.part.tool_shape import ToolKind, ToolShape

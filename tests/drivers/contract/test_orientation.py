@@ -13,7 +13,7 @@ from app.compose.workshop import proof_of
 from core.executor.commands import LoadJob
 from core.executor.job import make_job
 from core.executor.snapshot import State
-from core.interpreter.job_setup import ToolOffset
+from core.interpreter.shared.job_setup import ToolOffset
 from core.language.source import Source
 from core.ports import DriverError
 from core.proving.prove_program import prove

@@ -6,7 +6,7 @@ import pytest
 
 from core.executor.commands import CycleStart, FeedHold
 from core.executor.snapshot import State
-from core.interpreter.job_setup import ToolOffset
+from core.interpreter.shared.job_setup import ToolOffset
 from drivers.feeder.feeder_line import Line
 from drivers.feeder.feeder_ports import feeder_ports
 from drivers.feeder.feeder_server import Feeder

@@ -15,7 +15,7 @@ from core.executor.commands import Command, ConfirmStart, EnableDrives, LoadJob
 from core.executor.executor import Executor
 from core.executor.job import Job, make_job
 from core.executor.snapshot import Event, Snapshot, State
-from core.interpreter.job_setup import ToolOffset
+from core.interpreter.shared.job_setup import ToolOffset
 from core.language.source import Source
 from core.machine.machine_model import Machine
 from core.proving.prove_program import prove

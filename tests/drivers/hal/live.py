@@ -19,7 +19,7 @@ from core.executor.commands import Command, ConfirmStart, CycleStart, EnableDriv
 from core.executor.executor import TICK, Executor
 from core.executor.job import make_job
 from core.executor.snapshot import Event, Snapshot, State
-from core.interpreter.job_setup import ToolOffset
+from core.interpreter.shared.job_setup import ToolOffset
 from core.language.source import Source
 from core.proving.prove_program import prove
 from drivers.waiting import RealClock

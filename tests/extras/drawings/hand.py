@@ -15,7 +15,7 @@ from core.extras.drawings.drawing_view import Profile, Side, View, axis_named, c
 from core.extras.drawings.profile_job import proposed_fields
 from core.extras.drawings.profile_program import ProfileProgram, profile_program
 from core.extras.shapes.shape_fields import Setting, Shop
-from core.interpreter.job_setup import SecondaryOffset
+from core.interpreter.shared.job_setup import SecondaryOffset
 from core.language.source import Dialect
 from core.part.tool_shape import ToolKind, ToolShape
 from tests.extras.shapes.hand import proved

@@ -8,7 +8,7 @@ from app.compose.machine.machine_files import load_machine
 from app.compose.machine.machine_setup import setup_for
 from app.extras.shapes.shapes_model import Shapes
 from core.extras.shapes.shape_fields import Shop
-from core.interpreter.job_setup import SecondaryOffset, Setup, ToolOffset
+from core.interpreter.shared.job_setup import SecondaryOffset, Setup, ToolOffset
 from core.language.diagnostics import Severity
 from core.language.source import Source
 from core.machine.machine_model import Machine

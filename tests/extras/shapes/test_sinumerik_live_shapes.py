@@ -14,10 +14,10 @@ from core.extras.shapes.pieces import pieces, setting_at, with_shape
 from core.extras.shapes.shape import filled
 from core.extras.shapes.shape_fields import Setting, Shop, Value
 from core.extras.shapes.shape_table import SINUMERIK_SHAPES
-from core.interpreter.actions import Collet, Output
 from core.interpreter.dialects import ReadProgram
-from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.job_setup import ToolOffset
+from core.interpreter.shared.actions import Collet, Output
+from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.job_setup import ToolOffset
 from core.language.diagnostics import Severity
 from core.language.source import Dialect, Source
 from core.machine.machine_model import Machine

@@ -16,8 +16,8 @@ from core.extras.shapes.shape import filled
 from core.extras.shapes.shape_fields import Setting, Shop, Value
 from core.extras.shapes.shape_table import SHAPES_OF
 from core.interpreter.dialects import ReadProgram
-from core.interpreter.elementary_blocks import Kind
-from core.interpreter.job_setup import Setup, ToolOffset
+from core.interpreter.shared.elementary_blocks import Kind
+from core.interpreter.shared.job_setup import Setup, ToolOffset
 from core.language.source import Dialect, Source
 from core.part.stock_spec import stock_spec
 from core.part.tool_shape import ToolKind, ToolShape

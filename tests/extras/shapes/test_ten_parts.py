@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from core.interpreter.dialects import ReadProgram
-from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.shared.elementary_blocks import Block, Kind
 from core.language.source import Source
 from core.part.stock_spec import stock_spec
 from core.part.tool_shape import ToolKind, ToolShape

@@ -18,7 +18,7 @@ from core.extras.shapes.threads.thread_series import (
     pipe_length,
     size_of,
 )
-from core.interpreter.elementary_blocks import Kind
+from core.interpreter.shared.elementary_blocks import Kind
 from core.part.tool_shape import ToolKind, ToolShape
 from tests.extras.shapes.test_ten_parts import blocks_of
 from tests.texts import text as wording

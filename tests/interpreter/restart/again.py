@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from core.interpreter.checkpoint import Begin
 from core.interpreter.dialects import interpretation
-from core.interpreter.elementary_blocks import Block
-from core.interpreter.job_setup import Setup
-from core.interpreter.modal_state import Modal
 from core.interpreter.restart.restart_approach import Choices, MachineNow, begin_at
 from core.interpreter.restart.restart_point import NoRestart, RestartPoint
 from core.interpreter.restart.state_rebuild import StateRebuild
+from core.interpreter.shared.checkpoint import Begin
+from core.interpreter.shared.elementary_blocks import Block
+from core.interpreter.shared.job_setup import Setup
+from core.interpreter.shared.modal_state import Modal
 from core.language.diagnostics import Severity
 from core.language.source import Source
 

@@ -6,10 +6,6 @@ from dataclasses import replace
 
 import pytest
 
-from core.interpreter.actions import Coolant, Output, SpindleRun, SpindleStop
-from core.interpreter.checkpoint import ApproachStep, Checkpoint, CTurn, FunctionStep, Leg
-from core.interpreter.job_setup import ToolOffset
-from core.interpreter.modal_state import Modal
 from core.interpreter.restart.restart_approach import (
     Choices,
     MachineNow,
@@ -22,6 +18,10 @@ from core.interpreter.restart.restart_approach import (
 from core.interpreter.restart.restart_point import Interruption, RestartPoint
 from core.interpreter.restart.restart_retract import Retract, RetractLeg, ToolPlace
 from core.interpreter.restart.state_rebuild import StateRebuild
+from core.interpreter.shared.actions import Coolant, Output, SpindleRun, SpindleStop
+from core.interpreter.shared.checkpoint import ApproachStep, Checkpoint, CTurn, FunctionStep, Leg
+from core.interpreter.shared.job_setup import ToolOffset
+from core.interpreter.shared.modal_state import Modal
 from core.language.source import Source
 from tests.interpreter.programs import INCH, setup
 from tests.texts import text

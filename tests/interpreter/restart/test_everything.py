@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from core.interpreter.actions import AskInput
-from core.interpreter.job_setup import Setup
 from core.interpreter.omniturn.omniturn_program import read_program
 from core.interpreter.restart.restart_point import RestartPoint
+from core.interpreter.shared.actions import AskInput
+from core.interpreter.shared.job_setup import Setup
 from core.language.diagnostics import Severity
 from core.language.source import Source, load_source
 from tests.interpreter.programs import ALL_TOOLS, setup

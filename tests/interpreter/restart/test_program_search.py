@@ -8,16 +8,16 @@ import pytest
 
 from app.compose.machine.machine_files import named_machine
 from app.compose.machine.machine_setup import setup_for
-from core.interpreter.actions import ProgramStop, SpindleRun, ToolChange
-from core.interpreter.checkpoint import AxesLeg, Begin, Checkpoint, FunctionStep
 from core.interpreter.dialects import ReadProgram
-from core.interpreter.elementary_blocks import Block
-from core.interpreter.job_setup import Setup, ToolOffset, ZeroOffset
-from core.interpreter.modal_state import Modal
 from core.interpreter.restart.mill_approach import begin_on_mill
 from core.interpreter.restart.program_search import ProgramSearch, _Stand
 from core.interpreter.restart.restart_approach import Choices, MachineNow, begin_at
 from core.interpreter.restart.restart_point import Interruption, NoRestart, RestartPoint
+from core.interpreter.shared.actions import ProgramStop, SpindleRun, ToolChange
+from core.interpreter.shared.checkpoint import AxesLeg, Begin, Checkpoint, FunctionStep
+from core.interpreter.shared.elementary_blocks import Block
+from core.interpreter.shared.job_setup import Setup, ToolOffset, ZeroOffset
+from core.interpreter.shared.modal_state import Modal
 from core.language.source import Source
 from core.tool_edges import edge_key
 from tests.texts import text

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from core.interpreter.job_setup import ToolOffset
 from core.interpreter.restart.restart_point import Interruption, NoRestart, RestartPoint
 from core.interpreter.restart.state_rebuild import StateRebuild
+from core.interpreter.shared.job_setup import ToolOffset
 from core.language.source import Source
 from tests.interpreter.programs import INCH, setup
 from tests.texts import text as text_of

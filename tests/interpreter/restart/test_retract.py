@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from core.interpreter.job_setup import ControlLimits
 from core.interpreter.restart.cut_record import CutRecord
 from core.interpreter.restart.restart_retract import Place, Retract, ToolPlace, retract
 from core.interpreter.restart.state_rebuild import StateRebuild
+from core.interpreter.shared.job_setup import ControlLimits
 from core.language.source import Source
 from tests.interpreter.programs import INCH, OUTPUTS, setup
 

@@ -12,13 +12,13 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from core.interpreter.checkpoint import ApproachStep, Leg
-from core.interpreter.job_setup import ControlLimits, Setup
-from core.interpreter.modal_state import Modal
 from core.interpreter.restart.cut_record import FACE, FEED, SIDE, CutRecord
 from core.interpreter.restart.restart_approach import Choices, MachineNow, approach_steps, way_out
 from core.interpreter.restart.restart_point import Interruption, RestartPoint
 from core.interpreter.restart.state_rebuild import StateRebuild
+from core.interpreter.shared.checkpoint import ApproachStep, Leg
+from core.interpreter.shared.job_setup import ControlLimits, Setup
+from core.interpreter.shared.modal_state import Modal
 from core.language.source import Source, load_source
 from tests.interpreter.programs import ALL_TOOLS, OUTPUTS, setup
 from tests.interpreter.restart.again import of_each_line

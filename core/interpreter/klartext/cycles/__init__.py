@@ -1,0 +1,1 @@
+"""Cycles of Klartext: holes, pockets, contours and the patterns of their places."""

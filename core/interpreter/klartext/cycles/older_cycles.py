@@ -1,0 +1,238 @@
+"""Cycles under 200, line by line: pecking (1), tapping (2, 17, 18), slot (3), pocket (4), circle (5).
+
+They are called with the tool at the set-up clearance above the surface, which is where it stands then.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+
+from core.geometry.lines_and_arcs import Arc, Point
+from core.interpreter.klartext.cycles.cycle_moves import CycleTool
+from core.interpreter.klartext.flow import word_values
+from core.interpreter.klartext.flow.word_values import value
+from core.interpreter.klartext.klartext_state import State
+from core.interpreter.shared.elementary_blocks import Block
+from core.language.klartext.klartext_faults import CYCLE_MISSING
+from core.language.klartext.klartext_nodes import CycleLine
+
+Lines = Mapping[int, CycleLine]
+_SMALLEST = 1e-6  # mm
+_OVERLAP = 0.7  # of the tool's radius from one way to the next: the control's machine parameter 7430 has 1.4
+_MOST_LEVELS = 10_000
+
+
+class Told:
+    """What the lines of a cycle say."""
+
+    def __init__(self, state: State, lines: Lines, column: int) -> None:
+        self._state = state
+        self._lines = lines
+        self._column = column
+
+    @property
+    def cycle(self) -> int:
+        """The number of the cycle."""
+        return next(iter(self._lines.values())).number if self._lines else 0
+
+    def number(self, part: int, axis: str = "") -> float:
+        """The first number of a line, or that of its word for an axis.
+
+        Raises ProgramError where it is missing.
+        """
+        words = self._lines[part].words if part in self._lines else ()
+        word = next((each for each in words if each.axis == axis), None)
+        if word is None:
+            text = "Line {number}.{part} of the cycle has no {axis}."
+            hint = "Complete the CYCL DEF."
+            raise self._state.refuse(
+                self._column, CYCLE_MISSING, text, hint, number=self.cycle, part=part, axis=axis or "number"
+            )
+        return value(self._state, word.value.formula)
+
+    def length(self, part: int, axis: str = "") -> float:
+        """The same, mm."""
+        return self.number(part, axis) * self._state.scale
+
+    def feed(self, part: int) -> float | None:
+        """The feed of a line, as programmed; None for rapid."""
+        line = self._lines.get(part)
+        return word_values.feed_word(self._state, line.feed if line else None, self._column)
+
+    def cutting_feed(self, part: int) -> float:
+        """The same, which must not be rapid."""
+        found = self.feed(part)
+        if found is None:
+            text = "A pocket cannot be milled at rapid."
+            raise self._state.refuse(self._column, CYCLE_MISSING, text, "Write F in CYCL DEF.")
+        return found
+
+    def turn(self, part: int) -> float:
+        """1 for DR+, which is counter-clockwise, -1 for DR-."""
+        line = self._lines.get(part)
+        return -1.0 if line is not None and line.turn == "-" else 1.0
+
+    def has(self, part: int, axis: str) -> bool:
+        """Whether a line has a word."""
+        return part in self._lines and any(word.axis == axis for word in self._lines[part].words)
+
+
+def _pecking(told: Told, tool: CycleTool) -> Iterator[Block]:
+    """1: down by infeeds; out in rapid, and in rapid to just before the chips."""
+    clear, feed = tool.height, told.feed(5)
+    depth, step = abs(told.length(2)), abs(told.length(3))
+    surface = clear - told.length(1)
+    near = 0.6 if depth <= 30.0 else min(depth / 50.0, 7.0)
+    for done in _levels(tool, depth, step):
+        yield tool.to(surface - done, feed)
+        if done < depth:
+            yield tool.to(clear)
+            yield tool.to(min(clear, surface - done + near))
+    yield from tool.dwell(told.number(4))
+    yield tool.to(clear)
+
+
+def _tapping(told: Told, tool: CycleTool) -> Iterator[Block]:
+    """2 at a feed; 17 by a pitch, whose sign starts the spindle. It turns round at the bottom."""
+    rigid = told.cycle == _RIGID
+    clear, before = tool.height, tool.turns
+    if rigid:
+        tool.warn_uncoupled()
+    lead = told.length(3) if rigid else tool.lead_of(told.cutting_feed(4))
+    rpm, lead = tool.thread_speed(lead) if rigid else tool.rpm, abs(lead)
+    yield from tool.turning(rpm)
+    yield tool.tap(clear - told.length(1) - abs(told.length(2)), lead, in_hole=True)
+    if not rigid:
+        yield from tool.dwell(told.number(3), in_hole=True)
+    yield tool.turn(-rpm, in_hole=True)
+    yield tool.tap(clear, lead)
+    yield from tool.turning(before)
+
+
+def _slot(told: Told, tool: CycleTool) -> Iterator[Block]:
+    """3: along the first side by levels, then round at the width."""
+    first, second = _sides(told, 4), _sides(told, 5)
+    (x, y), clear = tool.here, tool.height
+    end = x + first[0], y + first[1]
+    text = "The slot of cycle 3 has no length."
+    tool.check(math.hypot(*first) > _SMALLEST, text, "Write the length of the slot in line 3.4.")
+    width = (abs(second[0]) + abs(second[1])) / 2.0 - tool.radius
+    tool.check(width >= -_SMALLEST, "The tool is wider than the slot.", "Use a smaller tool.")
+    surface, feed = clear - told.length(1), told.cutting_feed(6)
+    ends = [(x, y), end]
+    for at, done in enumerate(_levels(tool, abs(told.length(2)), abs(told.length(3)))):
+        yield tool.to(surface - done, told.feed(3))
+        yield tool.across(ends[1 - at % 2], None, feed)
+    if width > _SMALLEST:
+        yield from _round_slot(tool, (x, y), end, width, feed)
+    yield tool.to(clear)
+    yield tool.across((x, y))
+
+
+def _round_slot(tool: CycleTool, start: Point, end: Point, width: float, feed: float) -> Iterator[Block]:
+    length = math.dist(start, end)
+    u = (end[0] - start[0]) / length, (end[1] - start[1]) / length
+    v = -u[1] * width, u[0] * width
+    corners = [
+        (start[0] - v[0], start[1] - v[1]),
+        (end[0] - v[0], end[1] - v[1]),
+        (end[0] + v[0], end[1] + v[1]),
+        (start[0] + v[0], start[1] + v[1]),
+    ]
+    for corner in (*corners, corners[0]):
+        yield tool.across(corner, None, feed)
+
+
+def _pocket(told: Told, tool: CycleTool) -> Iterator[Block]:
+    """4: from the middle outwards in rectangles, level by level."""
+    (x, y), clear = tool.here, tool.height
+    half = abs(told.length(4, "X")) / 2.0 - tool.radius, abs(told.length(5, "Y")) / 2.0 - tool.radius
+    tool.check(min(half) >= -_SMALLEST, "The tool is wider than the pocket.", "Use a smaller tool.")
+    surface, feed, turn = clear - told.length(1), told.cutting_feed(6), told.turn(6)
+    count = _ring_count(tool, min(half))
+    for done in _levels(tool, abs(told.length(2)), abs(told.length(3))):
+        yield tool.across((x, y), None, feed)
+        yield tool.to(surface - done, told.feed(3))
+        for ring in range(1, count + 1):
+            inset = min(half) * (1.0 - ring / count)
+            a, b = half[0] - inset, half[1] - inset
+            corners = [
+                (x + a, y - turn * b),
+                (x + a, y + turn * b),
+                (x - a, y + turn * b),
+                (x - a, y - turn * b),
+            ]
+            for corner in (*corners, corners[0]):
+                yield tool.across(corner, None, feed)
+    yield tool.to(clear)
+    yield tool.across((x, y))
+
+
+def _circular_pocket(told: Told, tool: CycleTool) -> Iterator[Block]:
+    """5: from the middle outwards in circles, level by level."""
+    (x, y), clear = tool.here, tool.height
+    radius = abs(told.length(4, "R" if told.has(4, "R") else "")) - tool.radius
+    tool.check(radius >= -_SMALLEST, "The tool is wider than the pocket.", "Use a smaller tool.")
+    surface, feed, turn = clear - told.length(1), told.cutting_feed(5), told.turn(5)
+    count = _ring_count(tool, radius)
+    for done in _levels(tool, abs(told.length(2)), abs(told.length(3))):
+        yield tool.across((x, y), None, feed)
+        yield tool.to(surface - done, told.feed(3))
+        for ring in range(1, count + 1):
+            start = x + radius * ring / count, y
+            yield tool.across(start, None, feed)
+            yield tool.round(Arc(start, start, (x, y), clockwise=turn < 0.0), tool.height, feed)
+    yield tool.to(clear)
+    yield tool.across((x, y))
+
+
+def _thread_cutting(told: Told, tool: CycleTool) -> Iterator[Block]:
+    """18: from where the tool stands, at pitch times speed, to the depth; the spindle stops there."""
+    tool.warn_uncoupled()
+    rpm, pitch, depth = tool.speed, told.length(2), told.length(1)
+    text = "Cycle 18 needs a spindle speed and a pitch."
+    tool.check(rpm and pitch, text, "Program S in TOOL CALL and PITCH in cycle 18.")
+    yield tool.turn(rpm if pitch > 0.0 else -rpm)
+    yield tool.tap(tool.height + depth, abs(pitch), in_hole=True)
+    yield tool.stop()
+
+
+def _ring_count(tool: CycleTool, width: float) -> int:
+    """Rings from the middle of a pocket out to its wall."""
+    step = tool.radius * 2.0 * _OVERLAP
+    return max(1, math.ceil(width / step)) if step > _SMALLEST else 1
+
+
+def _sides(told: Told, part: int) -> Point:
+    return (
+        told.length(part, "X") if told.has(part, "X") else 0.0,
+        told.length(part, "Y") if told.has(part, "Y") else 0.0,
+    )
+
+
+def _levels(tool: CycleTool, depth: float, step: float) -> Iterator[float]:
+    """Depths of the infeeds, the whole depth last."""
+    if step <= 0.0 or step >= depth:
+        yield depth
+        return
+    count = math.ceil(depth / step - 1e-9)
+    text = "An infeed of {step} mm would need {count} passes, which is too many."
+    tool.check(count <= _MOST_LEVELS, text, "Increase the infeed.", step=step, count=count)
+    yield from (min(step * at, depth) for at in range(1, count + 1))
+
+
+_RIGID = 17
+OLDER: dict[int, Callable[[Told, CycleTool], Iterator[Block]]] = {
+    1: _pecking,
+    2: _tapping,
+    3: _slot,
+    4: _pocket,
+    5: _circular_pocket,
+    17: _tapping,
+    18: _thread_cutting,
+}
+"""Cycles by their number."""
+
+LAST_LINE = {1: 5, 2: 4, 3: 6, 4: 6, 5: 5, 17: 3, 18: 2}
+"""The number behind the point of the last line that each has: with one missing the control runs none."""

@@ -1,0 +1,122 @@
+"""PATTERN DEF and cycles 220 and 221: their places, in the order in which the tool goes to them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from core.geometry.lines_and_arcs import Point
+from core.geometry.rotation_frames import Vector
+from core.interpreter.klartext.cycles.cycle_moves import CycleTool
+from core.interpreter.klartext.flow import word_values
+from core.interpreter.klartext.klartext_state import State
+from core.language.klartext.klartext_faults import INPUT_VALUE
+from core.language.klartext.klartext_nodes import PatternDef, PatternPart
+
+MOST_POINTS = 10_000
+_LENGTHS = frozenset({"X", "Y", "Z", "D", "DX", "DY"})
+
+
+def points(state: State, node: PatternDef) -> list[Vector]:
+    """X, Y and the height of the surface over Q203 of every point, mm. Raises ProgramError."""
+    found: list[Vector] = []
+    for part in node.parts:
+        told = _numbers(state, part)
+        found += [(*at, told.get("Z", 0.0)) for at in _of_a_part(state, part, told)]
+    if len(found) > MOST_POINTS:
+        text = "The pattern has too many points: {found_count}."
+        hint = "The maximum is {most_points} points."
+        raise state.refuse(
+            node.column, INPUT_VALUE, text, hint, found_count=len(found), most_points=MOST_POINTS
+        )
+    return found
+
+
+def _numbers(state: State, part: PatternPart) -> dict[str, float]:
+    return {
+        word.axis: word_values.number(state, word.value, word.axis, word_values.MOST_COORDINATE)
+        * (state.scale if word.axis in _LENGTHS else 1.0)
+        for word in part.words
+    }
+
+
+def _of_a_part(state: State, part: PatternPart, told: dict[str, float]) -> Iterator[tuple[float, float]]:
+    x, y = told["X"], told["Y"]
+    if part.form == "POS":
+        yield x, y
+    elif part.form == "ROW":
+        angle = math.radians(told.get("ROT", 0.0))
+        for at in range(_count(state, part, told["NUM"])):
+            yield x + at * told["D"] * math.cos(angle), y + at * told["D"] * math.sin(angle)
+    elif part.form in {"PAT", "FRAME"}:
+        yield from _grid(state, part, told)
+    else:
+        count = _count(state, part, told["NUM"])
+        step = told["STEP"] if part.form == "PITCHCIRC" else 360.0 / count
+        yield from _circle((x, y), told["D"] / 2.0, count, told.get("START", 0.0), step)
+
+
+def _grid(state: State, part: PatternPart, told: dict[str, float]) -> Iterator[tuple[float, float]]:
+    """Rows there and back; of a frame the border alone."""
+    columns, rows = _count(state, part, told["NUMX"]), _count(state, part, told["NUMY"])
+    turn = told.get("ROT", 0.0)
+    u = math.radians(turn + told.get("ROTX", 0.0))
+    v = math.radians(turn + 90.0 + told.get("ROTY", 0.0))
+    for column, row in _there_and_back(columns, rows):
+        if part.form == "FRAME" and 0 < row < rows - 1 and 0 < column < columns - 1:
+            continue
+        along, across = column * told["DX"], row * told["DY"]
+        yield (
+            told["X"] + along * math.cos(u) + across * math.cos(v),
+            told["Y"] + along * math.sin(u) + across * math.sin(v),
+        )
+
+
+def _count(state: State, part: PatternPart, number: float) -> int:
+    if number != int(number) or not 1 <= number <= MOST_POINTS:
+        text = "{form}: {number} is not a valid number of points."
+        hint = "Enter a whole number of 1 or more."
+        raise state.refuse(part.column, INPUT_VALUE, text, hint, form=part.form, number=number)
+    return int(number)
+
+
+def on_circle(tool: CycleTool) -> list[Point]:
+    """The places of a pattern of cycle 220. Raises ProgramError."""
+    centre, radius = (tool.length(216), tool.length(217)), tool.length(244) / 2.0
+    count, first = _told_count(tool, 241), tool.plain(245, 0.0)
+    step = tool.plain(247, 0.0)
+    if not step:
+        swept = tool.plain(246, first + 360.0) - first
+        step = swept / count if abs(swept) >= 360.0 or count == 1 else swept / (count - 1)
+    return list(_circle(centre, radius, count, first, step))
+
+
+def in_rows(tool: CycleTool) -> list[Point]:
+    """The places of a pattern of cycle 221, row by row, there and back. Raises ProgramError."""
+    x, y = tool.length(225), tool.length(226)
+    columns, rows = _told_count(tool, 242), _told_count(tool, 243)
+    angle = math.radians(tool.plain(224, 0.0))
+    c, s, found = math.cos(angle), math.sin(angle), list[Point]()
+    for column, row in _there_and_back(columns, rows):
+        u, v = column * tool.length(237), row * tool.length(238)
+        found.append((x + u * c - v * s, y + u * s + v * c))
+    return found
+
+
+def _told_count(tool: CycleTool, q: int) -> int:
+    count, text = int(tool.plain(q)), "Q{parameter}={count} is not a valid number of positions."
+    tool.check(1 <= count <= MOST_POINTS, text, "Enter a valid number.", parameter=q, count=count)
+    return count
+
+
+def _circle(centre: Point, radius: float, count: int, first: float, step: float) -> Iterator[Point]:
+    """Places on a circle, from an angle on, degrees."""
+    for angle in (math.radians(first + at * step) for at in range(count)):
+        yield centre[0] + radius * math.cos(angle), centre[1] + radius * math.sin(angle)
+
+
+def _there_and_back(columns: int, rows: int) -> Iterator[tuple[int, int]]:
+    """Column and row of each place of a grid, every other row from its end."""
+    for row in range(rows):
+        order = range(columns) if row % 2 == 0 else range(columns - 1, -1, -1)
+        yield from ((column, row) for column in order)

@@ -1,0 +1,1 @@
+"""Jumps, calls, Q parameters and mid-program startup of Klartext."""

@@ -1,0 +1,1 @@
+"""Path functions, tilted planes and feeds of Klartext."""

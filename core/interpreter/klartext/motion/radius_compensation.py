@@ -1,0 +1,211 @@
+"""RL and RR, and the ways to a contour and off it: APPR and DEP.
+
+The tool's centre runs its radius to the left or right of the contour. Without APPR it goes straight to the
+point square to the start of the contour, and stays square to its end until R0 leads away.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+from core.geometry.contour_offset import GougeError, Piece, pieces_beside
+from core.geometry.lines_and_arcs import SAME_POINT, Arc, Element, Point, left_of, touching
+from core.geometry.rotation_frames import Vector
+from core.interpreter.klartext.flow import word_values
+from core.interpreter.klartext.klartext_state import State
+from core.interpreter.klartext.motion.path_elements import PathElement, goal
+from core.language.klartext.klartext_faults import INPUT_VALUE, RADIUS_TOO_LARGE, fault
+from core.language.klartext.klartext_nodes import Move
+from core.message import Message
+
+_MOST_CCA = 360.0
+
+
+class Contour:
+    """The elements of a contour, and the way of the tool's centre ``radius`` mm to its ``side``."""
+
+    def __init__(self, elements: list[PathElement], side: str, radius: float) -> None:
+        self._flats = [each for each in elements if each.flat is not None]
+        self._pieces: dict[int, list[Piece]] = {id(each): [] for each in elements}
+        self.first: Element | None = self._flats[0].flat if self._flats else None
+        for piece in self._beside(radius if side == "L" else -radius):
+            self._pieces[id(self._flats[piece.source])].append(piece)
+
+    @property
+    def end(self) -> Point | None:
+        """The end of the contour itself; None where nothing moves in the plane."""
+        return self._flats[-1].end[:2] if self._flats else None
+
+    @property
+    def end_direction(self) -> Point | None:
+        """The direction in which it ends."""
+        return self._flats[-1].end_direction if self._flats else None
+
+    def _beside(self, left: float) -> list[Piece]:
+        try:
+            return pieces_beside([each.flat for each in self._flats if each.flat is not None], left)
+        except GougeError as problem:
+            at = self._flats[min(problem.index, len(self._flats) - 1)]
+            text = Message(
+                "A tool radius of {radius} mm does not fit the contour: {why}.",
+                radius=f"{abs(left):.10g}",
+                why=problem.why,
+            )
+            hint = "Use a smaller tool, or change the contour."
+            raise fault(at.line, at.column, RADIUS_TOO_LARGE, text, hint) from None
+
+    def pieces(self, element: PathElement, here: Vector) -> Iterator[PathElement]:
+        """The tool's way along one element, from where it stands; an outside corner behind it included."""
+        mine = self._pieces[id(element)]
+        z0, z1 = element.start[2], element.end[2]
+        if not mine:
+            if abs(z1 - z0) > SAME_POINT:
+                yield replace(element, start=here, end=(*here[:2], z1), arc=None)
+            return
+        whole = sum(piece.element.length for piece in mine if not piece.corner)
+        done = 0.0
+        for piece in mine:
+            below = z0 + (z1 - z0) * (done / whole if whole else 1.0)
+            done += 0.0 if piece.corner else piece.element.length
+            above = z0 + (z1 - z0) * (done / whole if whole else 1.0)
+            yield _along(element, piece.element, below, above)
+
+
+def _along(element: PathElement, flat: Element, z0: float, z1: float) -> PathElement:
+    arc = flat if isinstance(flat, Arc) else None
+    return replace(element, start=(*flat.start, z0), end=(*flat.end, z1), arc=arc)
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """The block that leads to a contour: from where the tool stands to the contour's first point ``at``.
+
+    ``side`` L or R with the tool's ``radius``; empty without compensation. mm, the program's coordinates.
+    """
+
+    node: Move
+    start: Vector
+    at: Vector
+    feed: float | None
+    side: str
+    radius: float
+
+
+def way_in(state: State, entry: Entry, direction: Point) -> Iterator[PathElement]:
+    """The way to the contour, which begins in this direction (a unit vector)."""
+    beside = _beside(entry.at, direction, entry.side, entry.radius)
+    made = PathElement(entry.start, entry.start, entry.feed, state.line, state.text, entry.node.column)
+    form = entry.node.form.removeprefix("APPR ").replace("PL", "L").replace("PC", "C")
+    if not entry.node.form.startswith("APPR"):
+        yield _straight(made, entry.start, beside)
+    elif form in {"LT", "LN"}:
+        length = _length(state, entry.node, "LEN")
+        back = (-direction[0], -direction[1]) if form == "LT" else _outwards(direction, entry.side)
+        before = (beside[0] + back[0] * length, beside[1] + back[1] * length, beside[2])
+        yield _straight(made, entry.start, before)
+        yield _straight(made, before, beside)
+    else:
+        arc = _arc_in(state, entry, direction, beside, tangent=form == "LCT")
+        yield _straight(made, entry.start, (*arc.start, beside[2]))
+        yield _round(made, arc, beside[2], beside[2])
+
+
+def way_out(
+    state: State, node: Move, here: Vector, direction: Point, side: str, radius: float, feed: float | None
+) -> Iterator[PathElement]:
+    """DEP: the way off the contour that ends ``here`` in this direction (a unit vector)."""
+    beside = _beside(here, direction, side, radius)
+    made = PathElement(beside, beside, feed, state.line, state.text, node.column)
+    form = node.form.removeprefix("DEP ").replace("PL", "L")
+    end = goal(state, node, here)
+    if form in {"LT", "LN"}:
+        length = _length(state, node, "LEN")
+        on = direction if form == "LT" else _outwards(direction, side)
+        yield _straight(made, beside, (beside[0] + on[0] * length, beside[1] + on[1] * length, end[2]))
+        return
+    # The same way run backwards is a way in.
+    back = Entry(node, end, here, feed, {"L": "R", "R": "L"}.get(side, ""), radius)
+    turned = -direction[0], -direction[1]
+    arc = _arc_in(state, back, turned, beside, tangent=form == "LCT").reversed()
+    yield _round(made, arc, beside[2], beside[2])
+    if form == "LCT":
+        yield _straight(made, (*arc.end, beside[2]), end)
+
+
+def _arc_in(state: State, entry: Entry, direction: Point, beside: Vector, *, tangent: bool) -> Arc:
+    """The arc that ends beside the contour in its direction: CCA long, or begun by a line that touches it."""
+    size, turn = _radius(state, entry)
+    left = left_of(direction)
+    centre = beside[0] + left[0] * size * turn, beside[1] + left[1] * size * turn
+    if tangent:
+        start = _touching(state, entry, centre, size, clockwise=turn < 0)
+    else:
+        word = entry.node.word("CCA")
+        assert word is not None  # the block was refused without it
+        swept = math.radians(word_values.number(state, word.value, "CCA", _MOST_CCA, 0.0))
+        angle = math.atan2(beside[1] - centre[1], beside[0] - centre[0]) - turn * swept
+        start = centre[0] + size * math.cos(angle), centre[1] + size * math.sin(angle)
+    return Arc(start, beside[:2], centre, clockwise=turn < 0)
+
+
+def _radius(state: State, entry: Entry) -> tuple[float, float]:
+    """Radius of the tool centre's arc, and 1 where its centre is on the left.
+
+    R over 0 lies on the side of the tool, under 0 on that of the workpiece; without compensation left.
+    """
+    word = entry.node.word("R")
+    assert word is not None
+    value = word_values.coordinate(state, word)
+    turn = -1.0 if (entry.side == "R") != (value < 0.0) else 1.0
+    size = value - entry.radius if value > 0.0 else entry.radius - value
+    if value == 0.0 or size < SAME_POINT:
+        raise state.refuse(
+            word.column,
+            RADIUS_TOO_LARGE,
+            "R {value} mm of {form} must be larger than the tool radius of {radius} mm.",
+            "Increase R.",
+            value=f"{value:.10g}",
+            form=entry.node.form,
+            radius=f"{entry.radius:.10g}",
+        )
+    return size, turn
+
+
+def _touching(state: State, entry: Entry, centre: Point, size: float, *, clockwise: bool) -> Point:
+    """Where a line from the start of the entry touches the circle, run in its sense."""
+    if math.dist(entry.start[:2], centre) < size:
+        text = "No path is possible for {form} because the tool is inside the arc of this move."
+        hint = "Start farther from the contour, or reduce R."
+        raise state.refuse(entry.node.column, INPUT_VALUE, text, hint, form=entry.node.form)
+    return touching(entry.start[:2], centre, size, clockwise=clockwise)
+
+
+def _beside(at: Vector, direction: Point, side: str, radius: float) -> Vector:
+    """The tool's centre square to a point of the contour."""
+    if not side:
+        return at
+    left = left_of(direction)
+    off = radius if side == "L" else -radius
+    return at[0] + left[0] * off, at[1] + left[1] * off, at[2]
+
+
+def _outwards(direction: Point, side: str) -> Point:
+    """Square to the contour, on the tool's side; to the left without compensation."""
+    left = left_of(direction)
+    return (-left[0], -left[1]) if side == "R" else left
+
+
+def _length(state: State, node: Move, name: str) -> float:
+    word = node.word(name)
+    assert word is not None  # the block was refused without it
+    return word_values.number(state, word.value, name, word_values.MOST_COORDINATE, 0.0) * state.scale
+
+
+def _straight(made: PathElement, start: Vector, end: Vector) -> PathElement:
+    return replace(made, start=start, end=end, arc=None)
+
+
+def _round(made: PathElement, arc: Arc, z0: float, z1: float) -> PathElement:
+    return replace(made, start=(*arc.start, z0), end=(*arc.end, z1), arc=arc)

@@ -1,0 +1,1 @@
+"""Tool calls, M functions and shifted or turned datums of Klartext."""

@@ -1,0 +1,202 @@
+"""M functions: which act before the motion of their block, which behind it, and what each does."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from core.geometry.working_plane import Figure
+from core.interpreter.klartext.cycles.cycle_moves import HOW_ORIENTED, UNORIENTED, oriented
+from core.interpreter.klartext.flow import word_values
+from core.interpreter.klartext.klartext_state import State
+from core.interpreter.klartext.motion.plane_functions import retract, retract_way, switch
+from core.interpreter.klartext.setup.tool_call import tool_text
+from core.interpreter.shared import actions
+from core.interpreter.shared.elementary_blocks import Block
+from core.language.diagnostics import Severity
+from core.language.klartext.klartext_faults import (
+    CONTRADICTION,
+    M_UNDEFINED,
+    NOT_WITH_M128,
+    WRONG_RPM,
+    syntax,
+    unsupported,
+)
+from core.language.klartext.klartext_nodes import MCode
+from core.message import Message
+
+M19, M89, M91, M92, M99 = 19, 89, 91, 92, 99
+FEEDS = frozenset({103, 136, 137})  # of ``feed_rates``: they count as soon as they are read
+ENDS_NOTHING = frozenset({102, 115, 145})  # they end what is not built
+SISTER_TOOL = 101
+BEFORE = frozenset({3, 4, 8, 13, 14, SISTER_TOOL, 116, 117, 126, 127, 128, 129, 140}) | FEEDS | ENDS_NOTHING
+ENDS = frozenset({2, 30})
+_BEHIND = frozenset({0, 1, 2, 5, 6, 9, M19, 30})
+_OF_THE_BLOCK = frozenset({M89, M91, M99})
+_SECOND_DATUM = frozenset({M92})  # where the machine file has one
+
+# They steer what this control does in its own way anyhow: smoothing and look-ahead (90, 112, 113, 120, 124),
+# small contour steps and open corners (97, 98), feed at arcs (109, 110, 111), messages (107, 108), the
+# display of rotary axes (94), handwheel superimposed (118), exact stops (134, 135), retract at a stop (148),
+# gains of the loops (105, 106), a touch probe's watch (141).
+UNHEEDED = frozenset(
+    {90, 94, 97, 98, 105, 106, 107, 108, 109, 110, 111, 112, 113, 118, 120, 124, 134, 135, 141, 148}
+)
+
+# Of the control, and not built: the datum of before (104), old ways of leading the tip (114, 144), positions
+# before tilting (130, 138), programs and rotations cleared (142, 143), limits passed (150).
+_NOT_BUILT = frozenset({104, 114, 130, 138, 142, 143, 144, 150})
+_TURNS = {3: 1, 4: -1, 13: 1, 14: -1}
+_OWN = "Assign an output to this machine-builder code under [m_codes], or remove the code."
+_ADVICE = {
+    M92: (
+        "Define the second machine datum as fixed_points under [axis.X], [axis.Y] and "
+        "[axis.Z], or use M91 to measure from machine zero."
+    )
+}
+
+
+def check(state: State, codes: Sequence[MCode]) -> None:
+    """Raises ProgramError for codes this machine lacks, contradictions, and what M128 forbids."""
+    limits = state.setup.limits
+    known = BEFORE | _BEHIND | _OF_THE_BLOCK | UNHEEDED | limits.m_outputs.keys() | limits.m_ignored
+    known |= _SECOND_DATUM if limits.fixed_points else frozenset()
+    for position, code in enumerate(codes):
+        if code.number in {M91, M92}:
+            _check_datum(state, code, codes)
+        if code.number == M19 and not limits.spindle_oriented:
+            raise state.refuse(
+                code.column,
+                M_UNDEFINED,
+                "M19 stops the spindle at an angle, but {unoriented}.",
+                "{how_oriented}, or remove M19.",
+                unoriented=UNORIENTED,
+                how_oriented=HOW_ORIENTED.capitalize(),
+            )
+        if code.number in _NOT_BUILT - known:
+            raise unsupported(state.line, code.column, f"M{code.number}")
+        if code.number not in known:
+            text = "M{number} is not defined in the machine file."
+            raise state.refuse(
+                code.column, M_UNDEFINED, text, _ADVICE.get(code.number, _OWN), number=code.number
+            )
+        if code.number in UNHEEDED | limits.m_ignored:
+            state.unheeded(f"M{code.number}", code.column)
+        if code.number == SISTER_TOOL:
+            text = (
+                "On this control, M101 does not change to a replacement tool, so the called tool remains in "
+                "use."
+            )
+            hint = "Check the tool life before you start the program."
+            state.tell_once(code.column, Severity.WARNING, "no-replacement-tool", text, hint)
+        if any(other.number == code.number for other in codes[:position]):
+            text = Message("M{number} is programmed twice in the block.", number=code.number)
+            raise syntax(state.line, code.column, text, "Remove one of the two.")
+    turning = [code for code in codes if code.number in {*_TURNS, 5, M19}]
+    if len(turning) > 1:
+        text = "More than one M function in the block controls the spindle."
+        raise state.refuse(turning[1].column, CONTRADICTION, text, "Remove one of the two.")
+
+
+def _check_datum(state: State, code: MCode, codes: Sequence[MCode]) -> None:
+    """M91 and M92: not while M128 is on, and one of both."""
+    text = "M{number} is not allowed while M128 is active."
+    hint = "Switch M128 off with M129 before this block."
+    state.check(not state.m128, code.column, NOT_WITH_M128, text, hint, number=code.number)
+    if {M91, M92} <= {other.number for other in codes}:
+        text = "M91 and M92 cannot be in the same block because they measure from different datums."
+        raise state.refuse(code.column, CONTRADICTION, text, "Remove one of the two.")
+
+
+def datum(state: State, codes: Sequence[MCode]) -> Mapping[str, float] | None:
+    """Machine positions of the slides from which M91 or M92 counts; None for the workpiece's zero."""
+    numbers = {code.number for code in codes}
+    if M92 in numbers:
+        return {axis: points[0] for axis, points in state.setup.limits.fixed_points.items() if points}
+    return {} if M91 in numbers else None
+
+
+def before(state: State, codes: Sequence[MCode]) -> Iterator[Block]:
+    """The blocks of what acts before the motion."""
+    for code in codes:
+        output = state.setup.limits.m_outputs.get(code.number)
+        if code.number in _TURNS:
+            yield _start(state, code)
+        if code.number in {8, 13, 14}:
+            yield _coolant(state, on=True)
+        if code.number in {126, 127}:
+            state.short_way = code.number == 126
+        if code.number in {116, 117}:
+            state.rotary_by_way = code.number == 116
+        if code.number in {128, 129}:
+            switch(state, on=code.number == 128)
+        if code.number == 140:
+            yield from _away(state, code)
+        if output is not None and output[1]:
+            yield _output(state, *output)
+
+
+def behind(state: State, codes: Sequence[MCode], comment: str) -> Iterator[Block]:
+    """The blocks of what acts behind the motion."""
+    for code in codes:
+        output = state.setup.limits.m_outputs.get(code.number)
+        if code.number in {0, 5, 6} and state.modal.spindle:
+            yield _stop(state)
+        if code.number == M19:
+            yield oriented(state, state.spindle_angle)
+        if code.number == 9 or (code.number == 0 and state.modal.coolant):
+            yield _coolant(state, on=False)
+        if output is not None and not output[1]:
+            yield _output(state, *output)
+        if code.number in {0, 1}:
+            yield state.action(actions.ProgramStop(optional=code.number == 1, message=comment))
+        if code.number == 6:
+            yield state.action(
+                actions.ProgramStop(
+                    optional=False, message=Message("TOOL {tool}", tool=tool_text(state.modal.tool))
+                )
+            )
+        if code.number in {2, 30}:
+            yield end(state)
+
+
+def end(state: State) -> Block:
+    """M2, M30 and END PGM: the plane ends, rotary axes stay where they are."""
+    state.m128 = False
+    state.figure = Figure()
+    state.short_way = True
+    state.per_revolution, state.plunging, state.rotary_by_way = False, None, False
+    state.set_plane(None)
+    state.modal = state.modal._replace(spindle=0, oriented=None, coolant=False, outputs=frozenset())
+    return state.action(actions.ProgramEnd(reset=True))
+
+
+def _start(state: State, code: MCode) -> Block:
+    text = "M{number} starts the spindle, but no TOOL CALL sets S."
+    state.check(state.modal.rpm, code.column, WRONG_RPM, text, "Program S in TOOL CALL.", number=code.number)
+    state.modal = state.modal._replace(spindle=_TURNS[code.number], oriented=None)
+    return state.action(actions.SpindleRun(state.modal.rpm * state.modal.spindle))
+
+
+def _stop(state: State) -> Block:
+    state.modal = state.modal._replace(spindle=0, oriented=None)
+    return state.action(actions.SpindleStop())
+
+
+def _coolant(state: State, *, on: bool) -> Block:
+    state.modal = state.modal._replace(coolant=on)
+    return state.action(actions.Coolant(on))
+
+
+def _output(state: State, name: str, on: bool) -> Block:
+    outputs = state.modal.outputs | {name} if on else state.modal.outputs - {name}
+    state.modal = state.modal._replace(outputs=outputs)
+    return state.action(actions.Output(name, on))
+
+
+def _away(state: State, code: MCode) -> Iterator[Block]:
+    """M140: away from the workpiece along the tool, at its own feed or in rapid."""
+    assert code.retract is not None
+    up = retract_way(state, code.retract)
+    feed = word_values.feed_word(state, code.feed, code.column) if code.feed is not None else None
+    if up > 0.0:
+        yield retract(state, up, feed)

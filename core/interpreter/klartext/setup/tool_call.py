@@ -1,0 +1,172 @@
+"""TOOL DEF and TOOL CALL: length and radius, tool, tool axis, speed and feed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from core.interpreter.klartext.flow import word_values
+from core.interpreter.klartext.klartext_state import State
+from core.interpreter.klartext.motion.feed_rates import MOST_FEED, REVOLUTION
+from core.interpreter.shared.actions import ProgramStop, SpindleRun, SpindleStop, ToolChange
+from core.interpreter.shared.elementary_blocks import Block
+from core.interpreter.shared.interpretation import ToolUse
+from core.language.klartext.klartext_faults import NOT_WITH_M128, TOOL_UNKNOWN, WRONG_RPM, unsupported
+from core.language.klartext.klartext_nodes import ToolCall, ToolDef, Value
+from core.language.klartext.structure_blocks import MOST_TOOL
+from core.message import Message
+from core.tool_edges import NAMED_TOOLS, NamedTool
+
+
+def tool_call(state: State, node: ToolCall, use: ToolUse) -> Iterator[Block]:
+    """The blocks of TOOL CALL. The slides stay; the tip's place follows from the new length.
+
+    Raises ProgramError before anything has changed.
+    """
+    changes = node.tool is not None or node.length is not None or node.radius is not None
+    if state.m128 and changes:
+        text = "TOOL CALL with a tool or an oversize is not allowed while M128 is active."
+        raise state.refuse(1, NOT_WITH_M128, text, "Switch M128 off with M129 before this block.")
+    if node.tool_axis not in {"", "Z"}:
+        raise unsupported(
+            state.line, node.column, Message("The tool axis {tool_axis}", tool_axis=node.tool_axis)
+        )
+    number = _number(state, node.tool, node.column)
+    rpm = _speed(state, node, number)
+    feed = _feed(state, node)
+    longer, thicker = _oversize(state, node.length, "DL"), _oversize(state, node.radius, "DR")
+    state.tool_axis = node.tool_axis or state.tool_axis
+    if feed is not None:
+        state.feed = state.tool_feed = feed
+        per = node.feed_per or (REVOLUTION if state.per_revolution else "")
+        state.feed_per = state.tool_feed_per = per
+    elif node.tool is not None:
+        state.tool_feed = None
+    if number is not None:
+        yield from _change(state, number, longer, thicker, use, node.column)
+    elif node.length is not None or node.radius is not None:
+        _measure(state, state.modal.tool, longer, thicker, use, node.column)
+    if rpm is not None:
+        state.modal = state.modal._replace(rpm=rpm)
+        if state.modal.spindle:
+            yield state.action(SpindleRun(rpm * state.modal.spindle))
+
+
+def define_tool(state: State, node: ToolDef) -> None:
+    """TOOL DEF: length and radius, which count before those of the tool table. Raises ProgramError."""
+    if node.length is None and node.radius is None:
+        return  # the tool is only to be got ready
+    length = _oversize(state, node.length, "L", word_values.MOST_COORDINATE)
+    state.tool_defs[node.tool] = length, _oversize(state, node.radius, "R", word_values.MOST_COORDINATE)
+
+
+def _number(state: State, tool: int | str | Value | None, column: int) -> int | None:
+    """The number of a tool that is called; one by name stands in the program or in the tool table."""
+    if isinstance(tool, Value):
+        return round(word_values.number(state, tool, "TOOL CALL", MOST_TOOL, 0.0))
+    if not isinstance(tool, str):
+        return tool
+    names = [each for each in state.tool_defs if isinstance(each, str)]
+    if tool in names:
+        return NamedTool(NAMED_TOOLS + names.index(tool), tool)
+    if (found := state.setup.tool_names.get(tool.upper())) is not None:
+        return found
+    hint = "Give this name to a tool in the tool table, or call the tool by its number."
+    raise state.refuse(column, TOOL_UNKNOWN, 'No tool is named "{tool}".', hint, tool=tool)
+
+
+def _oversize(state: State, value: Value | None, what: str, most: float = 99.999) -> float:
+    return 0.0 if value is None else word_values.number(state, value, what, most) * state.scale
+
+
+def _change(
+    state: State, tool: int, longer: float, thicker: float, use: ToolUse, column: int
+) -> Iterator[Block]:
+    """Another tool: the spindle stops, and where one was in it before, somebody has to change it."""
+    before = state.modal.tool
+    if state.modal.spindle:
+        state.modal = state.modal._replace(spindle=0, oriented=None)
+        yield state.action(SpindleStop())
+    state.modal = state.modal._replace(tool=tool)
+    _measure(state, tool, longer, thicker, use, column)
+    yield state.action(ToolChange(tool))
+    if tool and before not in {0, tool}:
+        yield state.action(ProgramStop(optional=False, message=Message("TOOL {tool}", tool=tool_text(tool))))
+
+
+def _measure(state: State, tool: int, longer: float, thicker: float, use: ToolUse, column: int) -> None:
+    """Length and radius of the tool: as TOOL DEF tells them, else its offset.
+
+    0 with a warning where nobody has measured it.
+    """
+    state.oversize = longer, thicker
+    if 0 < tool < NAMED_TOOLS:
+        use.call(tool)
+    if _defined(state, tool) is None and tool and use.offset(tool, state.setup.tools) is None:
+        text = "Tool {tool} has no offset, so 0 is used and the machine will not start."
+        hint = "Set the tool offset."
+        state.log.warn(state.line, column, "tool-offset-missing", text, hint, tool=tool_text(tool))
+    measure_again(state)
+
+
+def measure_again(state: State) -> None:
+    """Length and radius of the tool in the spindle as TOOL DEF or the table have them now."""
+    tool, (longer, thicker) = state.modal.tool, state.oversize
+    offset = state.setup.tools.get(tool)
+    table = (offset.z, offset.nose_radius) if tool and offset is not None else (0.0, 0.0)
+    length, radius = _defined(state, tool) or table
+    state.tool_length, state.tool_radius = length + longer, radius + thicker
+    state.derive()
+
+
+def radius_of(state: State, tool: int) -> float | None:
+    """Radius of a tool without oversizes, mm, as TOOL DEF or the table have it; None where neither does."""
+    if (told := _defined(state, tool)) is not None:
+        return told[1]
+    offset = state.setup.tools.get(tool)
+    return None if offset is None else offset.nose_radius
+
+
+def _defined(state: State, tool: int) -> tuple[float, float] | None:
+    return state.tool_defs.get(tool) or state.tool_defs.get(_name_of(state, tool))
+
+
+def tool_text(tool: int) -> str:
+    """A tool as the program calls it."""
+    return f'"{tool.name}"' if isinstance(tool, NamedTool) else f"{tool}"
+
+
+def _name_of(state: State, tool: int) -> str:
+    names = [each for each in state.tool_defs if isinstance(each, str)]
+    at = tool - NAMED_TOOLS
+    return names[at] if 0 <= at < len(names) else ""
+
+
+def _by_cutting_speed(state: State, node: ToolCall, number: int | None) -> float:
+    """S(VC = 120): metres a minute at the tool's radius, rpm. Raises ProgramError where it has none."""
+    assert node.cutting_speed is not None
+    speed = word_values.number(state, node.cutting_speed, "VC", word_values.MOST_SPEED, 0.0)
+    radius = radius_of(state, state.modal.tool if number is None else number) or 0.0
+    text = "A cutting speed needs the tool radius, but the radius of the tool is not defined."
+    hint = "Enter the tool radius R in the tool table, or program S."
+    state.check(radius > 0.0, node.cutting_speed.column, WRONG_RPM, text, hint)
+    return speed * 1000.0 / (2.0 * math.pi * radius)
+
+
+def _speed(state: State, node: ToolCall, number: int | None) -> float | None:
+    if node.cutting_speed is not None:
+        return min(_by_cutting_speed(state, node, number), state.setup.limits.max_rpm)
+    if node.speed is None:
+        return None
+    rpm = word_values.number(state, node.speed, "S", word_values.MOST_SPEED, 0.0)
+    highest = state.setup.limits.max_rpm
+    text = "S{rpm} is above the spindle maximum of {highest} rpm."
+    state.check(rpm <= highest, node.speed.column, WRONG_RPM, text, "Lower S.", rpm=rpm, highest=highest)
+    return rpm
+
+
+def _feed(state: State, node: ToolCall) -> float | None:
+    if node.feed is None:
+        return None
+    feed = word_values.number(state, node.feed, "F", MOST_FEED, 0.0)
+    return feed or None

@@ -1,0 +1,60 @@
+"""The codes of the OmniTurn control, each in one entry: form, words, what F means, group, bounds, refusals.
+
+The entries stand by subject in ``move_codes``, ``cycle_codes`` and ``flow_codes``. A code without an entry
+does not exist. ``handler`` names the function that carries it out, as ``folder.file:name`` in the package of
+this dialect; what a line does before and behind it is told by ``acts``. Where the entry is wrong or lacks
+something, making it raises, or ``tests/interpreter/test_code_table.py`` fails. ``docs/language.md`` is the
+page of this table (``language_page``), and its examples are proved.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from importlib import import_module
+from typing import Any
+
+from core.interpreter.omniturn.codes.code_entry import PLAIN_WORDS, Acts, Code, FWord
+from core.interpreter.omniturn.codes.cycle_codes import CYCLE_CHAPTERS
+from core.interpreter.omniturn.codes.flow_codes import FLOW_CHAPTERS
+from core.interpreter.omniturn.codes.move_codes import MOVE_CHAPTERS
+
+PLAIN = Code(
+    "", "", "", "", acts=Acts.PLAIN, handler="motion.straight_moves:statement_move",
+    words=PLAIN_WORDS, f=FWord.FEED
+)  # fmt: skip
+
+CHAPTERS = (*MOVE_CHAPTERS, *CYCLE_CHAPTERS, *FLOW_CHAPTERS)
+"""All codes in the order of the page: the title of each chapter, and its codes."""
+
+G_CODES = {int(code.name[1:]): code for _, codes in CHAPTERS for code in codes if code.name[0] == "G"}
+"""By number. Modes and one-shot codes: the latter act on their own line alone, and a line may hold one."""
+
+M_CODES = {
+    int(code.name[1:]): code
+    for _, codes in CHAPTERS
+    for code in codes
+    if code.name[0] == "M" and code.acts is not Acts.FLOW
+}
+"""M codes of the control itself, by number; all others are the machine file's."""
+
+LETTERS = {code.name: code for _, codes in CHAPTERS for code in codes if code.acts is Acts.WORD}
+"""Words that have an entry of their own."""
+
+FLOW_CODES = {code.name: code for _, codes in CHAPTERS for code in codes if code.acts is Acts.FLOW}
+"""What steers the order of execution; ``words`` is exactly what stands on such a line."""
+
+
+def carry_out(code: Code) -> Callable[..., Any]:
+    """The function that carries a code out; its file is loaded when the first program needs it."""
+    return _function(code.handler)
+
+
+@cache
+def _function(handler: str) -> Callable[..., Any]:
+    file, _, path = handler.partition(":")
+    found: Any = import_module(f"core.interpreter.omniturn.{file}")
+    for name in path.split("."):
+        found = getattr(found, name)
+    function: Callable[..., Any] = found
+    return function

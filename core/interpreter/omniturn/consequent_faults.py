@@ -1,0 +1,76 @@
+"""Errors that only follow from a refused line, of the text or of the run, and are not reported.
+
+The control stops at the first error. The interpreter continues, so that one pass reports all independent
+errors. A refused line may have started the spindle or set the feed. Errors about what it may have set are
+reported once the line is corrected.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+from core.language.diagnostics import Diagnostic, refusal
+from core.message import Message
+
+_SPINDLE = frozenset({"spindle-stopped", "speed-missing", "c-unlocked"})
+_FEED = frozenset({"feed-missing"})
+_PLACE = frozenset({
+    "arc-radius", "arc-no-radius", "arc-no-chord", "thread-side", "thread-length", "thread-angle",
+    "cycle-no-way", "cycle-start-near", "cycle-quadrant", "cycle-nothing", "cycle-depth",
+})  # fmt: skip
+_SETS = (
+    (re.compile(r"M0*[34](?![0-9])|M[O0]*[34]|S[0-9.]|M19|M89|G9[67]"), _SPINDLE),
+    (re.compile(r"F[-+0-9.O]|G9[45]"), _FEED),
+    (re.compile(r"T[0-9O]"), frozenset({"tool-first-move", "no-tool"})),
+    (re.compile(r"G7[0-3]|G9[01O2]|[XZ]"), _PLACE),
+    (re.compile(r"G0*[23](?![0-9])"), frozenset({"corner-without-move"})),
+    (re.compile(r"G35"), frozenset({"thread-lead-range", "coarse-order"})),
+    (re.compile(r"M1[23]"), frozenset({"collet-open"})),
+)
+"""Words of a refused line, and the errors of later lines that may follow from it."""
+
+
+class Consequences:
+    """The errors that may follow from the lines refused so far."""
+
+    def __init__(self) -> None:
+        self._uncertain: set[str] = set()
+
+    def note(self, text: str, *, place_known: bool) -> None:
+        """Note a refused line; ``place_known``: the axes are where it would have left them."""
+        code = text.upper()
+        for words, codes in _SETS:
+            if words.search(code) and not (place_known and codes is _PLACE):
+                self._uncertain |= codes
+
+    def includes(self, code: str) -> bool:
+        """Return whether an error may only be a consequence of a refused line."""
+        return code in self._uncertain
+
+
+_CENTER = re.compile(r"\s*((?:[IKR][-+]?[\d.]+\s*)+)(?:\(.*)?$")  # the rest of an arc, on a line of its own
+_BARE_ARC = re.compile(r"[^(IKR]*(?P<arc>G0[23])[^(IKR]*(?:\(.*)?$")
+_SHORT_END = re.compile(r"M2\b")
+
+
+def without_follow_ups(problems: Sequence[Diagnostic], lines: Sequence[str]) -> list[Diagnostic]:
+    """Return the findings without those that another one explains.
+
+    An arc whose center is on the next line is one mistake. After a refused M2 nothing is after the end.
+    """
+    ends = any(each.code == "m-digits" and _SHORT_END.match(each.message) for each in problems)
+    rest = [each for each in problems if not (ends and each.code == "after-end")]
+    return [_divided_arc(each, lines) or each for each in rest]
+
+
+def _divided_arc(found: Diagnostic, lines: Sequence[str]) -> Diagnostic | None:
+    """Return the finding about the arc whose center words are those that the next line cannot use."""
+    if found.code != "word-unused" or found.line < 2:
+        return None
+    arc, center = _BARE_ARC.match(lines[found.line - 2]), _CENTER.match(lines[found.line - 1])
+    if arc is None or center is None:
+        return None
+    text = "The arc center is programmed on the next line."
+    hint = Message("Write {word} on the same line as the arc.", word=center.group(1).strip())
+    return refusal(found.line - 1, arc.start("arc") + 1, "arc-centre-missing", text, hint)

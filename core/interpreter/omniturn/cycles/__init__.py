@@ -1,0 +1,1 @@
+"""Canned cycles of OmniTurn: drilling, roughing and threads."""

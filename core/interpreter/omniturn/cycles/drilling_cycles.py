@@ -1,0 +1,99 @@
+"""G81 and G83: a hole along Z from the start point, in one go or in pecks."""
+
+from __future__ import annotations
+
+from core.interpreter.omniturn.codes.code_rules import checked
+from core.interpreter.omniturn.cycles.canned_cycles import LIFT, check_count, length
+from core.interpreter.omniturn.motion.straight_moves import on_step
+from core.interpreter.omniturn.omniturn_state import State
+from core.interpreter.omniturn.omniturn_statement import Statement
+from core.interpreter.shared import units
+from core.interpreter.shared.contour_passes import Move, pass_count
+
+_RETRACT_RATE = 200 * units.MM_PER_INCH / 60  # mm/s, without L
+_WHOLE = 1e-6  # of a peck: what a decimal fraction lacks in binary
+
+
+def drill_moves(state: State, statement: Statement) -> list[Move]:
+    """G81: feed to Z, rapid back to the start. Raises ProgramError for words that drill nothing."""
+    moves = _position(state, statement)
+    x = moves[-1].x if moves else state.x
+    depth = _depth(state, statement)
+    return [*moves, Move(x, depth), Move(x, state.z, state.modal.rapid_rate)]
+
+
+def peck_moves(state: State, statement: Statement) -> list[Move]:
+    """G83: pecks of K, each followed by a way out to R and back to C before the depth that was reached.
+
+    The last peck is what is left. The cycle ends at the start point. Raises ProgramError.
+    """
+    moves = _position(state, statement)
+    x = moves[-1].x if moves else state.x
+    start, depth = state.z, _depth(state, statement)
+    peck = length(state, statement, "K")
+    if peck > (start - depth) * (1.0 + _WHOLE):
+        deep = state.modal.length_text(start - depth)
+        state.log.warn(
+            statement.line,
+            statement.words["K"].column,
+            "peck-depth",
+            "{text}: the peck exceeds the hole depth of {depth}.",
+            "Correct K, or drill with G81.",
+            text=statement.words["K"].text,
+            depth=deep,
+        )
+    count = pass_count(start - depth, peck)
+    check_count(statement, "K", count, "pecks")
+    rate, clear = _rate(state, statement), LIFT
+    if "C" in statement.words:
+        clear = length(state, statement, "C")
+    out = _retract(state, statement, max(start - peck, depth))
+    for k in range(1, count + 1):
+        reached = depth if k == count else start - k * peck
+        moves += [Move(x, reached), Move(x, out, rate)]
+        if k < count and reached + clear < out:
+            moves.append(Move(x, reached + clear, rate))
+    return [*moves, Move(x, start, rate)]
+
+
+def _position(state: State, statement: Statement) -> list[Move]:
+    """An X word is a place to go to before the hole."""
+    x = on_step(state, statement, "X")
+    if x is None:
+        return []
+    return [Move(x + (state.dx if state.absolute else state.x), state.z, state.modal.rapid_rate)]
+
+
+def _depth(state: State, statement: Statement) -> float:
+    depth = length(state, statement, "Z") + (state.dz if state.absolute else state.z)
+    if depth >= state.z:
+        raise statement.refuse(
+            "Z",
+            "cycle-depth",
+            "The bottom of the hole at {depth} is not deeper than the start point at {z}.",
+            "Correct Z, or move the start point farther away from the part.",
+            depth=state.modal.length_text(depth),
+            z=state.modal.length_text(state.z),
+        )
+    return depth
+
+
+def _retract(state: State, statement: Statement, first: float) -> float:
+    """R, the Z to which the drill comes out; the start without the word."""
+    r = on_step(state, statement, "R")
+    if r is None:
+        return state.z
+    out = r + (state.dz if state.absolute else state.z)
+    text = "{text} is inside the hole, at or below the depth of the first peck."
+    hint = "R is the Z position to which the drill retracts from the hole."
+    statement.check(out > first, "R", "cycle-retract", text, hint, text=statement.words["R"].text)
+    return out
+
+
+def _rate(state: State, statement: Statement) -> float:
+    """L, the rate of the ways out and back, mm/s."""
+    value = statement.value("L")
+    if value is None:
+        return min(_RETRACT_RATE, state.setup.limits.max_feed)
+    rate = value * units.per_unit(metric=state.modal.metric) / 60
+    return checked(state, statement, "L", rate) or 0.0

@@ -1,0 +1,271 @@
+"""G33 and G34: a threading cycle → its passes, and the rapids between them.
+
+All lengths mm, X a radius. The formulas: docs/decisions/0004-contours-and-cycles-calculated-first.md.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from math import ceil, copysign, radians, tan
+
+from core.interpreter.omniturn.codes.code_rules import check_when, checked, number
+from core.interpreter.omniturn.motion.straight_moves import check_tool, on_step
+from core.interpreter.omniturn.omniturn_state import State
+from core.interpreter.omniturn.omniturn_statement import Statement
+from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.message import Message
+
+# --- words, and what has to be right before a thread may be cut
+
+
+MOST_PASSES = 1000  # the finest infeed of a real thread takes less than a hundred
+_LEAST_LEAD = 0.0254  # mm/rev; the finest pitch of ISO 1501 is 0.08 mm
+_ROUNDING = 1 + 1e-9
+_CLICK = 1e-6  # of a pass: what √ and decimal fractions lack
+_NEAR = 1e-6  # mm
+
+
+@dataclass(frozen=True, slots=True)
+class Thread:
+    """One threading cycle; mm, X a radius, radians. ``x0 z0`` is S.
+
+    ``out`` is the sign of X away from the work, ``along`` of Z in the cutting direction. ``depth`` is how far
+    the last pass lies below S, ``first`` the I word per side, ``taper`` what X travels from S's Z to the end.
+    """
+
+    x0: float
+    z0: float
+    z1: float
+    out: float
+    along: float
+    depth: float
+    first: float
+    lead: float
+    taper: float
+    angle: float
+    passes: int
+    pulls_out: bool
+
+    @property
+    def retract(self) -> float:
+        """X of the way back: 3 I off S, and off the far end of a taper that rises."""
+        return self.x0 + self.out * (3 * self.first + max(self.out * self.taper, 0.0))
+
+
+def read_thread(state: State, statement: Statement) -> Thread:
+    """The cycle that a line asks for. Raises ProgramError with what is wrong."""
+    if state.tool_line:
+        check_tool(state, statement.line, None, None)
+    number(state, statement, "P")
+    lead = _lead(state, statement)
+    _check_spindle(state, statement, lead)
+    along, z1 = _way(state, statement)
+    single = statement.one_shot == 34
+    first = checked(state, statement, "I", _across(state, statement, "I")) or 0.0
+    depth, out = (0.0, copysign(1.0, first)) if single else _depth(state, statement)
+    once = single or "O" in statement.words
+    angle = radians(number(state, statement, "C") or 0.0) if "C" in statement.words else 0.0
+    thread = Thread(
+        x0=state.x,
+        z0=state.z,
+        z1=z1,
+        out=out,
+        along=along,
+        depth=depth,
+        first=abs(first),
+        lead=lead,
+        taper=_across(state, statement, "A") or 0.0,
+        angle=angle,
+        passes=1 if once else _count(statement, depth, first, lead),
+        pulls_out="P" in statement.words,
+    )
+    if along * (z1 - state.z) <= depth * tan(angle) + _NEAR:
+        text = "Because of the flank angle, the last pass would start beyond its end point in Z."
+        raise statement.refuse("C", "thread-angle", text, "Start farther away from the end point Z.")
+    return thread
+
+
+def _lead(state: State, statement: Statement) -> float:
+    lead, feed = statement.value("K"), statement.words.get("F")
+    if lead is None and feed is not None:
+        raise statement.refuse(
+            "F",
+            "thread-lead-missing",
+            "The lead K is missing, but the line contains {feed}.",
+            Message("Did you mean K{feed}?", feed=feed.text[1:]),
+            feed=feed.text,
+        )
+    coarser = ("Use G35 for a larger lead.", "Use G35F2 for a larger lead.", "Correct K.")[state.modal.coarse]
+    value = checked(state, statement, "K", lead and lead * state.scale_z, more=coarser) or 0.0
+    if value < _LEAST_LEAD:
+        least = state.modal.feed_text(_LEAST_LEAD, per_rev=True)
+        text = "{text}: the minimum lead is {minimum}."
+        raise statement.refuse(
+            "K", "thread-lead-range", text, "Correct K.", text=statement.words["K"].text, minimum=least
+        )
+    return value
+
+
+def _check_spindle(state: State, statement: Statement, lead: float) -> None:
+    check_when(state, statement, statement.entry)
+    modal, rpm = state.modal, abs(state.rpm_at(state.x))
+    speed, most = lead * rpm / 60, state.setup.limits.max_feed
+    if speed > most * _ROUNDING:
+        shown = modal.feed_text(speed, per_rev=False)
+        limit = modal.feed_text(most, per_rev=False)
+        text = "At {rpm} rpm this lead needs a feed of {value}; the maximum is {limit}."
+        hint = "Lower S."
+        raise statement.refuse("K", "feed-over-speed", text, hint, rpm=f"{rpm:.0f}", value=shown, limit=limit)
+
+
+def _way(state: State, statement: Statement) -> tuple[float, float]:
+    """Sign of the cutting direction, and Z of the end."""
+    z = checked(state, statement, "Z", on_step(state, statement, "Z")) or 0.0
+    z1 = (z if state.absolute else state.pz + z) + state.dz
+    if abs(z1 - state.z) <= _NEAR:
+        text = "The thread ends at the same Z where it starts."
+        raise statement.refuse("Z", "thread-length", text, "Correct Z, or move the tool away before G33.")
+    return copysign(1.0, z1 - state.z), z1
+
+
+def _depth(state: State, statement: Statement) -> tuple[float, float]:
+    """Depth of the last pass below S, and the sign of X away from the work."""
+    x = checked(state, statement, "X", on_step(state, statement, "X")) or 0.0
+    x1 = (x if state.absolute else state.px + x) + state.dx
+    here = Message("the tool is at radius {x}", x=state.modal.length_text(state.x))
+    if abs(x1 - state.x) <= _NEAR:
+        text = "{text} leaves no material to cut because {position}."
+        hint = "Position the tool at the depth of the first pass before this line."
+        raise statement.refuse("X", "thread-side", text, hint, text=statement.words["X"].text, position=here)
+    if x1 * state.x < 0:
+        text = "{text} is on the other side of the spindle centerline: {position}."
+        hint = "Check the sign of X and the start position of the tool."
+        raise statement.refuse("X", "thread-side", text, hint, text=statement.words["X"].text, position=here)
+    return abs(x1 - state.x), copysign(1.0, state.x - x1)
+
+
+def _count(statement: Statement, depth: float, first: float, lead: float) -> int:
+    """Return the number of passes. Raises ProgramError for an I that does not fit the lead."""
+    text = "{text}: the first pass would be deeper than the lead."
+    hint = "Correct I (the depth of the first pass) or K."
+    statement.check(first <= lead, "I", "thread-depth", text, hint, text=statement.words["I"].text)
+    count = max(ceil((depth / first + 1.0) ** 2 - _CLICK), 1)
+    if count > MOST_PASSES:
+        text = "The thread would take {count} passes; the maximum is {most_passes}."
+        raise statement.refuse(
+            "I", "thread-passes", text, "Correct I.", count=f"{count:,}", most_passes=f"{MOST_PASSES:,}"
+        )
+    return count
+
+
+def _across(state: State, statement: Statement, letter: str) -> float | None:
+    """I or A: lengths across the axis, a diameter under G72."""
+    value = on_step(state, statement, letter)
+    return None if value is None else value * state.scale_x / state.scale_z
+
+
+MANY_PASSES = 60
+_FACE = 1e-9  # mm
+
+
+def thread_blocks(state: State, statement: Statement) -> Iterator[Block]:
+    """The blocks of a line with G33 or G34, from S back to S. Raises ProgramError before the first one."""
+    thread = read_thread(state, statement)
+    _warn(state, statement, thread)
+    return _Cutter(state, statement, thread).blocks()
+
+
+def pass_depths(thread: Thread) -> list[float]:
+    """Depth of each pass from S, mm: I(√k - 1), so that every pass takes a chip of the same area."""
+    if thread.passes == 1:
+        return [thread.depth]
+    cuts = [thread.first * (k**0.5 - 1.0) for k in range(1, thread.passes)]
+    return [*cuts, thread.depth]
+
+
+def start_z(thread: Thread, depth: float) -> float:
+    """Where a pass of this depth starts: shifted along the flank in the cutting direction."""
+    return thread.z0 + thread.along * depth * tan(thread.angle)
+
+
+class _Cutter:
+    """Makes the blocks of one cycle one after the other."""
+
+    def __init__(self, state: State, statement: Statement, thread: Thread) -> None:
+        self._state, self._line, self._thread = state, statement.line, thread
+        self._rpm = state.rpm_at(state.x)
+
+    def blocks(self) -> Iterator[Block]:
+        thread = self._thread
+        retract = thread.retract
+        depths = pass_depths(thread)
+        for k, depth in enumerate(depths, start=1):
+            z = start_z(thread, depth)
+            x = thread.x0 - thread.out * depth
+            slope = thread.taper / (thread.z1 - thread.z0)
+            if k > 1:
+                yield from self._rapid(retract, z)
+            yield from self._rapid(x + slope * (z - thread.z0), z)
+            end = x + thread.taper
+            yield self._cut(end, thread.z1, f"({k}/{len(depths)})")
+            if thread.pulls_out:
+                yield self._cut(retract, thread.z1 + thread.along * abs(retract - end), "P")
+            else:
+                yield from self._rapid(retract, thread.z1)
+        yield from self._rapid(retract, thread.z0)
+        yield from self._rapid(thread.x0, thread.z0)
+        self._state.x, self._state.z = thread.x0, thread.z0
+
+    def _rapid(self, x: float, z: float) -> Iterator[Block]:
+        """A rapid, none where the slides stand there."""
+        if max(abs(x - self._state.x), abs(z - self._state.z)) > _FACE:
+            yield self._block(x, z, Kind.RAPID, self._state.modal.rapid_rate, self._text("G00", x, z))
+
+    def _cut(self, x: float, z: float, what: str) -> Block:
+        lead = self._state.modal.feed_text(self._thread.lead, per_rev=True).split()[0]
+        text = f"{self._text('G33', x, z)}K{lead} {what}"
+        return self._block(x, z, Kind.THREAD, self._thread.lead, text)
+
+    def _block(self, x: float, z: float, kind: Kind, feed: float, text: str) -> Block:
+        state, per_rev = self._state, kind is Kind.THREAD
+        start, state.x, state.z = (state.x, state.z, state.c), x, z
+        return state.move(kind, self._line, text, start, feed, per_rev=per_rev, rpm=self._rpm)
+
+    def _text(self, code: str, x: float, z: float) -> str:
+        """As a line of the program would say it, in its unit and its X words."""
+        state = self._state
+        places = 4 if state.modal.metric else 5
+        return f"{code}X{x / state.scale_x + 0.0:.{places}f}Z{z / state.scale_z + 0.0:.{places}f}"
+
+
+def _warn(state: State, statement: Statement, thread: Thread) -> None:
+    if thread.passes > MANY_PASSES:
+        text = "The thread takes {passes} passes."
+        hint = "Check I (a larger I gives fewer passes) and the X start position of the tool."
+        state.log.warn(
+            statement.line, statement.code_column, "thread-passes", text, hint, passes=thread.passes
+        )
+    speed = thread.lead * abs(state.rpm_at(state.x)) / 60
+    needed = speed**2 / (2 * state.setup.limits.slide_accel)
+    run_up = _run_up(thread)
+    if run_up < needed:
+        state.log.warn(
+            statement.line,
+            statement.code_column,
+            "thread-run-up",
+            "The acceleration distance is {run_up}, but the Z axis needs {needed} to reach the threading "
+            "feed rate.",
+            "Start farther from the thread, or reduce S.",
+            run_up=state.modal.length_text(max(run_up, 0.0)),
+            needed=state.modal.length_text(needed),
+        )
+
+
+def _run_up(thread: Thread) -> float:
+    """The way before the work begins, of the deepest pass: to part zero where the pass comes over it, else
+    all of it, since nothing says where the work begins."""
+    z = start_z(thread, thread.depth)
+    if copysign(1.0, z) != copysign(1.0, thread.z1) and thread.z1 != 0.0:
+        return abs(z)
+    return abs(thread.z1 - z)

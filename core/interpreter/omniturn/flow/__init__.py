@@ -1,0 +1,1 @@
+"""Loops, subroutines and conditional calls of OmniTurn."""

@@ -1,0 +1,365 @@
+"""Loops, subroutines and the end of a program: found once before anything runs, then followed."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable
+from copy import copy
+from dataclasses import replace
+from typing import NamedTuple
+
+from core.interpreter.omniturn.codes.code_table import FLOW_CODES
+from core.interpreter.omniturn.omniturn_statement import UNREADABLE, Statement
+from core.interpreter.shared.checkpoint import FlowLevel, FlowPlace
+from core.interpreter.shared.control_flow import ControlFlow, Frame
+from core.interpreter.shared.interpretation import DEEPEST_CALL
+from core.language.diagnostics import Diagnostic, refusal
+from core.message import Message
+
+_CONTOUR_CYCLE = re.compile(r"G7[58](?![0-9])", re.IGNORECASE)
+
+
+class Structure(NamedTuple):
+    """Where the flow of a program goes; all positions are indices of lines, from 0."""
+
+    loop_ends: dict[int, int]  # index of LS → index of its LF
+    loop_starts: dict[int, int]
+    subroutines: dict[int, int]  # number → index of its }n
+    subroutine_ends: dict[int, int]  # number → index of its M99
+    main_end: int  # one past the last line of the main program
+    contours: dict[int, int]  # index of a G75 or G78 without P → index of its RF
+
+
+class _Finder:
+    """Goes once through the statements that matter for structure."""
+
+    def __init__(self, length: int) -> None:
+        self.found = Structure({}, {}, {}, {}, length, {})
+        self.problems: list[Diagnostic] = []
+        self._loops: list[Statement] = []
+        self._inside: int | None = None  # subroutine being read
+        self._job_end: int | None = None  # M30 or M02 in it after which nothing else has come, index of line
+        self._ended = False
+        self._stray = False  # a line that nothing reaches has been told
+        self._contour: Statement | None = None  # G75 or G78 whose RF is still to come
+        self._contour_lost = False  # it is on a line that cannot be read
+
+    def take(self, statement: Statement) -> None:
+        if self._in_contour(statement):
+            return
+        if statement.flow == "}":
+            self._open_subroutine(statement)
+            return
+        ends_job = _ends(statement) and not statement.block_delete
+        self._job_end = statement.line - 1 if ends_job and self._inside is not None else None
+        if statement.flow == "M99":
+            self._close_subroutine(statement)
+        elif self._ended and self._inside is None:
+            if statement.flow != UNREADABLE or statement.text.strip():
+                self._unreachable(statement)
+        elif statement.flow == "LS" or _unread(statement, "LS"):
+            self._loops.append(statement)
+        elif statement.flow == "LF":
+            self._close_loop(statement)
+        elif _unread(statement, "LF") and self._loops:
+            self._loops.pop()
+        elif self._inside is None and ends_job:
+            self._end_main(statement.line)
+
+    def _in_contour(self, statement: Statement) -> bool:
+        """Whether the line is one of a contour, or its RF; it steers nothing then."""
+        if statement.flow == "RF":
+            if self._contour is None and not self._contour_lost:
+                self._refuse(
+                    statement,
+                    "rf-alone",
+                    "RF has no matching G75 or G78.",
+                    "Add G75 or G78, or remove RF.",
+                )
+            elif self._contour is not None:
+                self.found.contours[self._contour.line - 1] = statement.line - 1
+            self._contour, self._contour_lost = None, False
+            return True
+        if statement.flow == UNREADABLE and _CONTOUR_CYCLE.search(statement.text):
+            self._contour_lost = True  # told already; its RF is no second mistake
+        if statement.flow in {"}", "M99"} or statement.ends_program:
+            self._open_contour()
+        inside = self._contour is not None
+        if not inside and statement.contour_cycle and "P" not in statement.words:
+            self._contour = statement
+        return inside
+
+    def _open_contour(self) -> None:
+        statement, self._contour = self._contour, None
+        if statement is not None:
+            text = Message("The contour of G{one_shot} has no RF.", one_shot=statement.one_shot)
+            hint = "Write RF alone on the line after the contour, or P with a subroutine number."
+            self._refuse(statement, "contour-open", text, hint)
+
+    def _end_main(self, line: int) -> None:
+        self._ended = True
+        self._unclosed_loops()
+        self.found = self.found._replace(main_end=min(line, self.found.main_end))
+
+    def _open_subroutine(self, statement: Statement) -> None:
+        if self._inside is not None and not self._closed_by_job_end(self._inside):
+            self._refuse(
+                statement,
+                "subroutine-open",
+                Message("Subroutine {inside} has no M99 before this line.", inside=self._inside),
+                "Add M99.",
+            )
+        elif not self._ended:
+            self._no_end(statement.line - 1)
+        self._unclosed_loops()
+        self._job_end = None
+        number = int(statement.value("}") or 0)
+        if number in self.found.subroutines:
+            first = self.found.subroutines[number] + 1
+            text = Message("Subroutine {number} already begins on line {first}.", number=number, first=first)
+            self._refuse(statement, "subroutine-twice", text, "Use a different number.")
+        else:
+            self.found.subroutines[number] = statement.line - 1
+        self._inside, self._stray = number, False
+
+    def _close_subroutine(self, statement: Statement) -> None:
+        if self._inside is None:
+            hint = "Write M30 at the end of the program, or delete this line."
+            self._refuse(statement, "m99-outside", "M99 is not in a subroutine.", hint)
+            return
+        self._unclosed_loops()
+        self.found.subroutine_ends.setdefault(self._inside, statement.line - 1)
+        self._inside = None
+
+    def _closed_by_job_end(self, number: int) -> bool:
+        """An M30 or M02 ends the job from inside a subroutine, so one that ends with it needs no M99."""
+        if self._job_end is None:
+            return False
+        self.found.subroutine_ends.setdefault(number, self._job_end)
+        return True
+
+    def _close_loop(self, statement: Statement) -> None:
+        if not self._loops:
+            self._refuse(
+                statement, "loop-unopened", "LF has no matching LS.", "Add LS with a count, or remove LF."
+            )
+            return
+        start = self._loops.pop().line - 1
+        self.found.loop_ends[start] = statement.line - 1
+        self.found.loop_starts[statement.line - 1] = start
+
+    def _unclosed_loops(self) -> None:
+        for statement in self._loops:
+            if statement.flow == UNREADABLE:
+                continue  # told already
+            self._refuse(
+                statement,
+                "loop-open",
+                Message("{text} has no matching LF.", text=statement.text),
+                "Add LF where the loop ends.",
+            )
+        self._loops.clear()
+
+    def _unreachable(self, statement: Statement) -> None:
+        late_end = statement.ends_program and any(each.code == "no-end" for each in self.problems)
+        if not self._stray and not late_end:
+            self._stray = True
+            text = "This line is after the end of the program but not in a subroutine."
+            self._refuse(
+                statement, "after-end", text, "Move this line before M30, or start a subroutine with }n."
+            )
+
+    def _no_end(self, line: int) -> None:
+        self._ended = True
+        self.found = self.found._replace(main_end=line)
+        if any(problem.code == "m99-outside" for problem in self.problems):
+            return  # M99 was meant to end the program
+        text = "The main program ends without M30 or M02."
+        self.problems.append(refusal(line, 0, "no-end", text, "Write M30 before the subroutines."))
+
+    def finish(self, length: int) -> None:
+        self._open_contour()
+        self._unclosed_loops()
+        if not self._ended:
+            self._no_end(length)
+        elif self._inside is not None and not self._closed_by_job_end(self._inside):
+            text = Message("Subroutine {inside} has no M99.", inside=self._inside)
+            line = self.found.subroutines[self._inside] + 1
+            self.problems.append(
+                refusal(line, 1, "subroutine-open", text, "Add M99 at the end of the subroutine.")
+            )
+
+    def _refuse(self, statement: Statement, code: str, text: str, hint: str) -> None:
+        self.problems.append(refusal(statement.line, 1, code, text, hint))
+
+
+def _ends(statement: Statement) -> bool:
+    """Whether the line ends the job, or was meant to."""
+    return statement.ends_program or _unread(statement, "M0*(?:30|2)(?![0-9])")
+
+
+def _unread(statement: Statement, word: str) -> bool:
+    """Whether a line that cannot be read was meant as this: what follows from it is no second mistake."""
+    return statement.flow == UNREADABLE and re.search(word, statement.text.upper()) is not None
+
+
+def find_structure(statements: Iterable[Statement], length: int) -> tuple[Structure, list[Diagnostic]]:
+    """The structure of a program of ``length`` lines, and what is wrong with it.
+
+    ``statements``: its lines that are more than X and Z, in order.
+    """
+    finder = _Finder(length)
+    calls: list[Statement] = []
+    for statement in statements:
+        finder.take(statement)
+        if statement.calls or (statement.contour_cycle and statement.value("P")):
+            calls.append(statement)
+    finder.finish(length)
+    for statement in calls:
+        number = call_target(statement)
+        if number not in finder.found.subroutines:
+            column, hint = statement.column("P") or 1, "Write the subroutine after M30."
+            text = Message(
+                "Subroutine {number} is called, but the program does not contain }}{number2}.",
+                number=number,
+                number2=number,
+            )
+            finder.problems.append(refusal(statement.line, column, "subroutine-missing", text, hint))
+    return finder.found, finder.problems
+
+
+def call_target(statement: Statement) -> int:
+    """Number of the subroutine that a call names; M95 always means 1."""
+    return 1 if statement.flow == "M95" else int(statement.value("P") or 0)
+
+
+def terminal(statement: Statement) -> str:
+    """The input that a conditional call asks."""
+    return FLOW_CODES[statement.flow].terminal[0] or f"{statement.value('I'):.0f}"
+
+
+def takes_call(statement: Statement, inputs: Callable[[str], bool]) -> bool:
+    """Whether a conditional call is made as the inputs stand."""
+    return inputs(terminal(statement)) == called_when(statement)
+
+
+def called_when(statement: Statement) -> bool:
+    """The state of its input in which a conditional call is made."""
+    return statement.flow == "M95" or statement.value("C") == 1
+
+
+class Flow(ControlFlow[Frame[Structure]]):
+    """The place in a program, with the line before which it has to stop."""
+
+    def __init__(self, structure: Structure) -> None:
+        super().__init__(Frame(structure, 0, structure.main_end))
+        self._stop: int | None = None  # index of a line before which it stops, wherever it comes to it
+
+    def twin(self) -> Flow:
+        """The same place, to go on from there by itself."""
+        twin = copy(self)
+        twin.frames = [replace(each, left=dict(each.left)) for each in self.frames]
+        twin.here = twin.frames[-1]
+        return twin
+
+    def stop(self) -> None:
+        """End the program here: no line is executed any more."""
+        self._stop = None
+        self.end = self.at
+
+    def until(self, line: int) -> None:
+        """Stop before this line, counted from 1, in whatever pass or call it comes next."""
+        self._stop = line - 1
+        self._bound()
+
+    @property
+    def stopped(self) -> bool:
+        """Whether the line of ``until`` is what would be executed next."""
+        return self._stop is not None and self.at == self._stop
+
+    def pass_stop(self) -> None:
+        """Execute the line of ``until`` this time, and stop when it comes again."""
+        self.end = self.here.end
+
+    @property
+    def place(self) -> FlowPlace:
+        """The line, and the loops and calls under way, outermost first: equal where all to come is."""
+        self.here.at = self.at
+        return tuple(FlowLevel(each.at, each.end, tuple(each.left.items())) for each in self.frames)
+
+    def resume(self, line: int, place: FlowPlace) -> None:
+        """Be before this line, counted from 1, with these loops and calls under way."""
+        if place:
+            structure = self.here.routine
+            self.frames = [Frame(structure, run.back, run.end, dict(run.loops)) for run in place]
+            self._go_on()
+        self.at = line - 1
+
+    def _bound(self) -> None:
+        """The run goes to its end, or to where it has to stop before."""
+        stop, end = self._stop, self.here.end
+        self.end = stop if stop is not None and self.at <= stop < end else end
+
+    def passes_left(self, start: int) -> int:
+        """How often the inner loop will go back from its LF; 0 where its LS is not that of this index."""
+        left = self.here.left
+        return left[start] if left and next(reversed(left)) == start else 0
+
+    def passed(self, start: int, times: int) -> None:
+        """The loop with this LS has been gone through so often, each time back to its first line."""
+        self.here.left[start] -= times
+
+    def steer(self, statement: Statement) -> None:
+        """Follow a line of LS, LF or M99."""
+        flow, self.at = statement.flow, statement.line
+        frame, here = self.here, statement.line - 1
+        if flow == "LF":
+            self._loop_end(frame.left, frame.routine.loop_starts.get(here))
+        elif flow == "LS" and here in frame.routine.loop_ends:
+            frame.left[here] = int(statement.value("LS") or 1) - 1
+        elif flow == "M99" and len(self.frames) > 1:
+            self.leave()
+        if self._stop is not None:
+            self._bound()
+
+    def call(self, statement: Statement) -> None:
+        """Go to the subroutine that the line names. Raises ProgramError for calls nested too deep."""
+        number, structure = call_target(statement), self.here.routine
+        self.at = statement.line
+        start = structure.subroutines.get(number)
+        if start is None:
+            return  # told when the program was read
+        if len(self.frames) > DEEPEST_CALL:
+            text = Message(
+                "Subroutine calls are nested more than {deepest_call} levels deep.", deepest_call=DEEPEST_CALL
+            )
+            raise statement.refuse("P", "recursion", text, "A subroutine must not call itself.")
+        self.enter(Frame(structure, start + 1, structure.subroutine_ends.get(number, start) + 1))
+        if self._stop is not None:
+            self._bound()
+
+    def contour(self, statement: Statement) -> range | None:
+        """Indices of the lines that describe the contour of a G75 or G78, which the flow passes by.
+
+        None where there are none; that has been told when the program was read.
+        """
+        structure = self.here.routine
+        if "P" not in statement.words:
+            end = structure.contours.get(statement.line - 1)
+            if end is None:
+                return None
+            self.at = end + 1
+            return range(statement.line, end)
+        number = int(statement.value("P") or 0)
+        start = structure.subroutines.get(number)
+        return None if start is None else range(start + 1, structure.subroutine_ends.get(number, start))
+
+    def _loop_end(self, left: dict[int, int], start: int | None) -> None:
+        """Back to the line behind LS, as often as it says; only from the LF of the inner loop."""
+        if start is None or next(reversed(left), None) != start:
+            return
+        if left[start] > 0:
+            left[start] -= 1
+            self.at = start + 1
+        else:
+            del left[start]

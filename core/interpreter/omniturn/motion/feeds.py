@@ -1,0 +1,217 @@
+"""Feed words: G94 G95, F, G00 G01, and what a feed move needs before it may run."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from core.interpreter.omniturn.codes.code_entry import Limit
+from core.interpreter.omniturn.codes.code_rules import check_when, limit
+from core.interpreter.omniturn.codes.code_table import G_CODES, LETTERS
+from core.interpreter.omniturn.omniturn_state import HIGH_FEED, State
+from core.interpreter.omniturn.omniturn_statement import ReadyLine, Statement
+from core.interpreter.omniturn.setup.spindle_and_dwell import warn_of_short_dwell
+from core.interpreter.shared import units
+from core.interpreter.shared.modal_state import Modal
+from core.language.diagnostics import program_error
+from core.language.omniturn import Word
+from core.message import Message
+
+_LEAST = LETTERS["F"].rules["F"].least * units.MM_PER_INCH  # per minute or per revolution
+_SLOW_MOVE = 30.0  # s; a single move that takes longer was hardly meant
+_TAPPING_LINES = 6  # so soon after the feed the spindle turns back
+_ROUNDING = 1 + 1e-9
+
+
+def feed_words(state: State, statement: Statement, *, first: bool) -> None:
+    """G94, G95, G00, G01 and F of a line. ``first``: it is the program's first line."""
+    modes = {0, 1, 94, 95}.intersection(statement.modal)
+    word = statement.words.get("F") if statement.f_is_feed else None
+    if not modes and word is None:
+        return
+    if 0 in modes and not first:
+        check_when(state, statement, G_CODES[0])
+    if modes:
+        _modes(state, statement, modes, has_feed=word is not None)
+    if word is not None and word.value is not None:
+        _feed(state, statement, word, first=first)
+    if 0 in modes:
+        _rapid(state, statement)
+
+
+def _modes(state: State, statement: Statement, modes: set[int], *, has_feed: bool) -> None:
+    modal = state.modal
+    per_rev, feed = modal.per_rev, modal.feed
+    if 1 in modes and not modes & {94, 95}:
+        if modal.cut_feed is not None:
+            per_rev, feed = modal.cut_per_rev, modal.cut_feed
+        elif not has_feed:
+            state.adopt(state.modal._replace(rapid=False))
+            check_when(state, statement, G_CODES[1])
+    elif modes & {94, 95} and per_rev != (95 in modes):
+        per_rev = 95 in modes
+        feed = modal.cut_feed if 1 in modes and modal.cut_per_rev == per_rev else None
+    if modes - {0}:
+        state.title_rapid = 0
+        state.reported.discard("feed-missing")
+    if modes - {0} and (modal.rapid, modal.per_rev, modal.feed) != (False, per_rev, feed):
+        state.adopt(state.modal._replace(rapid=False, per_rev=per_rev, feed=feed))
+
+
+def _rapid(state: State, statement: Statement) -> None:
+    modal = state.modal
+    if modal.rapid:
+        state.title_rapid = 0 if statement.moves else state.title_rapid
+        return
+    titled = statement.comment is not None and not statement.moves
+    cutting = state.cut and modal.feed is not None
+    state.title_rapid = statement.line if titled and cutting else 0
+    state.adopt(state.modal._replace(rapid=True))
+
+
+def _feed(state: State, statement: Statement, word: Word, *, first: bool) -> None:
+    modal = state.modal
+    feed = state.feed_word(word.value or 0.0)
+    most = limit(state, Limit.FEED_IN_FORCE)
+    state.title_rapid = 0
+    state.reported.discard("feed-missing")
+    least = _LEAST if modal.per_rev else _LEAST / 60
+    within = min(max(feed, least), most)  # after an error too, so that the rest can be judged
+    if first and not modal.per_rev:
+        state.first_feed = within
+        state.adopt(state.modal._replace(feed=within, rapid=False, rapid_rate=within))
+        state.derive()
+    elif first:
+        state.adopt(modal._replace(feed=within, rapid=False))
+    elif modal.rapid or not modal.feed == modal.cut_feed == within or modal.cut_per_rev is not modal.per_rev:
+        state.adopt(modal._replace(feed=within, rapid=False, cut_feed=within, cut_per_rev=modal.per_rev))
+    if not least / _ROUNDING <= feed <= most * _ROUNDING:
+        raise statement.refuse(word, *out_of_range(modal, feed, least, most))
+
+
+def another_feed(state: State, f: float) -> bool:
+    """Takes F of a plain move into force where that is all its line changes: another feed of a cut.
+
+    False, and nothing is changed, where its statement is needed: after a rapid, while a cycle or compensation
+    is described, under G35 and G36, for a feed that is refused or warned of.
+    """
+    modal, feed = state.modal, state.feed_word(f)
+    least = _LEAST if modal.per_rev else _LEAST / 60
+    most = limit(state, Limit.FEED_IN_FORCE)
+    if modal.per_rev:
+        most = min(most, HIGH_FEED)
+    if state.steady_feed is None or modal.coarse or state.contour.active or not least <= feed <= most:
+        return False
+    state.title_rapid = 0
+    state.reported.discard("feed-missing")
+    state.adopt(modal._replace(feed=feed, cut_feed=feed))
+    return True
+
+
+def out_of_range(modal: Modal, feed: float, least: float, most: float) -> tuple[str, str, str]:
+    """Code, sentence and remedy for a feed that is none, as G94 or G95 counts it."""
+    rule = LETTERS["F"].rules["F"]
+    refusal = rule.too_great if feed > most else rule.wrong
+    assert refusal is not None
+    low, high, shown = (modal.feed_text(each, per_rev=modal.per_rev) for each in (least, most, feed))
+    hint = (
+        "Look for a missing decimal point, or for G95 where G94 is intended."
+        if modal.per_rev
+        else refusal.hint
+    )
+    return refusal.code, Message(refusal.text, value=shown, least=low, most=high), hint
+
+
+def warn_of_crash_feed(state: State, statement: Statement, ahead: Sequence[ReadyLine]) -> None:
+    """F003 for F.003: warn of a G95 feed over .05 in/rev, unless the spindle turns back soon (tapping)."""
+    modal, word = state.modal, statement.words.get("F")
+    if word is None or not statement.f_is_feed or not modal.per_rev or modal.coarse or modal.feed is None:
+        return
+    if modal.feed <= HIGH_FEED or _taps(modal.spindle, ahead):
+        return
+    shown = modal.feed_text(modal.feed, per_rev=True)
+    text = "Feed {value} is very high for cutting."
+    hint = "Look for a missing decimal point."
+    state.log.warn(statement.line, word.column, "feed-high", text, hint, value=shown)
+
+
+def _taps(spindle: int, ahead: Sequence[ReadyLine]) -> bool:
+    back = {1: 4, -1: 3}.get(spindle)
+    return back is not None and any(
+        isinstance(step, Statement) and step.m == back for step in ahead[:_TAPPING_LINES]
+    )
+
+
+def check_move(state: State, line: int, x0: float, x: float, length: float) -> None:
+    """Whether a straight move or arc from radius ``x0`` to ``x`` may run at the feed in force.
+
+    Raises ProgramError with code feed-missing, spindle-stopped or feed-over-speed.
+    """
+    if state.turning is not None:
+        warn_of_short_dwell(state)
+    modal = state.modal
+    if modal.rapid:
+        return
+    if modal.feed is None:
+        _once(
+            state,
+            line,
+            "feed-missing",
+            "No feed is programmed for this move.",
+            "Write F on this line or an earlier line.",
+        )
+        return
+    if not (modal.per_rev or (modal.css and state.cut)):
+        _warn_slow(state, line, length, modal.feed)
+        return
+    if modal.css and modal.spindle and not modal.surface_speed:
+        text = "G96 is active, but no surface speed is programmed with S."
+        _once(state, line, "surface-speed-missing", text, "Program S together with G96.")
+        return
+    rpm = max(abs(state.rpm_at(x0)), abs(state.rpm_at(x)))
+    if x0 * x < 0:  # over the centre
+        rpm = max(rpm, abs(state.rpm_at(0.0)))
+    if not rpm:
+        text = (
+            "The spindle is stopped, but the move uses feed per revolution."
+            if modal.per_rev
+            else "The spindle is stopped, but the move uses constant surface speed."
+        )
+        _once(state, line, "spindle-stopped", text, "Start the spindle with M03 or M04, or use G94.")
+        return
+    speed = modal.feed * rpm / 60 if modal.per_rev else modal.feed
+    most = state.setup.limits.max_feed
+    if speed > most * _ROUNDING:
+        limit = modal.feed_text(most, per_rev=False)
+        if modal.per_rev:
+            shown = modal.feed_text(modal.feed, per_rev=True)
+            most_per_rev = modal.feed_text(most * 60 / rpm, per_rev=True)
+            message = Message(
+                "Feed {value} exceeds the maximum of {most_per_rev} at {rpm} rpm ({limit}).",
+                value=shown,
+                most_per_rev=most_per_rev,
+                rpm=f"{rpm:.0f}",
+                limit=limit,
+            )
+        else:
+            shown = modal.feed_text(speed, per_rev=False)
+            message = Message("Feed {value} exceeds the maximum of {limit}.", value=shown, limit=limit)
+        raise program_error(line, 0, "feed-over-speed", message, "Lower F or S.")
+    _warn_slow(state, line, length, speed)
+
+
+def _once(state: State, line: int, code: str, message: str, hint: str) -> None:
+    """Refuse a move; the moves after it that lack the same thing say nothing new."""
+    if code not in state.reported:
+        state.reported.add(code)
+        raise program_error(line, 0, code, message, hint)
+
+
+def _warn_slow(state: State, line: int, length: float, speed: float) -> None:
+    state.slow_length = speed * _SLOW_MOVE
+    if length > state.slow_length:
+        seconds = length / speed
+        modal = state.modal
+        shown = modal.feed_text(modal.feed or 0.0, per_rev=modal.per_rev)
+        text = "This move takes {seconds} s at {value}."
+        hint = "Check F and G94/G95."
+        state.log.warn(line, 0, "feed-low", text, hint, seconds=f"{seconds:.0f}", value=shown)

@@ -1,0 +1,156 @@
+"""Straight moves of many lines at once, as a series: consecutive lines, or passes of a loop.
+
+Nothing is decided here. ``in_force`` says which words change nothing, moves end where ``line_to`` ends, and a
+word off the step or a move that takes long is told by whoever tells it of a single line.
+"""
+
+from __future__ import annotations
+
+from math import hypot
+
+import numpy as np
+
+from core.interpreter.omniturn.flow.loops_and_subroutines import Flow
+from core.interpreter.omniturn.motion.feeds import check_move
+from core.interpreter.omniturn.motion.plain_moves import MOST, NO_CODE, Bools, Columns, Floats, Ints
+from core.interpreter.omniturn.motion.straight_moves import WHOLE, in_force, rounded, step_of
+from core.interpreter.omniturn.omniturn_program import Program
+from core.interpreter.omniturn.omniturn_state import State
+from core.interpreter.shared.elementary_blocks import Block, Series
+
+
+def unchanged(state: State, lines: Columns) -> Bools:
+    """Lines (m,) that hold nothing but X, Z and what is in force already."""
+    answer = lines.known.copy()
+    fed = ~np.isnan(lines.f)
+    for g in (0, 1, NO_CODE):
+        coded = lines.g == g
+        if g != NO_CODE and not in_force(state, g, None):
+            answer &= ~coded | fed
+        for f in set(lines.f[coded & fed].tolist()):  # np.unique would load masked arrays first
+            if not in_force(state, g, f):
+                answer &= ~coded | (lines.f != f)
+    return answer
+
+
+def series(state: State, lines: Columns, line: Ints, texts: tuple[str, ...]) -> Series:
+    """The moves of these lines, which all are ``unchanged``; ``line`` (m,) are their numbers.
+
+    ``state.fast`` must hold: a move under this state has passed all checks.
+    """
+    x, x_finer = _on_step(state, "X", lines.x, lines.fine)
+    z, z_finer = _on_step(state, "Z", lines.z, lines.fine)
+    px, pz = _along(state, x, state.px, state.scale_x), _along(state, z, state.pz, state.scale_z)
+    x1, z1 = px + state.dx, pz + state.dz
+    x0, z0 = np.concatenate([[state.x], x1[:-1]]), np.concatenate([[state.z], z1[:-1]])
+    n = np.arange(state.blocks + 1, state.blocks + 1 + len(line))
+    first = Block(
+        int(n[0]), int(line[0]), state.kind, texts[line[0] - 1], state.x, state.z, state.c,
+        float(x1[0]), float(z1[0]), state.c, state.offset_x, state.offset_z,
+        state.modal, state.feed, state.per_rev, state.rpm,
+    )  # fmt: skip
+    made = Series(first, texts, n, line, x0=x0, z0=z0, x=x1, z=z1)
+    _tell(state, made, lines, x_finer | z_finer)
+    state.px, state.pz, state.x, state.z = float(px[-1]), float(pz[-1]), float(x1[-1]), float(z1[-1])
+    state.blocks += len(line)
+    return made
+
+
+def _along(state: State, word: Floats, at: float, scale: float) -> Floats:
+    """Where the words of one letter (NaN: none) lead from ``at`` on, mm, by G90 or G91."""
+    named = ~np.isnan(word)
+    if not state.absolute:
+        ways = np.where(named, word, 0.0) + 0.0  # -0 as 0
+        way: Floats = np.add.accumulate(np.concatenate([[at], ways * scale]))[1:]
+        return way
+    if named.all():
+        return word * scale
+    last = np.maximum.accumulate(np.where(named, np.arange(len(word)), -1))
+    return np.where(last < 0, at, word[last] * scale)
+
+
+def _on_step(state: State, letter: str, word: Floats, fine: Bools) -> tuple[Floats, Bools]:
+    """Numbers with a fifth decimal on the control's step, and which were not; as ``moves.rounded``."""
+    if not fine.any():
+        return word, fine
+    step = step_of(state, letter)
+    count = word / step
+    whole = np.copysign(np.floor(np.abs(count) + 0.5 + WHOLE), count)
+    finer = fine & (np.abs(count - whole) > np.maximum(WHOLE, np.abs(count) * 1e-12))
+    return np.where(finer, whole * step, word), finer
+
+
+def _tell(state: State, made: Series, lines: Columns, finer: Bools) -> None:
+    """Warn of words off the step and of moves that take long, line by line, while warnings are kept."""
+    dx, dz = made.x - made.x0, made.z - made.z0
+    slow = (np.abs(dx) + np.abs(dz) > state.slow_length) & state.cut
+    for at in np.flatnonzero(finer | slow).tolist():
+        if state.log.silent:
+            return
+        line = int(made.line[at])
+        if finer[at]:
+            x, z = (None if np.isnan(word) else float(word) for word in (lines.x[at], lines.z[at]))
+            rounded(state, line, made.texts[line - 1], x, z)
+        if slow[at]:
+            check_move(state, line, float(made.x0[at]), float(made.x[at]), hypot(dx[at], dz[at]))
+
+
+LEAST = 48
+"""Moves for which a series pays; fewer are made one by one."""
+
+
+class SeriesLookAhead:
+    """Looks from the place in a program ahead, and takes what can be taken at once."""
+
+    def __init__(self, state: State, program: Program, flow: Flow) -> None:
+        self._state, self._flow = state, flow
+        self._ready, self._texts = program.ready, program.source.lines
+        self._loops = program.structure.loop_ends
+        self._without = range(0)  # indices of lines at which no series begins
+
+    def take(self, lines: int, blocks: int) -> tuple[Series, int] | None:
+        """The moves that come next and how many lines they have executed; None where they do not pay.
+
+        ``lines`` and ``blocks`` are how many may yet be executed and made. ``state.fast`` must hold.
+        """
+        at = self._flow.at
+        if at in self._without:
+            return None
+        self._without = range(at, at + LEAST)  # unless one is found, or there is another line before that
+        return (
+            self._passes(at, lines, blocks) if at - 1 in self._loops else self._consecutive(at, lines, blocks)
+        )
+
+    def _consecutive(self, at: int, lines: int, blocks: int) -> tuple[Series, int] | None:
+        """Lines one after the other."""
+        end = min(self._ready.moves_until(at), self._flow.end, at + min(MOST, lines, blocks))
+        columns = self._ready.columns
+        if end - at < LEAST:
+            self._without = range(at, end + 1)
+            return None
+        if not unchanged(self._state, columns.part(slice(at, at + LEAST))).all():
+            return None
+        part = columns.part(slice(at, end))
+        other = np.flatnonzero(~unchanged(self._state, part))
+        count = int(other[0]) if len(other) else end - at
+        self._flow.at, self._without = at + count, range(0)
+        numbers = np.arange(at + 1, at + 1 + count)
+        return series(self._state, part.part(slice(0, count)), numbers, self._texts), count
+
+    def _passes(self, at: int, lines: int, blocks: int) -> tuple[Series, int] | None:
+        """All of a loop but the last pass, as often as there is room."""
+        length = self._loops[at - 1] - at
+        if not length or self._flow.end <= at + length:
+            return None
+        left = self._flow.passes_left(at - 1)
+        times = min(left, lines // (length + 1), (blocks - 1) // length, MOST // length)
+        if times * length < LEAST:
+            return None
+        body = self._ready.columns.part(slice(at, at + length))
+        if not unchanged(self._state, body).all():
+            return None
+        index = np.tile(np.arange(length), times)
+        self._flow.passed(at - 1, times)
+        self._without = range(0)
+        made = series(self._state, body.part(index), at + 1 + index, self._texts)
+        return made, times * (length + 1)

@@ -1,0 +1,211 @@
+"""Straight moves, and what every move shares: what X and Z mean, where it ends, and what it needs."""
+
+from __future__ import annotations
+
+from math import copysign, floor, hypot, isfinite
+
+from core.interpreter.omniturn.motion.feeds import another_feed, check_move
+from core.interpreter.omniturn.omniturn_state import State
+from core.interpreter.omniturn.omniturn_statement import PlainMove, Statement
+from core.interpreter.shared import units
+from core.interpreter.shared.elementary_blocks import Block
+from core.language.diagnostics import program_error
+from core.language.omniturn import Word, lex_line
+from core.message import Message
+
+_COARSE = (0.00005, 0.00025, 0.0005)  # inches of radius, by G36, G35, G35F2
+_DIAMETERS = frozenset({"X"})  # words whose number is a diameter under G72
+WHOLE = 1e-6  # of a step: what a decimal fraction lacks in binary
+
+
+def plain_move(state: State, line: int, text: str, move: PlainMove) -> Block | None:
+    """The block of a line of G00 or G01, X, Z and F; None where more changes than the feed of a cut.
+
+    Raises ProgramError as ``line_to`` does.
+    """
+    x, z, f, g, fine = move
+    same = (g < 0 and f is None) or in_force(state, g, f)
+    if not same and (g == 0 or f is None or not another_feed(state, f)):
+        return None
+    # Four decimals lie on every step but a coarse one.
+    if fine or state.modal.coarse:
+        x, z = rounded(state, line, text, x, z)
+    if x is not None:
+        x *= state.scale_x
+    if z is not None:
+        z *= state.scale_z
+    return line_to(state, line, text, x, z)
+
+
+def in_force(state: State, g: int, f: float | None) -> bool:
+    """Whether G00 or G01 (negative: none) and F (None: none) of a plain move are what is in force already."""
+    if g == 0:
+        return f is None and state.modal.rapid and not state.title_rapid
+    if state.steady_feed is None:
+        return g < 0 and f is None
+    return f is None or state.feed_word(f) == state.steady_feed
+
+
+def statement_move(state: State, statement: Statement) -> Block:
+    """The straight move of a line, with every check. Raises ProgramError."""
+    x, z = on_step(state, statement, "X"), on_step(state, statement, "Z")
+    state.fast = False
+    return line_to(state, statement.line, statement.part("move"), x, z)
+
+
+def line_to(state: State, line: int, text: str, x: float | None, z: float | None) -> Block:
+    """A straight move to words X and Z in mm, None where there is none.
+
+    Where ``state.fast`` holds, a move under this state has passed all checks, and none is made but for its
+    length. Raises ProgramError.
+    """
+    x0, z0 = state.x, state.z
+    if state.absolute:  # as ``go``, without the call
+        state.px = state.px if x is None else x
+        state.pz = state.pz if z is None else z
+    else:
+        state.px += x or 0.0
+        state.pz += z or 0.0
+    state.x = x1 = state.px + state.dx
+    state.z = z1 = state.pz + state.dz
+    if state.fast:
+        if state.cut and abs(x1 - x0) + abs(z1 - z0) > state.slow_length:
+            check_move(state, line, x0, x1, hypot(x1 - x0, z1 - z0))
+        rpm, surface_speed = state.rpm, None
+    else:
+        check_tool(state, line, x, z)
+        check_move(state, line, x0, x1, hypot(x1 - x0, z1 - z0))
+        warn_of_title_rapid(state, line)
+        modal = state.modal
+        rpm, surface_speed = state.rpm_at(x1), modal.css_speed
+        # G95's limit depends on a speed that only constant surface speed changes from move to move.
+        state.fast = not modal.css and not modal.coarse and not state.reported and not state.contour.active
+    state.blocks = n = state.blocks + 1
+    c = state.c
+    return Block(
+        n, line, state.kind, text, x0, z0, c, x1, z1, c, state.offset_x, state.offset_z,
+        state.modal, state.feed, state.per_rev, rpm, surface_speed,
+    )  # fmt: skip
+
+
+def go(state: State, x: float | None, z: float | None) -> None:
+    """Move the position to words X and Z (mm), by G90 or G91, with the secondary offset in it."""
+    if state.absolute:
+        state.px = state.px if x is None else x
+        state.pz = state.pz if z is None else z
+    else:
+        state.px += x or 0.0
+        state.pz += z or 0.0
+    state.x, state.z = state.px + state.dx, state.pz + state.dz
+
+
+def check_tool(state: State, line: int, x: float | None, z: float | None) -> None:
+    """The first motion after a T must say both coordinates. Raises ProgramError (tool-first-move)."""
+    tool_line, state.tool_line = state.tool_line, 0
+    if tool_line and (x is None or z is None):
+        where = Message("the T word on line {tool_line}", tool_line=tool_line) if tool_line > 0 else "the T"
+        text = Message(
+            "The first move after {place} has no {ending}.", place=where, ending="X" if x is None else "Z"
+        )
+        raise program_error(
+            line, 0, "tool-first-move", text, "Write both X and Z, or write G92 before this move."
+        )
+
+
+def warn_of_title_rapid(state: State, line: int) -> None:
+    """``G00 (TITLE)`` switched the rapid on, and here a move follows that would have cut."""
+    if state.title_rapid and state.modal.rapid:
+        text = "This move is a rapid because of the G00 next to the comment on line {title_rapid}."
+        hint = "Write G01 if the move is meant to cut."
+        state.log.warn(line, 0, "title-rapid", text, hint, title_rapid=state.title_rapid)
+    state.title_rapid = 0
+
+
+def on_step(state: State, statement: Statement, letter: str) -> float | None:
+    """A length word in mm, X as a radius by G72/G73, rounded to the control's step with a warning."""
+    word = statement.words.get(letter)
+    if word is None or word.value is None or not isfinite(word.value):
+        return None
+    value, finer = _nearest_step(state, letter, word.value)
+    if finer:
+        _warn_of_finer(state, statement.line, word, value)
+    return value * (state.scale_x if letter in _DIAMETERS else state.scale_z)
+
+
+def mill_step(state: State, line: int, word: Word) -> float:
+    """A length of plane switching in mm, as written: never halved, rounded to the control's step."""
+    step = units.METRIC_STEP if state.modal.metric else _COARSE[state.modal.coarse]
+    value, finer = _nearest(step, word.value or 0.0)
+    if finer:
+        text = "{word} is finer than the resolution; {value} is used."
+        hint = "Round the number."
+        state.log.warn(line, word.column, "finer-than-step", text, hint, word=word.text, value=f"{value:.5f}")
+    return value * state.scale_z
+
+
+def rounded(
+    state: State, line: int, text: str, x: float | None, z: float | None
+) -> tuple[float | None, float | None]:
+    """X and Z of a line on the control's step, with a warning for each word that was not."""
+    new_x, x_finer = (None, False) if x is None else _nearest_step(state, "X", x)
+    new_z, z_finer = (None, False) if z is None else _nearest_step(state, "Z", z)
+    if x_finer or z_finer:
+        for word in lex_line(line, text).words:
+            if word.letter not in {"X", "Z"}:
+                continue
+            value, finer = _nearest_step(state, word.letter, word.value or 0.0)
+            if finer:
+                _warn_of_finer(state, line, word, value)
+    return new_x, new_z
+
+
+def step_of(state: State, letter: str) -> float:
+    """The control's step in the unit of the program's numbers."""
+    modal = state.modal
+    if modal.metric:
+        return units.METRIC_STEP
+    return _COARSE[modal.coarse] * (2 if modal.diameter and letter in _DIAMETERS else 1)
+
+
+def _nearest_step(state: State, letter: str, value: float) -> tuple[float, bool]:
+    """The number on the control's step, and whether it was not there before."""
+    return _nearest(step_of(state, letter), value)
+
+
+def _nearest(step: float, value: float) -> tuple[float, bool]:
+    count = value / step
+    whole = copysign(floor(abs(count) + 0.5 + WHOLE), count)  # half a step goes away from zero
+    if abs(count - whole) <= max(WHOLE, abs(count) * 1e-12):
+        return value, False
+    return whole * step, True
+
+
+def _warn_of_finer(state: State, line: int, word: Word, value: float) -> None:
+    name = "mm" if state.modal.metric else "in"
+    step = f"{step_of(state, word.letter):.5f}".rstrip("0")
+    state.log.warn(
+        line,
+        word.column,
+        "finer-than-step",
+        "{word} is finer than the resolution of {step} {name}; {value} is used.",
+        "Round the number.",
+        word=word.text,
+        step=step,
+        name=name,
+        value=f"{value:.5f}",
+    )
+
+
+def geometry_modes(state: State, statement: Statement) -> None:
+    """Distance, units and X words of a line; the other groups belong to feed and spindle."""
+    if not statement.modal:
+        return
+    modal = state.modal
+    for code in statement.modal:
+        if code in {90, 91}:
+            modal = modal._replace(absolute=code == 90)
+        elif code in {70, 71}:
+            modal = modal._replace(metric=code == 71)
+        elif code in {72, 73}:
+            modal = modal._replace(diameter=code == 72)
+    state.adopt(modal)

@@ -1,0 +1,1 @@
+"""Tools, offsets, spindle, dwells and M codes of OmniTurn."""

@@ -1,0 +1,1 @@
+"""Standard cycles of SINUMERIK: turning, grooves, undercuts, threads, drilling and tapping."""

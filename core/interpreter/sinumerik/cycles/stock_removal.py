@@ -1,0 +1,264 @@
+"""CYCLE95: a contour turned out of the stock, along Z or X, outside or inside, roughed, finished or both.
+
+Passes, runs along the contour and their ways are those of ``contour_passes``; the cycle starts beside the
+contour by itself, from wherever the tool stands. It is reckoned for the nose's centre, so that tapers and
+arcs have their size; what comes out are the ways of the tip.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+from typing import NamedTuple
+
+from core.geometry.contour_offset import Area, TrimError
+from core.geometry.lines_and_arcs import Arc, Element, Line, Point, shifted
+from core.interpreter.shared.contour_passes import (
+    MOST_ELEMENTS,
+    MOST_LOOKS,
+    ContourView,
+    Move,
+    Rougher,
+    StartNearError,
+    view_from,
+)
+from core.interpreter.shared.elementary_blocks import Block
+from core.interpreter.sinumerik.cycles.cycle_contour import WRONG_CONTOUR
+from core.interpreter.sinumerik.cycles.cycle_parameters import MACHINING_TYPE, RETRACT, Cycle, Step, dwell
+from core.tool_edges import TIP_DIRECTIONS
+
+NO_INFEED = 61610
+_SAME = 1e-6  # mm
+_ROUNDING = 200  # VARI from here on leaves the steps; the run along the contour takes them here
+
+
+class Kind(NamedTuple):
+    """What VARI says: ``across`` along X instead of Z, ``inside``, and which of roughing and finishing."""
+
+    across: bool
+    inside: bool
+    roughs: bool
+    finishes: bool
+
+
+def kind_of(cycle: Cycle) -> Kind:
+    """VARI 1 to 12, or 201 to 212. Raises ProgramError."""
+    value = cycle.number("VARI", -1.0)
+    number = round(value) % _ROUNDING
+    if value != round(value) or value < 1 or number not in range(1, 13) or value > _ROUNDING + 12:
+        wrong = "{name} is {value}; valid types are 1 to 12"
+        missing = "{name} is missing; valid types are 1 to 12"
+        hint = "Enter 1 for roughing, 5 for finishing or 9 for both, for external machining along Z."
+        text = wrong if cycle.given("VARI") else missing
+        raise cycle.wrong("VARI", text, hint, MACHINING_TYPE, value=value)
+    rest = (number - 1) % 4
+    return Kind(rest % 2 == 1, rest >= 2, number <= 4 or number >= 9, number >= 5)
+
+
+def stock_removal(cycle: Cycle, contour: list[Element]) -> Iterator[Block]:
+    """The whole cycle. Raises ProgramError before the first block."""
+    kind = kind_of(cycle)
+    text = "{name} refers to a contour without lines or arcs"
+    cycle.check(contour, "NPP", text, "Write the points of the contour.", WRONG_CONTOUR)
+    if len(contour) > MOST_ELEMENTS:
+        text = "{name} has {contour_count} elements; the maximum is {most_elements}"
+        hint = "Split the contour into smaller parts."
+        raise cycle.wrong(
+            "NPP", text, hint, contour_count=f"{len(contour):,}", most_elements=f"{MOST_ELEMENTS:,}"
+        )
+    plan = _Plan(cycle, kind, contour)
+    steps = plan.approach()
+    if kind.roughs:
+        steps += plan.rough()
+    if kind.finishes:
+        steps += plan.finish()
+    return cycle.blocks(steps)
+
+
+class _Plan:
+    """In depth and way: X and Z, or for passes along X the other way round."""
+
+    def __init__(self, cycle: Cycle, kind: Kind, contour: list[Element]) -> None:
+        self._cycle, self._kind = cycle, kind
+        self._off = cycle.size("_VRT") or RETRACT
+        self._left = cycle.size("FAL")
+        self._allow = cycle.size("FALX"), cycle.size("FALZ")
+        if kind.across:
+            contour = [_swapped(each) for each in contour]
+            self._allow = self._allow[1], self._allow[0]
+        self._contour = contour
+        self._signs = self._free_side()
+        self._nose, self._tip = _nose_of(cycle)
+        self._contour = self._lengthened()
+        self._start = self._start_point()
+
+    def _free_side(self) -> tuple[float, float]:
+        """+1 or -1 for depth and way: from the material out of it, at the contour's end of the free side."""
+        if self._kind.across:  # the face is that on the right
+            return 1.0, (-1.0 if self._kind.inside else 1.0)
+        first, last = self._contour[0].start, self._contour[-1].end
+        out = -1.0 if self._kind.inside else 1.0
+        deep, other = (first, last) if out * first[0] <= out * last[0] else (last, first)
+        return out, (1.0 if deep[1] >= other[1] else -1.0)
+
+    def _lengthened(self) -> list[Element]:
+        """The contour, longer by the nose radius at an end that leads straight out: so the tip gets there."""
+        *_, last = contour = list(self._contour)
+        contour[-1] = self._straight_out(last)
+        contour[0] = self._straight_out(contour[0].reversed()).reversed()
+        return contour
+
+    def _straight_out(self, element: Element) -> Element:
+        (x0, z0), (x, z) = element.start, element.end
+        if not isinstance(element, Line) or abs(z - z0) > _SAME or (x - x0) * self._signs[0] <= 0.0:
+            return element
+        return Line(element.start, (x + self._signs[0] * self._nose, z))
+
+    def _start_point(self) -> Point:
+        """Beside both ends: at the contour's outermost depth, and off its front by allowance and _VRT."""
+        out, front = self._signs
+        boxes = [each.box for each in self._contour]
+        depth = max(b[1] for b in boxes) if out > 0 else min(b[0] for b in boxes)
+        way = max(b[3] for b in boxes) if front > 0 else min(b[2] for b in boxes)
+        (allow_depth, allow_way), left = self._allow, self._left + self._nose
+        return depth + out * (allow_depth + left), way + front * (allow_way + left + self._off)
+
+    def _area(self, contour: Sequence[Element], left: float) -> tuple[Area, ContourView]:
+        ends = contour[0].start, contour[-1].end
+        view = view_from(self._start, *ends)
+        try:
+            return Area(view.from_start(contour), left + self._nose), view
+        except TrimError:
+            text = "with allowance {name}, no continuous path along the contour is possible"
+            hint = "Reduce FAL, or widen the narrow part of the contour."
+            raise self._cycle.wrong("FAL", text, hint, 61606) from None
+
+    def approach(self) -> list[Step]:
+        """To the start point: first off the part in depth, then beside it."""
+        out, _ = self._signs
+        depth, way = self._start
+        x, z = self._cycle.x - self._tip[0], self._cycle.z - self._tip[1]
+        here = (z, x) if self._kind.across else (x, z)
+        clear = depth + out * self._off
+        if out * here[0] > out * clear:
+            clear = here[0]
+        return [self._step(Move(clear, here[1], 1.0)), self._step(Move(clear, way, 1.0)),
+                self._step(Move(depth, way, 1.0))]  # fmt: skip
+
+    def rough(self) -> list[Step]:
+        """Equal passes of MID at most, and the run along the contour at its allowance."""
+        cycle = self._cycle
+        infeed = cycle.size("MID")
+        text = "{name} is missing, so the depth of a pass is not defined"
+        cycle.check(infeed, "MID", text, "Write MID.", NO_INFEED)
+        contour, left = self._with_allowance()
+        area, view = self._area(contour, left)
+        text = "{name} specifies a contour with no material to cut"
+        cycle.check(area.deepest > 0, "NPP", text, "Check the direction of the contour.", WRONG_CONTOUR)
+        text = "{name} would need {count} passes, which is too many"
+        count = cycle.pass_count(area.deepest, infeed, "MID", text, most=MOST_LOOKS // len(contour))
+        rougher = Rougher(area, 1.0, self._off)
+        rougher.rough(count)
+        if rougher.plunged and not cycle.number("FF2") and cycle.state.modal.feed is None:
+            text = "{name} is missing, but the contour has a relief cut"
+            raise cycle.wrong("FF2", text, "Write FF2.", 61003)
+        moves = self._run(rougher, view)
+        return self._fed(moves, cycle.feed("FF1"), cycle.feed("FF2"), breaks=True)
+
+    def finish(self) -> list[Step]:
+        """Along the contour itself."""
+        area, view = self._area(self._contour, 0.0)
+        return self._fed(self._run(Rougher(area, 1.0, self._off), view), self._cycle.feed("FF3"), None)
+
+    def _run(self, rougher: Rougher, view: ContourView) -> list[Move]:
+        try:
+            rougher.finish(backwards=view.backwards)
+        except StartNearError:
+            text = "{name} specifies a contour that the tool cannot approach or leave with enough clearance"
+            hint = "End the contour at a point where the tool can leave it."
+            raise self._cycle.wrong("NPP", text, hint, 61607) from None
+        return [view.placed(move) for move in rougher.moves]
+
+    def _with_allowance(self) -> tuple[list[Element], float]:
+        """The contour moved off by FALX and FALZ; where it also falls, the larger of them all along it."""
+        depth, way = self._allow
+        out, front = self._signs
+        if not depth and not way:
+            return self._contour, self._left
+        flat = [
+            (point[0] * out, -point[1] * front) for each in self._contour for point in (each.start, each.end)
+        ]
+        rises = all(b[0] >= a[0] - _SAME for a, b in pairwise(flat))
+        falls = all(b[0] <= a[0] + _SAME for a, b in pairwise(flat))
+        if (rises or falls) and not self._left:
+            return [shifted(each, out * depth, front * way) for each in self._contour], 0.0
+        return self._contour, max(depth, way, self._left)
+
+    def _fed(
+        self, moves: Sequence[Move], feed: float | None, plunge: float | None, *, breaks: bool = False
+    ) -> list[Step]:
+        cycle = self._cycle
+        if feed is None:
+            name = "FF1" if breaks else "FF3"
+            raise cycle.wrong(name, "{name} is missing, and no F is active", "Write {name}.", 61003)
+        steps: list[Step] = []
+        at = self._start
+        for move in moves:
+            # Into a relief the tool goes in depth alone, off the front of the area.
+            deeper = self._signs[0] * (at[0] - move.x) > _SAME and abs(move.z - at[1]) < _SAME
+            into = deeper and abs(at[1] - self._start[1]) > _SAME
+            speed = plunge if into and plunge is not None else feed
+            steps += self._broken(at, move, speed) if breaks else [self._step(move, speed)]
+            at = move.x, move.z
+        return steps
+
+    def _broken(self, at: Point, move: Move, feed: float) -> list[Step]:
+        """A cut along the way with a dwell DT after each DAM, so that chips break."""
+        length, seconds = self._cycle.size("DAM"), self._cycle.number("DT")
+        way = move.z - at[1]
+        if not length or move.rapid is not None or move.centre is not None or abs(way) <= length + _SAME:
+            return [self._step(move, feed)]
+        steps: list[Step] = []
+        text = "{name} would interrupt a pass {count} times, which is too many"
+        count = self._cycle.pass_count(abs(way), length, "DAM", text, "Correct the value.")
+        for k in range(1, count + 1):
+            share = min(k * length / abs(way), 1.0)
+            between = Move(at[0] + (move.x - at[0]) * share, at[1] + way * share)
+            steps.append(self._step(between, feed))
+            if k < count:
+                steps += dwell(seconds)
+        return steps
+
+    def _step(self, move: Move, feed: float | None = None) -> Step:
+        """A motion of the nose's centre in depth and way as one of the tip in X and Z."""
+        dx, dz = self._tip
+        at, centre, clockwise = (move.x, move.z), move.centre, move.clockwise
+        if self._kind.across:
+            at, centre = (move.z, move.x), None if centre is None else (centre[1], centre[0])
+            clockwise = centre is not None and not clockwise
+        about = None if centre is None else (centre[0] + dx, centre[1] + dz)
+        return Step(at[0] + dx, at[1] + dz, None if move.rapid is not None else feed, about, clockwise)
+
+
+def _nose_of(cycle: Cycle) -> tuple[float, Point]:
+    """Nose radius, and where the tip lies from the nose's centre, mm: X, Z.
+
+    Without a tip quadrant nobody knows where the centre is: the tip runs along the contour, which is told.
+    """
+    edge = cycle.state.edge
+    if not cycle.state.modal.edge or not edge.nose_radius:
+        return 0.0, (0.0, 0.0)
+    if not edge.quadrant:
+        text = "the tool has no tip quadrant, so {call} ignores the nose radius on tapers and arcs."
+        hint = "Enter the tip quadrant on the TOOL OFFSETS page (F8)."
+        cycle.warn("comp-no-quadrant", text, hint)
+        return 0.0, (0.0, 0.0)
+    z, x = TIP_DIRECTIONS[edge.quadrant]
+    return edge.nose_radius, (x * edge.nose_radius, z * edge.nose_radius)
+
+
+def _swapped(element: Element) -> Element:
+    (x0, z0), (x1, z1) = element.start, element.end
+    if isinstance(element, Line):
+        return Line((z0, x0), (z1, x1))
+    return Arc((z0, x0), (z1, x1), (element.centre[1], element.centre[0]), not element.clockwise)

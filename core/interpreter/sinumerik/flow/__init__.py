@@ -1,0 +1,1 @@
+"""Subprograms, jumps, variables and block search of SINUMERIK."""

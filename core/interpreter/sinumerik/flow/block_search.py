@@ -1,0 +1,131 @@
+"""Where a SINUMERIK pass begins that is no start of a program: MDI (MDA), block search with calculation.
+
+All that is in force goes over from the pass that was kept; where the slides stand counts as it is now.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from core.interpreter.shared.checkpoint import Begin, Checkpoint, CTurn, KeptPass, StateLine
+from core.interpreter.shared.job_setup import ToolOffset
+from core.interpreter.shared.modal_state import Modal
+from core.interpreter.sinumerik.flow.subprogram_flow import Flow
+from core.interpreter.sinumerik.motion.chamfers_and_rounds import Corners
+from core.interpreter.sinumerik.sinumerik_state import NO_OFFSET, State, motion_name
+from core.language.diagnostics import Diagnostic, refusal
+from core.language.sinumerik.program_jumps import Steering
+from core.language.sinumerik.sinumerik_lexer import lex_line
+from core.language.sinumerik.sinumerik_words import CORNERS, OWN, Line
+from core.language.source import Source
+from core.message import Message
+from core.tool_edges import edge_name
+
+
+class Parts(NamedTuple):
+    """What an interpreter consists of; ``taken`` is the block that it has read and not yet executed."""
+
+    state: State
+    corners: Corners
+    flow: Flow
+    taken: Line | None = None
+
+
+def checkpoint_of(parts: Parts, shared: tuple[object, ...], blocks: int) -> Checkpoint:
+    """All that the block that comes next inherits, to go on from there in another pass."""
+    state, modal = parts.state, parts.state.modal
+    x, z, c = state.x - modal.offset_x, state.z - modal.offset_z, state.c - modal.offset_c
+    kept = KeptPass(parts, shared, tuple(_lines(state)))
+    return Checkpoint(modal, x, z, c, x, z, blocks=blocks, kept=kept)
+
+
+def take_up(state: State, begin: Begin) -> None:
+    """Stand where the slides are now, with the offsets and the functions of the machine of now."""
+    was, now = state.modal, begin.checkpoint.modal
+    state.x, state.z, state.c = state.setup.start
+    if not begin.single:
+        state.x, state.z = begin.checkpoint.machine
+        state.c = next((step.c for step in begin.approach if isinstance(step, CTurn)), state.c)
+    state.modal = was._replace(
+        tool=now.tool,
+        edge=now.edge,
+        spindle=now.spindle,
+        rpm=now.rpm,
+        coolant=now.coolant,
+        collet_closed=now.collet_closed,
+        outputs=now.outputs,
+        comment=now.comment,
+        c_locked=now.c_locked,
+        oriented=now.oriented,
+    )
+    state.settable = state.setup.zero.get(was.settable, NO_OFFSET)
+    state.edge = state.setup.tools.get(now.tool, ToolOffset()) if now.tool else ToolOffset()
+    state.derive_offsets()
+
+
+def _lines(state: State) -> Iterator[StateLine]:
+    """What is in force, one line a group of functions."""
+    modal = state.modal
+    yield StateLine("motion", motion_name(state.motion))
+    yield StateLine("settable", f"G{modal.settable}" if modal.settable else "G500")
+    yield StateLine("trans", _trans(modal))
+    plane = state.transformation
+    yield StateLine("transformation", "" if plane is None else plane.name)
+    yield StateLine("units", "G71 MM" if modal.metric else "G70 INCH")
+    yield StateLine("x words", "DIAMON Ø" if modal.diameter else "DIAMOF R")
+    yield StateLine("distance", "G90" if modal.absolute else "G91")
+    yield StateLine("tool", edge_name(modal.tool) if modal.tool else "")
+    yield StateLine("speed", f"G96 S{modal.surface_speed * 0.06:g}" if modal.css else f"G97 S{modal.rpm:g}")
+    held = f"SPOS={modal.oriented:g}" if modal.oriented is not None else "M5"
+    yield StateLine("spindle", {1: "M3", 0: held, -1: "M4"}[modal.spindle])
+    feed = "" if modal.feed is None else f" F{modal.feed if modal.per_rev else modal.feed * 60.0:g}"
+    yield StateLine("feed", f"{'G95' if modal.per_rev else 'G94'}{feed}")
+    yield StateLine("coolant", "M8" if modal.coolant else "M9")
+    yield StateLine("outputs", " ".join(sorted(name.upper() for name in modal.outputs)))
+
+
+def _trans(modal: Modal) -> str:
+    if not modal.zero_x and not modal.zero_z:
+        return ""
+    return f"X{modal.zero_x:+.3f}  Z{modal.zero_z:+.3f}"
+
+
+_HINT = "Use this command in a program."
+_ALONE = frozenset({Steering.DEFINE, Steering.MESSAGE})
+
+
+def needs_others(source: Source, third_axis: str = OWN) -> Diagnostic | None:
+    """Why the block means nothing on its own, with its column; None where it does."""
+    line = lex_line(1, source.lines[0] if source.lines else "", third_axis)
+    if line.errors:
+        return None  # told when it is executed
+    if line.skip is not None:
+        return _refuse(1, "/ skips a program block and has no meaning in MDI")
+    if line.call or line.modal_call:
+        return _refuse(
+            line.call_column,
+            Message("{call} calls another program and cannot be used in MDI", call=line.call),
+        )
+    if line.jump is not None and line.jump.steering not in _ALONE:
+        return _refuse(
+            line.jump.column,
+            Message(
+                "{steering} jumps to another block and cannot be used in MDI", steering=line.jump.steering
+            ),
+        )
+    return _words(line)
+
+
+def _words(line: Line) -> Diagnostic | None:
+    """A word that means something with the blocks behind it alone."""
+    for word in line.words:
+        if word.name in CORNERS:
+            return _refuse(
+                word.column, Message("{word} is allowed only between two blocks of a contour", word=word.text)
+            )
+    return None
+
+
+def _refuse(column: int, what: str) -> Diagnostic:
+    return refusal(1, column, "not-alone-mdi", Message("{what}.", what=what), _HINT)

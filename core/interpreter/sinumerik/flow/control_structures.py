@@ -1,0 +1,256 @@
+"""Where a SINUMERIK program goes on behind GOTO, IF, CASE, WHILE, FOR, LOOP, REPEAT; DEF and MSG."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from math import prod
+
+from core.interpreter.sinumerik.flow.variables import LARGEST_ARRAY, MOST_DIMENSIONS
+from core.interpreter.sinumerik.sinumerik_state import State
+from core.language.formulas import Formula, Parameter
+from core.language.sinumerik.program_jumps import Defined, Jump, Steering
+from core.language.sinumerik.sinumerik_alarms import FIRST_INDEX, NESTING, NO_TARGET, NOT_DEFINED
+from core.language.sinumerik.sinumerik_lexer import lex_line
+from core.language.sinumerik.sinumerik_words import OWN, Line
+from core.language.source import Source
+from core.message import Message
+
+_ENDS = {
+    Steering.END_IF: Steering.IF,
+    Steering.END_WHILE: Steering.WHILE,
+    Steering.END_FOR: Steering.FOR,
+    Steering.END_LOOP: Steering.LOOP,
+    Steering.UNTIL: Steering.REPEAT,
+}
+_BEGINS = frozenset(_ENDS.values())
+_ASKED = frozenset({Steering.IF, Steering.WHILE, Steering.UNTIL})
+_BACK = frozenset({Steering.END_WHILE, Steering.END_LOOP})
+_SAME = 1e-12  # numbers of CASE that differ by less are equal
+_GOTO = frozenset({Steering.GOTO, Steering.GOTO_BACK, Steering.GOTO_FORWARD, Steering.GOTO_START})
+
+
+@dataclass(slots=True)
+class Routine:
+    """One program of one file. ``shown`` names it in findings where it is of another file."""
+
+    source: Source
+    lines: range
+    shown: str = ""
+    third_axis: str = OWN  # its name at this machine
+    repeats: bool = False  # lines of it may run many times, and are kept once they are read
+    _read: dict[int, Line] = field(default_factory=dict)
+    _labelled: dict[str, tuple[int, ...]] = field(default_factory=dict)
+    _partners: dict[int, tuple[int, ...]] | None = None
+
+    def partners(self) -> dict[int, tuple[int, ...]]:
+        """The lines of each IF, WHILE, FOR, LOOP and REPEAT that belong together, by each of their indices.
+
+        Raises ProgramError where one has no end, or an end no beginning.
+        """
+        if self._partners is None:
+            self._partners = belonging(self.line(at) for at in self.lines)
+        return self._partners
+
+    def line(self, at: int) -> Line:
+        """The line with this index."""
+        line = self._read.get(at)
+        if line is None:
+            line = lex_line(at + 1, self.source.lines[at], self.third_axis)
+            if self.repeats:
+                self._read[at] = line
+        return line
+
+    def labelled(self, label: str) -> tuple[int, ...]:
+        """Indices, rising, of the lines with this label or block number; looked for once."""
+        if label not in self._labelled:
+            self._labelled[label] = tuple(at for at in self.lines if self._bears(at, label))
+        return self._labelled[label]
+
+    def _bears(self, at: int, label: str) -> bool:
+        """Only a line that holds the letters of the label is worth being read for it."""
+        if label not in self.source.lines[at].upper():
+            return False
+        line = self.line(at)
+        return label in {line.label, line.block}
+
+    def heading(self) -> Jump | None:
+        """Its PROC, which stands before everything else; None without one."""
+        first = self.first()
+        jump = None if first is None else first.jump
+        return jump if jump is not None and jump.steering is Steering.PROCEDURE else None
+
+    def first(self) -> Line | None:
+        """Its first line that holds more than a comment."""
+        lines = (self.line(at) for at in self.lines)
+        return next((line for line in lines if line.executable), None)
+
+
+def belonging(lines: Iterable[Line]) -> dict[int, tuple[int, ...]]:
+    """Indices of the lines of each structure, by each of them. Raises ProgramError where one is not whole."""
+    found: dict[int, tuple[int, ...]] = {}
+    opened: list[tuple[Line, Jump, list[int]]] = []
+    for line in lines:
+        jump = line.jump
+        if jump is None:
+            continue
+        at = line.number - 1
+        if jump.steering in _BEGINS and not jump.target:
+            opened.append((line, jump, [at]))
+        elif jump.steering is Steering.ELSE and opened and opened[-1][1].steering is Steering.IF:
+            opened[-1][2].append(at)
+        elif jump.steering is Steering.ELSE or jump.steering in _ENDS:
+            if not opened or opened[-1][1].steering is not _ENDS.get(jump.steering):
+                text = Message("{steering} has no matching start.", steering=jump.steering)
+                raise line.refuse(jump.column, NESTING, text, "Check the start of the control structure.")
+            places = (*opened.pop()[2], at)
+            found.update(dict.fromkeys(places, places))
+    if opened:
+        line, jump, _ = opened[-1]
+        text = Message("{steering} has no matching end.", steering=jump.steering)
+        raise line.refuse(jump.column, NESTING, text, "Add the matching end statement.")
+    return found
+
+
+def follow(line: Line, jump: Jump, state: State, program: Routine, at: int) -> int | None:
+    """Index of the line to go on with; None where it is the next one. Raises ProgramError."""
+    steering = jump.steering
+    if steering in _GOTO:
+        if jump.condition is None or _worth(line, jump, state, jump.condition):
+            return _target(line, jump, program, at)
+        return None if jump.other is None else follow(line, jump.other, state, program, at)
+    if steering is Steering.CASE:
+        return _case(line, jump, state, program, at)
+    if steering is Steering.DEFINE:
+        _define(line, jump, state)
+    elif steering is Steering.MESSAGE:
+        state.adopt(state.modal._replace(comment=_message(line, jump, state)))
+    elif steering is Steering.ALARM:
+        number = _worth(line, jump, state, jump.condition)
+        text = Message("the program itself triggers alarm {number}.", number=f"{number:g}")
+        raise line.refuse(jump.column, "program-alarm", text, "Check the preceding blocks for the cause.")
+    elif steering in _BEGINS or steering in _ENDS or steering is Steering.ELSE:
+        return _structure(line, jump, state, program, program.partners()[at])
+    return None
+
+
+def _structure(line: Line, jump: Jump, state: State, program: Routine, places: tuple[int, ...]) -> int | None:
+    """Index of the line to go on with at a line of IF, WHILE, FOR, LOOP or REPEAT, which stand at ``places``.
+
+    None where it is the next one. Raises ProgramError.
+    """
+    first, last, steering = places[0], places[-1], jump.steering
+    if steering is Steering.END_FOR:
+        begin = program.line(first).jump
+        assert begin is not None
+        value = state.variables.number(begin.name) + 1.0
+        return first + 1 if _counts(line, jump, begin, state, value) else None
+    if steering is Steering.FOR:
+        value = _worth(line, jump, state, jump.first)
+        return None if _counts(line, jump, jump, state, value) else last + 1
+    if steering in _ASKED:
+        elsewhere = first if steering is Steering.UNTIL else places[1]
+        return None if _worth(line, jump, state, jump.condition) else elsewhere + 1
+    if steering is Steering.ELSE:
+        return last + 1
+    return first if steering in _BACK else None
+
+
+def _counts(line: Line, jump: Jump, begin: Jump, state: State, value: float) -> bool:
+    """Give the variable of FOR its value; whether that is not over the end. Raises ProgramError."""
+    if not state.variables.keep(begin.name, value):
+        text = Message("the name {jump} is not defined with DEF.", jump=begin.name)
+        hint = Message("Write DEF INT {jump} before this block.", jump=begin.name)
+        raise line.refuse(begin.column, NOT_DEFINED, text, hint)
+    return value <= _worth(line, jump, state, begin.last)
+
+
+def _case(line: Line, jump: Jump, state: State, program: Routine, at: int) -> int | None:
+    """The jump of the first branch with the value of CASE, or of DEFAULT."""
+    value = _worth(line, jump, state, jump.condition)
+    for formula, steering, target in jump.choices:
+        if formula is None or abs(_worth(line, jump, state, formula) - value) <= _SAME:
+            return _target(line, jump._replace(steering=steering, target=target), program, at)
+    return None
+
+
+def _define(line: Line, jump: Jump, state: State) -> None:
+    """DEF: numbers, arrays, and texts that MSG shows."""
+    scope = state.variables.scope
+    for each in jump.defined:
+        if each.kind == "STRING":
+            scope.texts[each.name] = each.text
+            continue
+        first = 0.0 if each.formula is None else _worth(line, jump, state, each.formula)
+        scope.define(each.name, first, _sizes(line, jump, state, each))
+        if each.values is not None:
+            left = state.variables.fill(each.name, scope.elements(each.name)[0], each.values,
+                                        lambda asked: _worth(line, jump, state, asked))  # fmt: skip
+            if left:
+                told = Message(
+                    "array {item} needs {left} more elements for this list.", item=each.name, left=left
+                )
+                raise line.refuse(
+                    jump.column, "array-values", told, "Shorten the list, or enlarge the array."
+                )
+
+
+def _sizes(line: Line, jump: Jump, state: State, each: Defined) -> tuple[int, ...]:
+    """How many elements an array has in each dimension. Raises ProgramError for none, and for too many."""
+    sizes = tuple(int(_worth(line, jump, state, size)) for size in each.sizes)
+    if len(sizes) > MOST_DIMENSIONS or min(sizes, default=1) < 1 or prod(sizes) > LARGEST_ARRAY:
+        told = Message(
+            "{item}{sizes}: an array must have 1 to {largest_array} elements.",
+            item=each.name,
+            sizes=list(sizes),
+            largest_array=f"{LARGEST_ARRAY:,}",
+        )
+        hint = Message(
+            "Correct the array sizes; at most {most_dimensions} dimensions are allowed.",
+            most_dimensions=MOST_DIMENSIONS,
+        )
+        raise line.refuse(jump.column, FIRST_INDEX, told, hint)
+    return sizes
+
+
+def _message(line: Line, jump: Jump, state: State) -> str:
+    """The text of MSG: numbers as they are written, without needless zeros."""
+    shown = []
+    for piece in jump.pieces:
+        if isinstance(piece, str):
+            shown.append(piece)
+        elif isinstance(piece, Parameter) and piece.letters in state.variables.scope.texts:
+            shown.append(state.variables.scope.texts[piece.letters])
+        else:
+            shown.append(f"{_worth(line, jump, state, piece):.6g}")
+    return "".join(shown)
+
+
+def _worth(line: Line, jump: Jump, state: State, formula: Formula | None) -> float:
+    assert formula is not None
+    return state.worth(formula, lambda code, text, hint: line.refuse(jump.column, code, text, hint))
+
+
+def _target(line: Line, jump: Jump, program: Routine, at: int) -> int:
+    """The index of the label: GOTOF behind the line, GOTOB before it, GOTO behind and then before."""
+    if jump.steering is Steering.GOTO_START:
+        return program.lines.start
+    place = find_label(jump.steering, jump.target, program, at)
+    if place is None:
+        text = Message(
+            "label {target} was not found in the search direction of {steering}.",
+            target=jump.target,
+            steering=jump.steering,
+        )
+        raise line.refuse(jump.column, NO_TARGET, text, "Correct the label or the direction of the jump.")
+    return place
+
+
+def find_label(steering: Steering, target: str, program: Routine, at: int) -> int | None:
+    """Index of the line with this label or number, where the jump looks for it; None without one."""
+    places = program.labelled(target)
+    behind = next((place for place in places if place > at), None)
+    before = next((place for place in reversed(places) if place <= at), None)
+    if steering is Steering.GOTO_BACK or (steering is Steering.GOTO and behind is None):
+        return before
+    return behind

@@ -1,0 +1,261 @@
+"""Where a program goes next: into subprograms with their parameters, back at M17, REPEAT, and its end."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import partial
+
+from core.interpreter.shared.control_flow import ENDLESS, ControlFlow, Frame, LoopWatch
+from core.interpreter.shared.interpretation import DEEPEST_CALL
+from core.interpreter.sinumerik.flow.control_structures import Routine, find_label, follow
+from core.interpreter.sinumerik.flow.parameter_passing import Saved, handed_over
+from core.interpreter.sinumerik.flow.variables import Scope
+from core.interpreter.sinumerik.sinumerik_state import State
+from core.interpreter.sinumerik.sinumerik_statement import Statement
+from core.language.diagnostics import ProgramError
+from core.language.sinumerik.cycle_names import CYCLES_OUTSIDE
+from core.language.sinumerik.program_jumps import Jump, Steering
+from core.language.sinumerik.sinumerik_alarms import NESTING, NO_TARGET
+from core.language.sinumerik.sinumerik_words import Line
+from core.language.sinumerik.subprogram_files import program_name, sections
+from core.language.source import Source
+from core.message import Message
+
+
+@dataclass(slots=True)
+class _Repeat:
+    """Lines that REPEAT runs again: ``start`` to before ``end``, ``left`` times more; then on at ``back``."""
+
+    start: int
+    end: int
+    left: int
+    back: int
+
+
+@dataclass(slots=True)
+class _Call(Frame[Routine]):
+    passes: int = 1
+    modal: bool = False  # MCALL has called it, or a program that has
+    scope: Scope = field(default_factory=Scope)
+    references: list[tuple[str, str]] = field(default_factory=list)  # VAR: its name here, and the caller's
+    saved: Saved | None = None  # what SAVE brings back
+    repeats: list[_Repeat] = field(default_factory=list)
+
+    @property
+    def standing(self) -> tuple[object, ...]:
+        """Where it goes on, and what is left of its passes and repeats."""
+        return self.file, self.at, self.passes, [(each.start, each.left) for each in self.repeats]
+
+
+class Flow(ControlFlow[_Call]):
+    """The place in a program and its subprograms."""
+
+    def __init__(self, source: Source, state: State) -> None:
+        found, axis = sections(source), state.setup.limits.third_axis
+        self._state = state
+        self._known = {name: Routine(source, lines, third_axis=axis) for name, lines in found[1:] if name}
+        for each in source.subprograms:
+            routine = Routine(each, sections(each)[0].lines, each.name, axis)
+            self._known.setdefault(program_name(each), routine)
+        lines = found[0].lines
+        self._main = Routine(source, lines, third_axis=axis)
+        super().__init__(_Call(self._main, lines.start, lines.stop, scope=state.variables.scope))
+        read = (source, *source.subprograms)
+        self._loops = None if any(map(_reads_positions, read)) else LoopWatch()
+
+    @property
+    def routines(self) -> tuple[Routine, ...]:
+        """All programs that are known, the main one first."""
+        return self._main, *self._known.values()
+
+    @property
+    def by_modal_call(self) -> bool:
+        """Whether the place is in what MCALL has called, which calls nothing by itself."""
+        return self.here.modal
+
+    @property
+    def running(self) -> Routine:
+        """The program that is being executed."""
+        return self.here.routine
+
+    def next(self) -> Line | None:
+        """The next line; None where the whole program is at its end."""
+        while True:
+            here = self.here
+            if here.repeats and self.at == here.repeats[-1].end:
+                self._repeat(here.repeats)
+            elif self.at < self.end:
+                self.at += 1
+                return here.routine.line(self.at - 1)
+            elif self.called:
+                self.back()
+            else:
+                return None
+
+    def _repeat(self, repeats: list[_Repeat]) -> None:
+        """The end of what REPEAT runs: again, or on behind it."""
+        part = repeats[-1]
+        part.left -= 1
+        if part.left > 0:
+            self.at = part.start
+        else:
+            repeats.pop()
+            self.at = part.back
+
+    def back(self) -> None:
+        """M17, RET, or the last line of a subprogram: again, or on behind the call."""
+        call = self.here
+        call.passes -= 1
+        call.repeats.clear()
+        if call.passes > 0:
+            self.at = call.routine.lines.start
+        elif not self.called:
+            self.end_all()
+        else:
+            self.leave()
+            variables = self._state.variables
+            variables.scope = self.here.scope
+            for name, outer in call.references:
+                variables.keep(outer, call.scope.numbers[name])
+            if call.saved is not None:
+                call.saved.bring_back(self._state)
+
+    def knows(self, name: str) -> bool:
+        """Whether there is a program of this name."""
+        return name in self._known
+
+    def routine(self, name: str) -> Routine | None:
+        """The program of this name; None where there is none."""
+        return self._known.get(name)
+
+    def call(self, line: Line, *, modal: bool = False) -> None:
+        """Go to the subprogram that the line names. Raises ProgramError where there is none, or too deep."""
+        routine = self._known.get(line.call)
+        if routine is None:
+            raise _missing(line)
+        if len(self.frames) > DEEPEST_CALL:
+            text = Message(
+                "subprogram calls are nested more than {deepest_call} levels deep.", deepest_call=DEEPEST_CALL
+            )
+            raise line.refuse(line.call_column, "recursion", text, "A subprogram must not call itself.")
+        heading = routine.heading()
+        first = routine.first()
+        if first is not None and first.errors:  # told when it is run; nobody knows what it takes
+            line = line._replace(arguments=None)
+        routine.repeats = True
+        scope, references = handed_over(self._state, line, heading)
+        frame = _Call(routine, routine.lines.start, routine.lines.stop, scope=scope, references=references)
+        if routine.shown:
+            frame.file, frame.place = routine.shown, self.shown_line(line.number)
+        frame.passes, frame.modal = line.passes, modal or self.by_modal_call
+        if heading is not None and heading.saves:
+            frame.saved = Saved.of(self._state)
+        self.enter(frame)
+        self._state.variables.scope = scope
+
+    def steer(self, line: Line, jump: Jump, state: State) -> None:
+        """A line of GOTO, IF, CASE, WHILE, FOR, LOOP, REPEAT, DEF or MSG. Raises ProgramError."""
+        if jump.steering in _AGAIN and jump.target:
+            self._begin_repeat(line, jump, state)
+            return
+        routine = self.running
+        at = follow(line, jump, state, routine, self.at - 1)
+        if jump.steering is Steering.RETURN:
+            self.back()
+        elif at is not None:
+            back = at < self.at
+            routine.repeats = routine.repeats or back
+            self.at = at
+            if back and self._comes_round():
+                text = (
+                    "this jump repeats forever because nothing in the loop changes the result of a jump "
+                    "condition."
+                )
+                hint = (
+                    "In the loop, change a variable that the condition uses; to make another part, use "
+                    "Cycle Start instead."
+                )
+                raise line.refuse(jump.column, ENDLESS, text, hint)
+
+    def _comes_round(self) -> bool:
+        """Whether a jump back has met all that jumps go by before: places, variables, tool and edge."""
+        if self._loops is None:
+            return False
+        state = self._state
+        tool = state.modal.tool, state.modal.edge, state.modal.metric, state.edge, state.modal_call
+        numbers = [each.scope.numbers for each in self.frames]
+        return self._loops.comes_round(self, tool, state.variables.r, numbers)
+
+    def _begin_repeat(self, line: Line, jump: Jump, state: State) -> None:
+        """REPEAT and REPEATB: the lines from one label to another, or to here; or the block of the label."""
+        routine, repeats, here = self.running, self.here.repeats, self.at - 1
+        start = find_label(Steering.GOTO, jump.target, routine, here)
+        until = find_label(Steering.GOTO, jump.until, routine, here) if jump.until else here
+        if start is None or until is None:
+            text = Message(
+                "label {missing}, which {steering} uses, is not in this program.",
+                missing=jump.target if start is None else jump.until,
+                steering=jump.steering,
+            )
+            raise line.refuse(jump.column, NO_TARGET, text, "Correct the label.")
+        if jump.steering is Steering.REPEAT_BLOCK:
+            end = start + 1
+        elif jump.until:
+            end = until + 1
+        else:
+            end = _end_label(routine, start, here)
+        if end <= start or (start <= here < end):
+            text = Message(
+                "the program section to be repeated contains the {steering} block or does not "
+                "end before that block.",
+                steering=jump.steering,
+            )
+            hint = "Put the whole section to be repeated before or after this block."
+            raise line.refuse(jump.column, NESTING, text, hint)
+        passes = 1
+        if jump.passes is not None:
+            passes = int(state.worth(jump.passes, partial(line.refuse, jump.column)))
+        if not 1 <= passes <= _MOST_PASSES or len(repeats) >= DEEPEST_CALL:
+            text = Message("P{passes} is not a valid repeat count.", passes=passes)
+            hint = Message("Write a repeat count from P1 to P{most_passes}.", most_passes=_MOST_PASSES)
+            raise line.refuse(jump.column, "passes", text, hint)
+        routine.repeats = True
+        repeats.append(_Repeat(start, end, passes, self.at))
+        self.at = start
+
+
+_AGAIN = frozenset({Steering.REPEAT, Steering.REPEAT_BLOCK})
+_MOST_PASSES = 9999
+
+
+def _end_label(routine: Routine, start: int, here: int) -> int:
+    """Where the part of REPEAT with one label ends: at ENDLABEL, at the REPEAT itself, with the program."""
+    for at in range(start, routine.lines.stop):
+        if at == here:
+            return here
+        if routine.line(at).label == "ENDLABEL":
+            return at + 1
+    return routine.lines.stop
+
+
+def _reads_positions(source: Source) -> bool:
+    """Whether a program asks where the axes stand, so that jumps may go by what no variable shows."""
+    return any("$AA_I" in line.upper() or "$P_EP" in line.upper() for line in source.lines)
+
+
+def ends_main(statement: Statement, *, called: bool) -> bool:
+    """Whether the block ends the whole program; in a subprogram M2 and M30 lead back as M17 does."""
+    return statement.ends and not called
+
+
+def _missing(line: Line) -> ProgramError:
+    if reason := CYCLES_OUTSIDE.get(line.call):
+        text = Message("{word}: {problem}.", word=line.call, problem=reason)
+        return line.refuse(line.call_column, "not-in-subset", text, "Remove this text from the program.")
+    text = Message("subprogram {call} does not exist.", call=line.call)
+    hint = Message(
+        "Put {named}.spf in the main program's folder, or add %_N_{named2}_SPF to the main program's file.",
+        named=line.call,
+        named2=line.call,
+    )
+    return line.refuse(line.call_column, "subprogram-missing", text, hint)

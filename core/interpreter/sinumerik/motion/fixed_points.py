@@ -1,0 +1,115 @@
+"""G74 and G75: in rapid to the home of the machine, or to a fixed point of its axes, without any offset."""
+
+from __future__ import annotations
+
+from core.interpreter.shared.elementary_blocks import Block
+from core.interpreter.sinumerik.motion.linear_moves import AxisTravel, rapid
+from core.interpreter.sinumerik.sinumerik_state import State
+from core.interpreter.sinumerik.sinumerik_statement import Statement
+from core.language.diagnostics import ProgramError
+from core.language.sinumerik.sinumerik_words import Word
+from core.language.sinumerik.word_table import BLOCKWISE, MOTION
+from core.message import Message
+
+_AXES = frozenset({"X", "Z", "X1", "Z1"})
+
+
+def home(state: State, statement: Statement) -> Block:
+    """G74: to the home of the axes that are named, X1=0 Z1=0. Raises ProgramError."""
+    named = _named(state, statement, _AXES)
+    for word in named:
+        if state.number(statement, word) != 0.0:
+            text = "{word}: G74 always moves to machine home."
+            raise statement.refuse(
+                word, "word-unused", text, Message("Write {word}=0.", word=word.name), word=word.text
+            )
+    return _to(state, statement, dict.fromkeys((word.name[0] for word in named), 0.0))
+
+
+def fixed_point(state: State, statement: Statement) -> Block:
+    """G75: to a fixed point of the axes that are named, FP=1 to 4; the value of an axis word says nothing.
+
+    Fixed points are the machine file's, in machine coordinates. Raises ProgramError for one that it has not.
+    """
+    named = _named(state, statement, _AXES | {"FP"})
+    number = _number(state, statement)
+    ends = {}
+    for word in named:
+        axis = word.name[0]
+        points = state.setup.limits.fixed_points.get(axis, ())
+        if number > len(points):
+            raise _missing(statement, axis, number, len(points))
+        ends[axis] = points[number - 1]
+        if state.number(statement, word) != 0.0:
+            _tell_value(state, statement, word, ends[axis])
+    return _to(state, statement, ends)
+
+
+def _named(state: State, statement: Statement, words: frozenset[str]) -> list[Word]:
+    """The axis words of the block, beside which there is nothing. Raises ProgramError."""
+    word = statement.g[BLOCKWISE]
+    named = [each for name, each in statement.words.items() if name in _AXES]
+    others = statement.words.keys() - words or statement.m or statement.sets
+    if not named or others or statement.g.keys() - {BLOCKWISE, MOTION}:
+        text = "{word} must be in a block that contains only the axes to move, each programmed as 0."
+        raise statement.refuse(word, "own-block", text, "Write {word} X1=0 Z1=0.", word=word.text)
+    if (code := state.modal.nose_comp) != 40:
+        text = "{word} moves the tool off the contour and cannot be used while G{code} is active."
+        hint = "Write G40 and a move before this block."
+        raise statement.refuse(word, "comp-with", text, hint, word=word.text, code=code)
+    return named
+
+
+def _number(state: State, statement: Statement) -> int:
+    """Which fixed point: FP, or the first."""
+    word = statement.words.get("FP")
+    if word is None:
+        return 1
+    number = state.number(statement, word)
+    if number not in {1, 2, 3, 4}:
+        text = "{word} is not a valid fixed point."
+        raise statement.refuse(word, "fixed-point", text, "Write a value from FP=1 to FP=4.", word=word.text)
+    return int(number)
+
+
+def _missing(statement: Statement, axis: str, number: int, known: int) -> ProgramError:
+    key = Message("fixed_points under [axis.{axis}] in the machine file", axis=axis)
+    word = statement.words.get("FP") or statement.g[BLOCKWISE]
+    if known:
+        text = Message(
+            "{word}: the machine file defines {known} fixed points for {axis}, but number "
+            "{number} is programmed.",
+            word=word.text,
+            known=known,
+            axis=axis,
+            number=number,
+        )
+        return statement.refuse(
+            word, "fixed-point", text, Message("Correct FP, or add the point to {key}.", key=key)
+        )
+    text = Message(
+        "{word}: the machine file does not define a fixed point for {axis}.", word=word.text, axis=axis
+    )
+    hint = Message("Add {key}, or write SUPA G0 D0 with machine coordinates X and Z.", key=key)
+    return statement.refuse(word, "fixed-point", text, hint)
+
+
+def _tell_value(state: State, statement: Statement, word: Word, end: float) -> None:
+    """Who writes X150 may expect to arrive there."""
+    text = Message(
+        "{word} has no effect with G75: the axis moves to machine position {end} mm.",
+        word=word.text,
+        end=f"{end:g}",
+    )
+    state.log.add(
+        statement.warning(word, "fixed-point-value", text, Message("Write {word}0.", word=word.name[0]))
+    )
+
+
+def _to(state: State, statement: Statement, ends: dict[str, float]) -> Block:
+    """The rapid to these machine coordinates; all axes end together."""
+    state.threads = ()
+    x, z = ends.get("X", state.x), ends.get("Z", state.z)
+    modal = state.modal
+    travel = AxisTravel(state.x, state.z, state.c, x, z, state.c, modal, modal.offset_x, modal.offset_z)
+    return rapid(state, statement, travel)

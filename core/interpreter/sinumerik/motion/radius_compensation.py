@@ -1,0 +1,288 @@
+"""G41, G42 and G40: the nose beside the contour, NORM and KONT to it and off it, G450 and G451 at corners.
+
+The contour is kept until the move that leaves it is known. What is handed out is the way of the tip: the
+nose's centre runs its radius beside the contour, and the tip lies from it as the tip quadrant says.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from math import cos, dist, pi, sin
+from typing import NamedTuple
+
+from core.geometry.lines_and_arcs import SAME_POINT, Arc, Element, Line, Point, clearance, touching, turn
+from core.interpreter.shared.actions import ProgramEnd, ToolChange
+from core.interpreter.shared.contour_stage import (
+    FOLLOWED,
+    STRAIGHT,
+    ContourMove,
+    ContourStage,
+    cuts_in,
+    element_of,
+)
+from core.interpreter.shared.diagnostic_log import Log
+from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.sinumerik.motion.linear_moves import MovesAlong
+from core.interpreter.sinumerik.sinumerik_state import State
+from core.language.diagnostics import ProgramError
+from core.language.sinumerik.sinumerik_alarms import fault
+from core.message import Message
+from core.tool_edges import TIP_DIRECTIONS
+
+_TOUCHES = 0.002  # mm
+_SHARPEST = 2.0 * pi / 3.0  # rad of a turn that G451 still goes round by the intersection
+
+
+class Compensation:
+    """Takes the blocks of a program in order; while G41 or G42 is on they come out beside the contour."""
+
+    def __init__(self, state: State, log: Log, *, in_plane: bool = False) -> None:
+        self._state, self._log = state, log
+        self._in_plane = in_plane  # of TRANSMIT or TRACYL: C of a block is its depth, which may change
+        self._contour: _Contour | None = None
+
+    @property
+    def holds(self) -> bool:
+        """Whether a contour is under way, which no other pass can begin in."""
+        return self._contour is not None
+
+    def drop(self) -> None:
+        """Forget what is held, after an error."""
+        self._contour = None
+
+    def take(self, block: Block) -> Iterator[Block]:
+        """Yields what no later block can change. Raises ProgramError where the nose cannot follow."""
+        contour, code = self._contour, block.modal.nose_comp
+        ends = isinstance(block.action, ProgramEnd)
+        if contour is None:
+            if block.moves and code != 40:
+                self._begin(block)
+            else:
+                yield block
+        elif block.action is not None and not (ends and code == 40):
+            self._rest(contour, block)
+        elif code == 40:
+            self._contour = None
+            yield from self._close(contour, block)
+        else:
+            self._follow(contour, block)
+
+    def end(self) -> Iterator[Block]:
+        """No block comes any more. Raises ProgramError where a contour is open."""
+        contour, self._contour = self._contour, None
+        if contour is not None:
+            raise _open(contour.last.block)
+        yield from ()
+
+    def _begin(self, block: Block) -> None:
+        """The move that leads to the contour."""
+        state, code = self._state, block.modal.nose_comp
+        if block.kind not in STRAIGHT or self._turns(block):
+            text = Message("the first move with G{code} is not a straight line.", code=code)
+            raise _fault(block, "comp-approach", text, "Approach with G0 or G1, then begin the contour.")
+        if not state.modal.edge:
+            text = Message("G{code} needs an active tool with a cutting edge (D number).", code=code)
+            raise _fault(block, "comp-no-edge", text, "Write T and D before this block.")
+        edge = state.edge
+        if not edge.nose_radius:
+            text = Message("the nose radius of the tool is 0, so G{code} does not compensate.", code=code)
+            self._warn(block, "comp-no-radius", text, "Enter the nose radius on the TOOL OFFSETS page (F8).")
+        elif not edge.quadrant:
+            text = Message(
+                "the tool has no tip quadrant, so G{code} applies the tool offset to the nose center.",
+                code=code,
+            )
+            self._warn(
+                block, "comp-no-quadrant", text, "Enter the tip quadrant (F8); 9 means the nose center."
+            )
+        # G42 is to the right with X up, which is to the left with X down, as blocks count.
+        side = 1.0 if (code == 42) is not state.programmed.mirrored else -1.0
+        z, x = TIP_DIRECTIONS[edge.quadrant]
+        tip = x * edge.nose_radius, z * edge.nose_radius
+        self._contour = _Contour(state, block, side * edge.nose_radius, tip)
+
+    def _rest(self, contour: _Contour, block: Block) -> None:
+        """A block in which nothing moves: at the compensated end of the move before it."""
+        if isinstance(block.action, ProgramEnd):
+            raise _open(block)
+        if isinstance(block.action, ToolChange):
+            text = "T or D is programmed before the move that leaves the contour."
+            raise _fault(block, "comp-with", text, "After G40, program a move before T or D.")
+        contour.last.after.append(block)
+
+    def _follow(self, contour: _Contour, block: Block) -> None:
+        """One more move of the contour."""
+        first, code = contour.approach.block, block.modal.nose_comp
+        if code != first.modal.nose_comp:
+            text = Message(
+                "G{nose_comp} cannot change to G{code} within the same contour.",
+                code=code,
+                nose_comp=first.modal.nose_comp,
+            )
+            raise _fault(block, "comp-with", text, "Leave the contour with G40 before this block.")
+        if block.kind not in FOLLOWED or self._turns(block):
+            template = (
+                "the C axis turns while G{code} is active."
+                if self._turns(block)
+                else "a thread is cut while G{code} is active."
+            )
+            raise _fault(block, "comp-with", Message(template, code=code), "Write G40 before this line.")
+        if (block.offset_x, block.offset_z) != (first.offset_x, first.offset_z):
+            text = Message("the zero point changes while G{code} is active.", code=code)
+            raise _fault(block, "comp-with", text, "Write G40 and a move before this block.")
+        if (block.x, block.z) == (block.x0, block.z0) and block.kind is not Kind.ARC:
+            contour.last.after.append(block)
+        else:
+            contour.last = ContourMove(block)
+            contour.moves.append(contour.last)
+
+    def _close(self, contour: _Contour, block: Block) -> Iterator[Block]:
+        """The contour, and the move of G40 that leaves it; the program's end leaves the nose where it is."""
+        code = contour.approach.block.modal.nose_comp
+        if block.moves and (block.kind not in STRAIGHT or self._turns(block)):
+            text = "the first move with G40 is not a straight line."
+            raise _fault(block, "comp-departure", text, "Leave the contour with G0 or G1.")
+        if block.moves and (block.offset_x, block.offset_z) != (
+            contour.approach.block.offset_x,
+            contour.approach.block.offset_z,
+        ):
+            text = "the zero point changes in the move that leaves the contour."
+            raise _fault(block, "comp-departure", text, "Leave the contour before you change the zero point.")
+        if not contour.moves:
+            text = Message("no contour move follows G{code}.", code=code)
+            raise _fault(contour.approach.block, "comp-empty", text, "Write the contour before G40.")
+        yield from contour.close(block)
+
+    def _turns(self, block: Block) -> bool:
+        return block.c != block.c0 and not self._in_plane
+
+    def _warn(self, block: Block, code: str, text: str, hint: str) -> None:
+        self._log.warn(block.line, 0, code, f"channel 1 block in line {block.line}: {text}", hint)
+
+
+class _End(NamedTuple):
+    """One end of the contour, at ``corner``: the centre goes from ``at`` to ``to``, square beside it.
+
+    ``contour`` begins with the element at that end.
+    """
+
+    name: str  # approach or departure
+    block: Block
+    at: Point
+    to: Point
+    corner: Point
+    contour: Sequence[Element]
+
+
+class _Contour(ContourStage):
+    """What is kept between G41 or G42 and the move behind G40."""
+
+    def __init__(self, state: State, approach: Block, left: float, tip: Point) -> None:
+        super().__init__(MovesAlong(state), approach, left, tip)
+        self.rounded, self.round_ends = state.rounded, state.round_ends
+        self.moves: list[ContourMove] = []
+        self._elements: list[Element] = []
+
+    def close(self, leaving: Block) -> Iterator[Block]:
+        """The contour, and the move that leaves it. Raises ProgramError."""
+        self._elements = [element_of(move.block) for move in self.moves]
+        both = zip(self.moves, self._elements, strict=True)
+        pieces = [piece for move, element in both for piece in self._follow(move, element)]
+        pieces += self._rest()
+        beside = list(self._hand_out(pieces))
+        out = self._way_out(leaving, pieces[-1].element.end) if leaving.moves else []
+        yield from beside
+        yield from self._leave(ContourMove(leaving), out)
+        if not leaving.moves:
+            yield from self._standing(ContourMove(leaving, [leaving]))
+
+    def _corner(self, block: Block, element: Element) -> Sequence[Element]:
+        """An outside corner: an arc about it, or under G451 the tangents to where they meet.
+
+        A rapid takes the tangents too, of halves where they would meet far off.
+        """
+        if not isinstance(element, Arc):
+            return [element]
+        angle = turn(element.start_direction, element.end_direction)
+        sharp = abs(element.sweep) > _SHARPEST
+        if block.kind is Kind.RAPID and sharp:
+            middle = element.point(element.length / 2.0)
+            halves = element.part(element.start, middle), element.part(middle, element.end)
+            return [each for half in halves for each in self._corner(block, half)]
+        if sharp or (self.rounded and block.kind is not Kind.RAPID):
+            return [element]
+        reach = element.radius * abs(sin(angle) / (1.0 + cos(angle)))
+        ux, uz = element.start_direction
+        meet = element.start[0] + ux * reach, element.start[1] + uz * reach
+        return [Line(element.start, meet), Line(meet, element.end)]
+
+    def _way_in(self, to: Point) -> Sequence[Element]:
+        block, first = self.approach.block, self._elements[0]
+        at = self._centre((block.x0, block.z0))
+        return self._way(_End("approach", block, at, to, first.start, self._elements))
+
+    def _way_out(self, block: Block, begun: Point) -> Sequence[Element]:
+        """The way off the contour: that to it, run backwards."""
+        last = self._elements[-1]
+        at = self._centre((block.x, block.z))
+        back = self._way(_End("departure", block, at, begun, last.end, self._elements[::-1]))
+        return [element.reversed() for element in reversed(back)]
+
+    def _way(self, end: _End) -> list[Element]:
+        """Straight; under KONT round the end of the contour where the straight way would cut it.
+
+        Raises ProgramError where it cuts the contour all the same.
+        """
+        radius, way = self.radius, Line(end.at, end.to)
+        if not radius or not cuts_in(way, end.contour, radius):
+            return [way] if way.length > SAME_POINT else []
+        text = Message(
+            "during the {end}, the nose radius of {radius} mm cuts into the contour.",
+            end=end.name,
+            radius=f"{radius:g}",
+        )
+        if not self.round_ends:
+            hint = "Choose another point for this move, or write KONT to go around the end of the contour."
+            raise _fault(end.block, "comp-gouge", text, hint)
+        if dist(end.at, end.corner) < radius - SAME_POINT:
+            text = Message(
+                "with KONT, the distance from the {end} point to the end of the contour is "
+                "less than the nose radius.",
+                end=end.name,
+            )
+            raise _fault(
+                end.block, f"comp-{end.name}-short", text, "Choose a point farther away from the contour."
+            )
+        around = self._round(end)
+        straight = Line(end.at, around.start)
+        if any(clearance(straight, each) < radius - _TOUCHES for each in end.contour):
+            raise _fault(end.block, "comp-gouge", text, "Choose another point for this move.")
+        way_round = [straight, *self._corner(end.block, around)]
+        return [element for element in way_round if element.length > SAME_POINT]
+
+    def _round(self, end: _End) -> Arc:
+        """The arc about the contour's end that the way touches, and that ends beside the contour."""
+        # To the contour with the centre of the arc on its right is clockwise, and off it run backwards not.
+        clockwise = (self.left < 0.0) is (end.name == "departure")
+        touch = touching(end.at, end.corner, self.radius, clockwise=clockwise)
+        return Arc(touch, end.to, end.corner, clockwise=clockwise)
+
+    def _centre(self, tip: Point) -> Point:
+        return tip[0] - self.tip[0], tip[1] - self.tip[1]
+
+    def _gouges(self, block: Block, why: str) -> ProgramError:
+        text = Message(
+            "a nose radius of {radius} mm does not fit this contour: {why}.",
+            radius=f"{self.radius:g}",
+            why=why,
+        )
+        return _fault(block, "comp-gouge", text, "Use a smaller nose radius, or change the contour.")
+
+
+def _open(block: Block) -> ProgramError:
+    text = "the program ends while G41 or G42 is active."
+    return _fault(block, "comp-open", text, "Move off the part with G40 before the program ends.")
+
+
+def _fault(block: Block, code: str, text: str, hint: str) -> ProgramError:
+    return ProgramError(fault(block.line, 1, code, Message("in line {line}", line=block.line), text, hint))

@@ -1,0 +1,254 @@
+"""G2, G3, CIP and CT in the plane of X and Z: by centre, radius, angle, a point on the way, or a tangent."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import atan2, cos, dist, hypot, radians, sin, tan
+
+from core.geometry.lines_and_arcs import Point, centre_from_radius
+from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.sinumerik.motion.linear_moves import (
+    NO_WAY,
+    AxisTravel,
+    block_of,
+    keep_direction,
+    travel_of,
+)
+from core.interpreter.sinumerik.motion.sinumerik_feeds import check_feed
+from core.interpreter.sinumerik.sinumerik_state import Motion, State
+from core.interpreter.sinumerik.sinumerik_statement import Statement
+from core.language.diagnostics import ProgramError
+from core.language.sinumerik.sinumerik_words import ARC, Form, Word
+from core.message import Message
+
+WRONG_END = 14040
+_TOLERANCE = 0.01  # mm by which the radii at both ends may differ
+
+
+def arc(state: State, statement: Statement) -> Block:
+    """The arc of a block. Raises ProgramError where its words give none."""
+    if state.plane != 18:
+        text = "arcs in X and Z need G18."
+        raise statement.refuse(statement.g.get("motion"), "arc-plane", text, "Write G18 before this block.")
+    _check_words(state, statement)
+    travel = travel_of(state, statement)
+    if not travel.frame.uniform:
+        text = "SCALE uses different factors for X and Z, so an arc is not possible."
+        hint = "Use the same factor for both axes."
+        raise statement.refuse(statement.g.get("motion"), "arc-scaled", text, hint)
+    clockwise, (centre, travel) = _found(state, statement, travel)
+    offset = travel.offset_x
+    feed = check_feed(state, statement, travel.x0 - offset, travel.x - offset)
+    made_block = block_of(state, statement, travel, Kind.ARC, feed)
+    made_block = replace(
+        made_block, cx=centre[0] - travel.offset_x, cz=centre[1] - travel.offset_z, clockwise=clockwise
+    )
+    return keep_direction(state, made_block)
+
+
+_OF_CIP = frozenset({"I1", "K1"})
+
+
+def _check_words(state: State, statement: Statement) -> None:
+    """Words of another kind of arc."""
+    own = {Motion.THROUGH: _OF_CIP, Motion.TANGENT: frozenset[str]()}.get(state.motion, ARC - _OF_CIP)
+    for name in sorted((ARC - own) & statement.words.keys()):
+        word = statement.words[name]
+        kind = {Motion.THROUGH: "CIP", Motion.TANGENT: "CT"}.get(state.motion, f"G{state.motion:d}")
+        text = "{word} cannot be used with {kind}."
+        hint = "Remove this word, or program the type of arc that uses it."
+        raise statement.refuse(word, "word-unused", text, hint, word=word.text, kind=kind)
+
+
+def _found(state: State, statement: Statement, travel: AxisTravel) -> tuple[bool, tuple[Point, AxisTravel]]:
+    """Sense, centre and end of the arc."""
+    if state.motion is Motion.THROUGH:
+        return _through(state, statement, travel)
+    if state.motion is Motion.TANGENT:
+        return _tangent(state, statement, travel)
+    # G2 is clockwise as seen with X up and Z to the right: with X down, as blocks count, it is the other way.
+    clockwise = (state.motion is Motion.COUNTER) is not travel.frame.mirrored
+    return clockwise, _centre(state, statement, travel, clockwise)
+
+
+def _through(state: State, statement: Statement, travel: AxisTravel) -> tuple[bool, tuple[Point, AxisTravel]]:
+    """CIP: the circle through start, the point of I1 and K1, and end."""
+    begun, words = travel.begun, statement.words
+    if not _OF_CIP & words.keys():
+        text = "CIP needs I1 and K1 to define a point on the arc."
+        raise statement.refuse(statement.g.get("motion"), "arc-centre-missing", text, "Add I1 and K1.")
+    relative = state.modal.absolute is False
+    x, z = begun
+    if "I1" in words:
+        value = state.length(statement, words["I1"])
+        halved = state.modal.diameter and not (relative and state.distance_is_radius)
+        x = value / (2.0 if halved else 1.0) + (begun[0] if relative else 0.0)
+    if "K1" in words:
+        z = state.length(statement, words["K1"]) + (begun[1] if relative else 0.0)
+    a, b, c = (travel.x0, travel.z0), travel.placed(x, z), (travel.x, travel.z)
+    across = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+    if abs(across) < NO_WAY * max(dist(a, b), dist(a, c), NO_WAY):
+        text = (
+            "the start point, the end point and the intermediate point (I1, K1) are on one "
+            "line, or two of them are identical."
+        )
+        word = words.get("I1") or words.get("K1")
+        raise statement.refuse(word, "arc-radius", text, "Correct the point, or write G1.")
+    return _clockwise(across), (_circumcentre(a, b, c), travel)
+
+
+def _clockwise(across: float) -> bool:
+    """The sense of a turn, seen with X down, by the sign of x times z."""
+    return across < 0.0
+
+
+def _circumcentre(a: Point, b: Point, c: Point) -> Point:
+    """The point as far from each of three; told from the first to keep its figures."""
+    bx, bz, cx, cz = b[0] - a[0], b[1] - a[1], c[0] - a[0], c[1] - a[1]
+    twice = 2.0 * (bx * cz - bz * cx)
+    b2, c2 = bx * bx + bz * bz, cx * cx + cz * cz
+    return a[0] + (cz * b2 - bz * c2) / twice, a[1] + (bx * c2 - cx * b2) / twice
+
+
+def _tangent(state: State, statement: Statement, travel: AxisTravel) -> tuple[bool, tuple[Point, AxisTravel]]:
+    """CT: the arc that begins in the direction in which the path before it has ended."""
+    word = statement.g.get("motion")
+    if state.direction is None:
+        text = "CT continues a path, but no move precedes it."
+        raise statement.refuse(word, "arc-centre-missing", text, "Program a move before this block.")
+    _demand_ends(statement, word, travel.length)
+    ux, uz = state.direction
+    dx, dz = travel.x - travel.x0, travel.z - travel.z0
+    aside = ux * dz - uz * dx  # how far the end lies beside the direction, with its side
+    if abs(aside) < NO_WAY:
+        text = "the end point of CT is in line with the previous path, so no arc is possible."
+        raise statement.refuse(word, "arc-radius", text, "Write G1, or change the end point.")
+    far = (dx * dx + dz * dz) / (2.0 * aside)
+    centre = travel.x0 - uz * far, travel.z0 + ux * far
+    return _clockwise(aside), (centre, travel)
+
+
+def _centre(
+    state: State, statement: Statement, travel: AxisTravel, clockwise: bool
+) -> tuple[Point, AxisTravel]:
+    """Machine coordinates of the centre, and the travel with its end where the words did not give one."""
+    words, by_centre = statement.words, {"I", "K"} & statement.words.keys()
+    if "CR" in words and ("AR" in words or by_centre):
+        text = "the arc has CR and another definition of its center."
+        raise statement.refuse(words["CR"], "arc-both", text, "Keep only one of the conflicting words.")
+    if "CR" in words:
+        return _by_radius(state, statement, travel, clockwise), travel
+    if "AR" in words:
+        if {"X", "Z", "RP", "AP"} & words.keys():
+            return _by_angle(state, statement, travel, clockwise), travel
+        return _turned(state, statement, travel, clockwise)
+    if not by_centre:
+        text = "the arc needs CR, AR, or I and K."
+        hint = "Add one of the missing values."
+        raise statement.refuse(statement.g.get("motion"), "arc-centre-missing", text, hint)
+    centre = _by_words(state, statement, travel)
+    _check_radii(statement, travel, centre)
+    return centre, travel
+
+
+def _by_words(state: State, statement: Statement, travel: AxisTravel) -> Point:
+    """I and K: distances from the start, or coordinates with AC( )."""
+    begun = travel.begun
+    i, k = _component(state, statement, "I", begun[0]), _component(state, statement, "K", begun[1])
+    x, z = travel.frame.turned(i, k)
+    return travel.x0 + x, travel.z0 + z
+
+
+def _component(state: State, statement: Statement, name: str, start: float) -> float:
+    word = statement.words.get(name)
+    if word is None:
+        return 0.0
+    value = state.length(statement, word)
+    if word.form is not Form.AC:
+        return value  # a radius, whatever DIAMON says
+    return value / (2.0 if name == "I" and state.modal.diameter else 1.0) - start
+
+
+def _by_radius(state: State, statement: Statement, travel: AxisTravel, clockwise: bool) -> Point:
+    """CR: over 0 for arcs of up to half a turn, under 0 for larger ones."""
+    word = statement.words["CR"]
+    radius, chord = state.length(statement, word) * travel.frame.factor, travel.length
+    _demand_ends(statement, word, chord)
+    if chord > 2 * abs(radius) + _TOLERANCE:
+        text = (
+            "{word} is too small: it must be at least half the distance between the arc ends, which is "
+            "{chord} mm."
+        )
+        hint = "Correct CR or the end point."
+        raise statement.refuse(word, "arc-radius", text, hint, word=word.text, chord=f"{chord:.4f}")
+    side = clockwise if radius > 0 else not clockwise
+    return centre_from_radius((travel.x0, travel.z0), (travel.x, travel.z), abs(radius), clockwise=side)
+
+
+def _by_angle(state: State, statement: Statement, travel: AxisTravel, clockwise: bool) -> Point:
+    """AR and the end point: the centre lies on the bisector of the chord, r = chord / (2 sin(angle / 2))."""
+    word, chord = statement.words["AR"], travel.length
+    _demand_ends(statement, word, chord)
+    half = radians(_angle(state, statement, word)) / 2
+    if {"I", "K"} & statement.words.keys():
+        text = "the arc has AR, an end point and a center, but only two of them are allowed."
+        hint = "Keep only two of the three: AR, the end point and the center."
+        raise statement.refuse(word, "arc-both", text, hint)
+    # To the right of the chord for a clockwise arc; for more than half a turn the cotangent changes side.
+    aside = (0.5 if clockwise else -0.5) / tan(half)
+    dx, dz = travel.x - travel.x0, travel.z - travel.z0
+    return (travel.x0 + travel.x) / 2 + aside * dz, (travel.z0 + travel.z) / 2 - aside * dx
+
+
+def _turned(
+    state: State, statement: Statement, travel: AxisTravel, clockwise: bool
+) -> tuple[Point, AxisTravel]:
+    """AR and the centre: the end is the start turned about it."""
+    word = statement.words["AR"]
+    if not {"I", "K"} & statement.words.keys():
+        text = "AR is programmed without an end point and without I and K."
+        raise statement.refuse(word, "arc-centre-missing", text, "Add one of the missing values.")
+    centre = _by_words(state, statement, travel)
+    x, z = travel.x0 - centre[0], travel.z0 - centre[1]
+    if hypot(x, z) < NO_WAY:
+        text = "the center of the arc is its start point."
+        raise statement.refuse(word, "arc-radius", text, "Correct I and K.")
+    angle = radians(_angle(state, statement, word))
+    turned = atan2(x, z) + (angle if clockwise else -angle)  # from Z+ towards X+ is clockwise with X down
+    radius = hypot(x, z)
+    end = centre[0] + radius * sin(turned), centre[1] + radius * cos(turned)
+    return centre, travel._replace(x=end[0], z=end[1])
+
+
+def _angle(state: State, statement: Statement, word: Word) -> float:
+    angle = state.number(statement, word)
+    if not 0.0 < angle < 360.0:
+        text = "{word}: an opening angle must be greater than 0 and less than 360 degrees."
+        raise statement.refuse(word, "arc-angle", text, "Program a full circle with I and K.", word=word.text)
+    return angle
+
+
+def _demand_ends(statement: Statement, word: Word | None, chord: float) -> None:
+    if chord < NO_WAY:
+        by = f" by {word.name}" if word else ""
+        text = "the arc{name} ends where it starts."
+        raise statement.refuse(word, "arc-no-chord", text, "Program a full circle with I and K.", name=by)
+
+
+def _check_radii(statement: Statement, travel: AxisTravel, centre: Point) -> None:
+    word = statement.words.get("I") or statement.words.get("K")
+    first, last = dist((travel.x0, travel.z0), centre), dist((travel.x, travel.z), centre)
+    if first < NO_WAY:
+        text = "the center of the arc is its start point."
+        raise statement.refuse(word, "arc-radius", text, "Correct I and K.")
+    if abs(first - last) > _TOLERANCE:
+        text = Message(
+            "the arc's radius is {first} mm at its start and {last} mm at its end.",
+            first=f"{first:.4f}",
+            last=f"{last:.4f}",
+        )
+        hint = (
+            "Enter I and K as distances from the start point (I as a radius), or as coordinates with AC( )."
+        )
+        error: ProgramError = statement.refuse(word, WRONG_END, text, hint)
+        raise error

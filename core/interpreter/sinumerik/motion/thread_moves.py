@@ -1,0 +1,184 @@
+"""G33, G34, G35: threads of constant and of changing lead, alone or in a chain, and what leads out in step.
+
+The executor cuts a whole chain in one pass by the measured spindle. SF begins so much of a turn later: the
+tool goes back by that share of the lead, whence the same index of the spindle cuts the thread turned by SF.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import sqrt
+
+from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.sinumerik.motion.linear_moves import NO_WAY, AxisTravel, block_of, rapid, travel_of
+from core.interpreter.sinumerik.sinumerik_state import Motion, State
+from core.interpreter.sinumerik.sinumerik_statement import Statement
+from core.language.diagnostics import ProgramError
+from core.language.sinumerik.sinumerik_words import Word
+from core.language.sinumerik.word_table import FEED_AND_SPEED, MOTION
+
+_ROUNDING = 1 + 1e-9
+_STEEP = 0.5  # of X to Z: what leads out of a thread, and does not go on cutting it
+_SAME = 1e-9  # mm
+_LEAST_LEAD = 0.01  # mm
+
+
+def thread(state: State, statement: Statement) -> Iterator[Block]:
+    """The block of G33, G34 or G35, behind the way back that SF asks for. Raises ProgramError."""
+    for name in ("CR", "AR", "I1", "K1"):
+        if word := statement.words.get(name):
+            text = "{word} cannot be used with G{motion}."
+            hint = "Remove this text from the program."
+            raise statement.refuse(word, "word-unused", text, hint, word=word.text, motion=int(state.motion))
+    travel = travel_of(state, statement)
+    if abs(travel.z - travel.z0) < NO_WAY or travel.turn:
+        text = "a thread is cut along Z in sync with the spindle, but this block does not move along Z."
+        if travel.turn:
+            text = "C cannot turn while a thread is cut."
+        raise _refused(statement, "thread-length", text, "Enter Z of the end point and K.")
+    lead = _lead(state, statement, travel)
+    growth = _growth(state, statement)
+    back = _start_angle(state, statement, travel, lead, growth)
+    if back is not None:
+        yield back
+        travel, lead = travel._replace(x0=state.x, z0=state.z), lead - growth * state.start_turns
+    mean, end = _mean_lead(statement, travel, lead, growth)
+    check_spindle(state, statement, max(lead, end))
+    continues = _continues(state, statement, travel, lead)
+    made = block_of(state, statement, travel, Kind.THREAD, mean)
+    made.per_rev, made.growth, made.continues = True, growth, continues
+    state.threads, state.end_lead = (*state.threads, made), end
+    yield made
+
+
+def _growth(state: State, statement: Statement) -> float:
+    """By what the lead grows, mm a revolution each revolution: F of G34, less than 0 with G35."""
+    if state.motion is Motion.THREAD:
+        return 0.0
+    if word := statement.words.get("F"):
+        value = state.length(statement, word)
+        text = "{word}: the lead change must be greater than 0."
+        hint = "Use G34 to increase the lead and G35 to decrease it."
+        statement.check(value > 0.0, word, "not-positive", text, hint, word=word.text)
+        state.lead_change = value
+    if not state.lead_change:
+        text = "G{motion} needs F, the lead change per revolution."
+        hint = "Enter F as the lead change per revolution, in mm/rev."
+        raise _refused(statement, "thread-lead-missing", text, hint, motion=int(state.motion))
+    return state.lead_change if state.motion is Motion.GROWING else -state.lead_change
+
+
+def _mean_lead(statement: Statement, travel: AxisTravel, lead: float, growth: float) -> tuple[float, float]:
+    """The mean lead of the way along Z, and that at its end. Raises ProgramError where none is left."""
+    way = abs(travel.z - travel.z0)
+    if not growth:
+        return lead, lead
+    square = lead * lead + 2.0 * growth * way
+    end = sqrt(square) if square > 0.0 else 0.0
+    if end < _LEAST_LEAD:
+        raise _refused(
+            statement,
+            "thread-lead-missing",
+            "the lead decreases to 0 before the end of the thread.",
+            "The lead of {lead} mm decreases by {growth} mm per revolution, so the thread can be only "
+            "{lead2} mm long.",
+            lead=lead,
+            growth=-growth,
+            lead2=f"{lead * lead / -growth / 2.0:.4g}",
+        )
+    return (lead + end) / 2.0, end
+
+
+def _start_angle(
+    state: State, statement: Statement, travel: AxisTravel, lead: float, growth: float
+) -> Block | None:
+    """SF: the way back along the thread after which it begins so much of a turn later; None without one."""
+    word = statement.words.get("SF")
+    angle = 0.0 if word is None else state.number(statement, word) % 360.0
+    if word is None or not angle:
+        return None
+    text = "{word} is allowed only in the first block of a thread chain."
+    hint = "Write this word in the first block of the thread chain."
+    statement.check(not state.threads, word, "word-unused", text, hint, word=word.text)
+    state.start_turns = turns = angle / 360.0
+    far = (lead - 0.5 * growth * turns) * turns
+    text = "at this start point, the lead has already decreased to 0."
+    statement.check(lead - growth * turns >= _LEAST_LEAD, word, "thread-lead-missing", text, "Lower F.")
+    share = far / abs(travel.z - travel.z0)
+    x, z = (a - (b - a) * share for a, b in ((travel.x0, travel.x), (travel.z0, travel.z)))
+    return rapid(state, statement, travel._replace(x=x, z=z))
+
+
+def _lead(state: State, statement: Statement, travel: AxisTravel) -> float:
+    """mm a revolution along Z at the start; that at the end of the thread before where none is written."""
+    along, across = statement.words.get("K"), statement.words.get("I")
+    if along is None and across is None:
+        if state.threads:
+            return state.end_lead
+        text = "G{motion} needs K, the lead along Z."
+        raise _refused(statement, "thread-lead-missing", text, "Write K.", motion=int(state.motion))
+    if along is not None and across is not None:
+        text = "the thread has both a lead along X and a lead along Z."
+        hint = "Write K for angles up to 45 degrees and I for larger angles."
+        raise statement.refuse(across, "thread-lead-both", text, hint)
+    word = along or across
+    assert word is not None
+    value = state.length(statement, word)
+    text = "{word}: a lead must be greater than 0."
+    statement.check(value > 0.0, word, "not-positive", text, "Correct the value.", word=word.text)
+    if along is not None:
+        return value
+    dx = abs(travel.x - travel.x0)
+    text = "{word} is the lead along X, but X does not move."
+    statement.check(dx >= NO_WAY, word, "thread-lead-missing", text, "Write K.", word=word.text)
+    return value * abs(travel.z - travel.z0) / dx
+
+
+def check_spindle(state: State, statement: Statement, lead: float) -> None:
+    """Raises ProgramError where the spindle stands, changes its speed, or is too fast for this lead, mm."""
+    modal = state.modal
+    if not modal.spindle or not state.rpm:
+        text = "a thread needs the spindle running, but the spindle is stopped."
+        raise _refused(statement, "g95-spindle-stopped", text, "Start the spindle with S and M3 or M4.")
+    if modal.css:
+        text = "G96 is active, but a thread needs the same spindle speed from the first pass to the last."
+        word = statement.g.get(FEED_AND_SPEED) or statement.g.get(MOTION)
+        raise statement.refuse(word, "thread-under-css", text, "Write G97 with S before this block.")
+    speed, most = lead * abs(state.rpm) / 60.0, state.setup.limits.max_feed
+    if speed > most * _ROUNDING:
+        shown, limit = speed * 60.0, most * 60.0
+        raise _refused(
+            statement,
+            "feed-over-speed",
+            "at {rpm} rpm, this lead requires {value} mm/min; the maximum is {limit} mm/min.",
+            "Lower S.",
+            rpm=f"{abs(state.rpm):.0f}",
+            value=f"{shown:.0f}",
+            limit=f"{limit:.0f}",
+        )
+
+
+def _continues(state: State, statement: Statement, travel: AxisTravel, lead: float) -> bool:
+    """Whether the block goes on with the thread before it, and does not lead out of it.
+
+    Raises ProgramError where it turns back along Z, or goes on behind the block that has led out.
+    """
+    if not state.threads:
+        return False
+    first, last = state.threads[0], state.threads[-1]
+    way_x, way_z = travel.x - travel.x0, travel.z - travel.z0
+    if way_z * (first.z - first.z0) <= 0.0:
+        text = "this thread runs in the opposite Z direction to the previous thread."
+        raise _refused(statement, "thread-chain", text, "End the thread chain with G0.")
+    if last is not first and not last.continues:
+        text = "the previous block moved out of the thread and ended the thread chain."
+        raise _refused(statement, "thread-chain", text, "End the thread chain with G0.")
+    leads_out = abs(way_x) >= _STEEP * abs(way_z) and abs(lead - state.end_lead) < _SAME and not last.growth
+    return not leads_out or state.motion is not Motion.THREAD
+
+
+def _refused(
+    statement: Statement, code: int | str, text: str, hint: str, /, **values: object
+) -> ProgramError:
+    word: Word | None = statement.g.get(MOTION) or next(iter(statement.words.values()), None)
+    return statement.refuse(word, code, text, hint, **values)

@@ -1,0 +1,124 @@
+"""TRANSMIT, TRACYL and TRAFOOF: when the plane of the face or the side is on, and where it cannot be."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import partial
+
+from core.geometry.virtual_mill import Face, Side
+from core.interpreter.shared.actions import SpindleLock
+from core.interpreter.shared.diagnostic_log import Log
+from core.interpreter.shared.elementary_blocks import Block
+from core.interpreter.sinumerik.motion.transformed_plane import Transformation
+from core.interpreter.sinumerik.sinumerik_state import NO_FRAME, State
+from core.interpreter.sinumerik.sinumerik_statement import Statement
+from core.language.sinumerik.sinumerik_words import PLACES, Word
+from core.language.sinumerik.word_table import TRANSFORMATION
+from core.message import Message
+
+COMPENSATED = 14400
+"""Alarm: radius compensation is on where a transformation begins or ends."""
+NOT_THERE = 14401
+"""Alarm: the transformation is not there."""
+_SAME = 1e-9
+
+
+def transform(state: State, log: Log, statement: Statement) -> Iterator[Block]:
+    """TRANSMIT, TRACYL or TRAFOOF. Raises ProgramError where it cannot be."""
+    word = statement.g[TRANSFORMATION]
+    if (PLACES & statement.words.keys()) or statement.sets or statement.m:
+        text: str = Message("{word} must be in a separate block.", word=word.text)
+        raise statement.refuse(word, "own-block", text, "Split the block into two or more blocks.")
+    if state.modal.nose_comp != 40:
+        text = Message(
+            "{what} is not allowed while G{state} is active.", what=word.text, state=state.modal.nose_comp
+        )
+        raise statement.refuse(word, COMPENSATED, text, "Write G40 and a move before this block.")
+    if word.name == "TRAFOOF":
+        _leave(state)
+        return
+    frame = _frame(state, statement, word)
+    _check_machine(state, statement, word)
+    if not state.modal.c_locked and state.setup.limits.spindle_is_c:
+        state.adopt(state.modal._replace(c_locked=True))
+        yield state.action(statement.line.number, word.text, SpindleLock(orient=False))
+    _leave(state)
+    if state.modal.diameter and word.name == "TRANSMIT" and "DIAMON" not in state.told:
+        state.told.add("DIAMON")
+        text = "DIAMON is active: in TRANSMIT, X is a diameter, but Y is not."
+        log.add(statement.warning(word, "transmit-diameter", text, "Write DIAMOF before this block."))
+    state.transformation = Transformation(state, log, frame)
+
+
+def _leave(state: State) -> None:
+    """What the program has shifted and turned ends with the transformation, and with its beginning."""
+    state.transformation = None
+    state.programmed = NO_FRAME
+    state.pole, state.polar, state.direction = (0.0, 0.0), None, None
+    state.derive_offsets()
+    if state.modal.mill is not None:
+        state.adopt(state.modal._replace(mill=None))
+
+
+def _check_machine(state: State, statement: Statement, word: Word) -> None:
+    modal, limits = state.modal, state.setup.limits
+    if limits.third_axis == "Y":
+        text = Message(
+            "{word} creates a Y axis from X and the spindle, but the third axis of this machine is Y.",
+            word=word.text,
+        )
+        raise statement.refuse(word, NOT_THERE, text, "Program the part with the Y axis of this machine.")
+    if not limits.c_enabled:
+        text = Message("{word} rotates the part with C, but this machine has no third axis.", word=word.text)
+        raise statement.refuse(word, NOT_THERE, text, "Select a machine file that has a C axis.")
+    if limits.c_linear:
+        text = Message(
+            "{word} rotates the part with C, but the third axis of this machine is linear.", word=word.text
+        )
+        raise statement.refuse(word, NOT_THERE, text, "Select a machine file that has a C axis.")
+    if modal.spindle:
+        text = Message("{word}: the spindle is turning, but it must be locked as the C axis.", word=word.text)
+        raise statement.refuse(word, "transformation", text, "Write M5 or SPOS=0 before this block.")
+    if modal.settable_x:
+        text = Message(
+            "{word}: G{settable} shifts X, but the part rotates about X0.",
+            word=word.text,
+            settable=modal.settable,
+        )
+        raise statement.refuse(
+            word,
+            "transformation",
+            text,
+            Message("Set X of G{settable} to 0, or write G500.", settable=modal.settable),
+        )
+
+
+def _frame(state: State, statement: Statement, word: Word) -> Face | Side:
+    """The frame that the word asks for, where the tool stands: on which side of the axis."""
+    refuse = partial(statement.refuse, word)
+    values = [0.0 if each.formula is None else state.worth(each.formula, refuse) for each in word.arguments]
+    sets = values[1:] if word.name == "TRACYL" else values
+    if any(value not in {0.0, 1.0} for value in sets[:1]) or any(sets[1:]):
+        text: str = Message(
+            "{word} selects groove walls or a data set other than the first, but only one data "
+            "set, without groove walls, is available.",
+            word=word.text,
+        )
+        raise statement.refuse(
+            word,
+            NOT_THERE,
+            text,
+            Message(
+                "Write {word} without a data set number or groove walls, and program the groove "
+                "walls as contours.",
+                word=word.name,
+            ),
+        )
+    far = state.x - state.modal.base_x > -_SAME
+    if word.name == "TRANSMIT":
+        return Face(0.0, far=far)
+    diameter = values[0] * (1.0 if state.modal.metric else 25.4) if values else 0.0
+    if diameter <= 0.0:
+        text = "TRACYL needs the diameter on which Y is measured."
+        raise statement.refuse(word, NOT_THERE, text, "Write the diameter, as in TRACYL(40).")
+    return Side(0.0, 0.0, diameter, far=far)

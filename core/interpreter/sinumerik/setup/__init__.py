@@ -1,0 +1,1 @@
+"""Tools, offsets, frames, spindles and M functions of SINUMERIK."""

@@ -1,0 +1,112 @@
+"""M functions beside spindle and end: coolant, tool change, gear steps, and those of the machine file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from core.interpreter.shared.actions import Collet, Coolant, Output
+from core.interpreter.shared.elementary_blocks import Block
+from core.interpreter.shared.machine_requirements import BUILDERS_M, Need, how_bound
+from core.interpreter.sinumerik.setup.modes_and_offsets import tell_idle
+from core.interpreter.sinumerik.sinumerik_state import State
+from core.interpreter.sinumerik.sinumerik_statement import Statement
+from core.language.diagnostics import ProgramError
+from core.language.sinumerik.sinumerik_words import Word
+from core.language.sinumerik.word_table import IDLE, M_FUNCTIONS
+from core.message import Message
+
+COLLET = "collet"  # the output of the chuck, whatever codes the builder has given it
+_OF_ISO = frozenset({98, 99})  # which call and end subprograms in the other language of this control
+
+
+def check_m(state: State, statement: Statement, lacking: list[Need]) -> None:
+    """What the M functions of the block mean; into ``lacking`` goes the builder's that nothing here answers.
+
+    The control of the maker hands a code that it does not know to the builder's PLC and raises no alarm.
+    Raises ProgramError for one that the machine file does not switch on.
+    """
+    limits = state.setup.limits
+    for code, word in statement.m.items():
+        if code in limits.m_ignored:
+            tell_idle(
+                state,
+                statement,
+                word,
+                f"M{code}",
+                "the machine file contains ignored = true for this M code",
+            )
+        elif code in M_FUNCTIONS:
+            tell_idle(state, statement, word, f"M{code}", _idle(state, code))
+        elif code in limits.m_outputs:
+            _check_chuck(state, statement, word, *limits.m_outputs[code])
+        elif code in limits.m_disabled or code in _OF_ISO:
+            raise _refused(state, statement, code, word)
+        else:
+            lacking.append(Need(f"{BUILDERS_M}{code}", statement.line.number))
+            _tell_unanswered(state, statement, code, word)
+
+
+def _check_chuck(state: State, statement: Statement, word: Word, name: str, on: bool) -> None:
+    """A code that opens the chuck is kept to the interlock that M13 of the other language has."""
+    turns = state.modal.spindle and 5 not in statement.m
+    if name == COLLET and not on and turns and not state.setup.limits.unclamp_while_turning:
+        text = Message("{word} cannot open the chuck while the spindle turns.", word=word.text)
+        raise statement.refuse(word, "unclamp-turning", text, "Write M5 before this block.")
+
+
+def _idle(state: State, code: int) -> str:
+    if code == 6 and 6 not in state.setup.limits.m_outputs:
+        return "T changes the tool automatically on this machine"
+    return IDLE.get(f"M{code}", "")
+
+
+def _refused(state: State, statement: Statement, code: int, word: Word) -> ProgramError:
+    if code in state.setup.limits.m_disabled:
+        text = Message("M{code} is defined but not enabled in the machine file.", code=code)
+        return statement.refuse(
+            word, "m-disabled", text, Message("Set enabled = true for {code} under [m_codes].", code=code)
+        )
+    text = Message("M{code} belongs to the ISO dialect of this control.", code=code)
+    return statement.refuse(word, "m-unknown", text, "Call a subprogram by its name, and end it with M17.")
+
+
+def _tell_unanswered(state: State, statement: Statement, code: int, word: Word) -> None:
+    """Say once that a function is the builder's, and that the machine will not start with it."""
+    if f"M{code}" in state.told:
+        return
+    state.told.add(f"M{code}")
+    what = Message("M{code} is a machine-builder code that has no function on this machine", code=code)
+    text = Message("{what}, so the machine will not start.", what=what)
+    hint = how_bound(code)
+    state.log.add(statement.warning(word, "m-unanswered", text, Message("{hint}.", hint=hint.as_sentence())))
+
+
+def functions_before(state: State, statement: Statement) -> Iterator[Block]:
+    """What is switched on, before the motion of the block: coolant, and outputs of the machine file."""
+    yield from _outputs(state, statement, on=True)
+    yield from _coolant(state, statement, {7, 8})
+
+
+def functions_after(state: State, statement: Statement) -> Iterator[Block]:
+    """What is switched off, behind the motion."""
+    yield from _coolant(state, statement, {9})
+    yield from _outputs(state, statement, on=False)
+
+
+def _outputs(state: State, statement: Statement, *, on: bool) -> Iterator[Block]:
+    for code in statement.m:
+        name, wanted = state.setup.limits.m_outputs.get(code, ("", not on))
+        if name == COLLET and wanted is on:
+            state.adopt(state.modal._replace(collet_closed=on))
+            yield state.action(statement.line.number, f"M{code}", Collet(closed=on))
+        elif name and wanted is on:
+            outputs = state.modal.outputs | {name} if on else state.modal.outputs - {name}
+            state.adopt(state.modal._replace(outputs=outputs))
+            yield state.action(statement.line.number, f"M{code}", Output(name, on))
+
+
+def _coolant(state: State, statement: Statement, codes: set[int]) -> Iterator[Block]:
+    code = next((code for code in sorted(codes) if code in statement.m), None)
+    if code is not None:
+        state.adopt(state.modal._replace(coolant=code != 9))
+        yield state.action(statement.line.number, f"M{code}", Coolant(code != 9))

@@ -1,0 +1,121 @@
+"""T and D: the tool by number or name, and its cutting edge, whose length is in every position from there."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from core.interpreter.shared.actions import ToolChange
+from core.interpreter.shared.elementary_blocks import Block
+from core.interpreter.shared.interpretation import ToolUse
+from core.interpreter.shared.job_setup import ToolOffset
+from core.interpreter.sinumerik.sinumerik_state import State
+from core.interpreter.sinumerik.sinumerik_statement import Statement
+from core.language.sinumerik.sinumerik_words import Word
+from core.message import Message
+from core.tool_edges import EDGES, NAMED_TOOLS, NamedTool, edge_key, edge_name, edge_of, tool_of
+
+WRONG_TOOL = 17190
+WRONG_EDGE = 17180
+
+
+def tool_words(state: State, statement: Statement, use: ToolUse) -> Iterator[Block]:
+    """T takes the tool and its D1, D another edge, D0 no offset. Raises ProgramError."""
+    tool, edge = statement.words.get("T"), statement.words.get("D")
+    if tool is None and edge is None:
+        return
+    if state.modal.nose_comp != 40:
+        word = tool or edge
+        text = "{what} is not allowed while G{state} is active."
+        hint = "Write G40 and a move before this block."
+        raise statement.refuse(
+            word, "comp-with", text, hint, what=word.text if word else "", state=state.modal.nose_comp
+        )
+    before = state.modal.tool
+    number = tool_of(before) if tool is None else _number(state, statement, tool)
+    wanted = 1 if edge is None else _edge(state, statement, edge)
+    if not number and edge is not None and wanted:
+        text = "{edge}: no tool is active."
+        raise statement.refuse(edge, WRONG_EDGE, text, "Write T before this block.", edge=edge.text)
+    _take(state, statement, number, wanted if number else 0, use)
+    if tool is not None or state.modal.tool != before:
+        text = " ".join(word.text for word in (tool, edge) if word is not None)
+        yield state.action(statement.line.number, text, ToolChange(state.modal.tool))
+
+
+def _number(state: State, statement: Statement, word: Word) -> int:
+    if not word.string:
+        value = state.number(statement, word)
+        if not value.is_integer() or not 0 <= value < NAMED_TOOLS:
+            text = "{word} results in {value}, which is not a tool number."
+            hint = "Enter the tool number as a whole number."
+            raise statement.refuse(word, WRONG_TOOL, text, hint, word=word.text, value=value)
+        return int(value)
+    wanted = word.string.casefold()
+    for key, offset in sorted(state.setup.tools.items()):
+        if offset.name.casefold() == wanted:
+            return tool_of(key)
+    if wanted not in state.names:
+        state.names.append(wanted)
+    return NamedTool(NAMED_TOOLS + state.names.index(wanted), word.string)
+
+
+def _edge(state: State, statement: Statement, word: Word) -> int:
+    value = state.number(statement, word)
+    text = "{word}: cutting edges are D1 to D9; D0 deselects the cutting edge."
+    statement.check(value == 0 or value in EDGES, word, WRONG_EDGE, text, "Correct D.", word=word.text)
+    return int(value)
+
+
+def _take(state: State, statement: Statement, number: int, edge: int, use: ToolUse) -> None:
+    """The edge of this number is in force; 0 with D0 and T0."""
+    key = edge_key(number, edge or edge_of(state.modal.tool) if number == tool_of(state.modal.tool) else edge)
+    offset = ToolOffset() if not number else _offset(state, statement, key, use)
+    moved = state.edge if state.modal.edge else ToolOffset()
+    other = offset if edge else ToolOffset()
+    state.moved_by_tool |= {
+        name for name, a, b in (("X", moved.x, other.x), ("Z", moved.z, other.z)) if a != b
+    }
+    state.edge = offset
+    state.adopt(state.modal._replace(tool=key if number else 0, edge=edge))
+    state.derive_offsets()
+
+
+def _offset(state: State, statement: Statement, key: int, use: ToolUse) -> ToolOffset:
+    """The row of the table. Raises ProgramError for an edge that a tool of the table does not have."""
+    tools = state.setup.tools
+    if key not in tools and tool_of(key) in tools:
+        name, word = edge_name(key), statement.words.get("D")
+        text = "{name} does not exist: {key} has no such cutting edge in the tool offsets."
+        hint = "Set {other} on the TOOL OFFSETS page (F8)."
+        raise statement.refuse(
+            word, WRONG_EDGE, text, hint, name=name, key=edge_name(tool_of(key)), other=name
+        )
+    offset = use.offset(key, tools)
+    if offset is None:
+        word = statement.words.get("T") or statement.words.get("D")
+        text = Message(
+            "{key} has no tool offset, so 0 is used and the machine will not start.", key=edge_name(key)
+        )
+        hint = _hint(word)
+        state.log.add(statement.warning(word, "tool-offset-missing", text, hint))
+    return offset or ToolOffset()
+
+
+def _hint(word: Word | None) -> str:
+    """What to do where a tool has no offset; T0101 is how other controls write tool 1 and its offset."""
+    if word is not None and word.string:
+        return "Enter this name as the remark of a tool (F8)."
+    if word is not None and (iso := _TOOL_AND_OFFSET.fullmatch(word.text)):
+        meant = f"T{int(iso[1])} D{max(int(iso[2]) % 10, 1)}"
+        return Message(
+            "{word} calls tool {word2} on this control; write {meant}.",
+            word=word.text,
+            word2=int(word.text[1:]),
+            meant=meant,
+        )
+    return _SET
+
+
+_TOOL_AND_OFFSET = re.compile(r"T([0-9]{1,2})([0-9]{2})")
+_SET = "Set the offset of the tool on the TOOL OFFSETS page (F8); tools are T1 to T32."

@@ -1,0 +1,93 @@
+"""Files that a Klartext program names: other programs, and tables of datums (.D) and points (.PNT).
+
+A table has ``BEGIN NAME.D MM``, a line with the names of the columns, a line a row below their names, and
+``[END]``. A cell stands from under its column's name to the next one; an empty one tells nothing.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+
+from core.language.source import Source
+
+ENDINGS = (".D", ".PNT")
+_NAME = re.compile(r"[A-Z0-9_]+")
+_INCH = re.compile(r"BEGIN\s.*\bINCH\b", re.IGNORECASE)
+
+Row = dict[str, float]
+
+
+def is_table(name: str) -> bool:
+    """Whether a file of this name is a table and no program."""
+    return name.upper().endswith(ENDINGS)
+
+
+def table_rows(source: Source) -> dict[int, Row]:
+    """Rows by number, in the file's order: columns by name, lengths in mm; without those that FADE hides."""
+    lines = source.lines
+    head = next((at for at, text in enumerate(lines) if text.strip().upper().startswith("NR")), None)
+    if head is None:
+        return {}
+    scale = 25.4 if any(_INCH.match(text) for text in lines[:head]) else 1.0
+    columns = [(match.group(), match.start()) for match in _NAME.finditer(lines[head].upper())]
+    found: dict[int, Row] = {}
+    for text in lines[head + 1 :]:
+        cells = _cells(text, columns)
+        if not cells.get("NR", "").isdigit() or cells.get("FADE", "N").upper()[:1] in {"Y", "1"}:
+            continue
+        found[int(cells["NR"])] = {
+            name: number * (scale if name in {"X", "Y", "Z"} else 1.0)
+            for name, cell in cells.items()
+            if name != "NR" and (number := _number(cell)) is not None
+        }
+    return found
+
+
+def _cells(text: str, columns: Sequence[tuple[str, int]]) -> dict[str, str]:
+    """The cells of a row that hold something; a row number may begin before its column's name."""
+    if len(split := text.split()) == len(columns):
+        return {name: cell for (name, _), cell in zip(columns, split, strict=True)}
+    ends = [start for _, start in columns[1:]] + [len(text)]
+    starts = [0, *(start for _, start in columns[1:])]
+    cut = {name: text[a:b].strip() for (name, _), a, b in zip(columns, starts, ends, strict=True)}
+    return {name: cell for name, cell in cut.items() if cell}
+
+
+def _number(cell: str) -> float | None:
+    try:
+        return float(cell.replace(",", "."))
+    except ValueError:
+        return None
+
+
+ENDING = ".H"
+_CALL = re.compile(
+    r"(?:CALL\s+PGM|SEL\s+(?:PGM|TABLE|PATTERN))\s+(.+)|CYCL\s+DEF\s+12\.1\s+(?:PGM\s*|%\s*)?(.+)",
+    re.IGNORECASE,
+)
+_IN_TEXT = re.compile(r'"([^"]*\.(?:H|D|PNT))"', re.IGNORECASE)  # of a text that may name a file
+_OF_CONTOURS = re.compile(r"CONTOUR\s+DEF\s", re.IGNORECASE)
+_QUOTED = re.compile(r'"([^"]+)"')
+_HINTS = ("PGM", "TABLE", "PATTERN", "12.1", "CONTOUR")
+
+
+def called_programs(source: Source) -> Iterator[str]:
+    """Names of the files that the program calls or selects, in capitals."""
+    for text in source.lines:
+        if not any(hint in text.upper() for hint in _HINTS):
+            continue
+        code = text.split(";", 1)[0]
+        if match := _CALL.search(code):
+            yield file_name(next(filter(None, match.groups())))
+        if _OF_CONTOURS.search(code):
+            yield from (file_name(quoted) for quoted in _QUOTED.findall(code))
+            continue
+        for quoted in _IN_TEXT.findall(code):
+            yield file_name(quoted)
+
+
+def file_name(named: str) -> str:
+    r"""The file of a name as written: ``TNC:\PARTS\HOLE`` is HOLE.H."""
+    name = named.strip().strip('"').replace("\\", "/").rsplit("/", 1)[-1].rsplit(":", 1)[-1].strip().upper()
+    return name if "." in name else name + ENDING
