@@ -18839,16 +18839,6 @@
       <translation>este lado no tiene contorno. Elija otro contorno.</translation>
     </message>
     <message>
-      <location filename="core/extras/drawings/contour_walk.py" />
-      <source>{size} {unit} across</source>
-      <translation>{size} {unit} de diámetro</translation>
-    </message>
-    <message>
-      <location filename="core/extras/drawings/contour_walk.py" />
-      <source>{size} {unit} long</source>
-      <translation>{size} {unit} de largo</translation>
-    </message>
-    <message>
       <location filename="core/extras/drawings/drawing.py" />
       <source>the drawing has too many parallel lines. Save only the contour of the part.</source>
       <translation>el dibujo tiene demasiadas líneas paralelas. Guarde sólo el contorno de la pieza.</translation>
@@ -19087,6 +19077,16 @@
       <location filename="core/extras/drawings/turning_contour.py" />
       <source>the contour slopes too steeply for the tool</source>
       <translation>el contorno tiene una pendiente demasiado fuerte para el útil</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/unit_check.py" />
+      <source>{size} {unit} across</source>
+      <translation>{size} {unit} de diámetro</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/unit_check.py" />
+      <source>{size} {unit} long</source>
+      <translation>{size} {unit} de largo</translation>
     </message>
     <message>
       <location filename="core/extras/quality/control_charts.py" />
@@ -20539,11 +20539,6 @@
       <translation>los dos vectores son paralelos</translation>
     </message>
     <message>
-      <location filename="core/interpreter/shared/control_flow.py" />
-      <source>{source} line {line}: {value}</source>
-      <translation>{source} línea {line}: {value}</translation>
-    </message>
-    <message>
       <location filename="core/interpreter/dialects.py" />
       <source>A Klartext program needs a mill with X, Y, Z and [kinematics]; this machine does not meet these requirements.</source>
       <translation>Un programa Klartext necesita una fresadora con X, Y, Z y [kinematics]; esta máquina no cumple estos requisitos.</translation>
@@ -20572,111 +20567,6 @@
       <location filename="core/interpreter/dialects.py" />
       <source>Choose the machine file of a mill: --machine ac-table-mill.</source>
       <translation>Elija el archivo de máquina de una fresadora: --machine ac-table-mill.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/shared/formula_values.py" />
-      <source>A function has too few or too many arguments</source>
-      <translation>Una función tiene argumentos de menos o de más</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/shared/formula_values.py" />
-      <source>The formula divides by zero</source>
-      <translation>La fórmula divide por cero</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/shared/formula_values.py" />
-      <source>The result is too large</source>
-      <translation>El resultado es demasiado grande</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/shared/formula_values.py" />
-      <source>arc cosine</source>
-      <translation>arco coseno</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/shared/formula_values.py" />
-      <source>arc sine</source>
-      <translation>arco seno</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/shared/formula_values.py" />
-      <source>arc tangent</source>
-      <translation>arco tangente</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/shared/formula_values.py" />
-      <source>common logarithm</source>
-      <translation>logaritmo decimal</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/shared/formula_values.py" />
-      <source>exclusive or</source>
-      <translation>o exclusivo</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/shared/formula_values.py" />
-      <source>greater than or equal</source>
-      <translation>mayor o igual</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/shared/formula_values.py" />
-      <source>integer part</source>
-      <translation>parte entera</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/shared/formula_values.py" />
-      <source>integer quotient</source>
-      <translation>cociente entero</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/shared/formula_values.py" />
-      <source>less than or equal</source>
-      <translation>menor o igual</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/shared/formula_values.py" />
-      <source>natural logarithm</source>
-      <translation>logaritmo natural</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/shared/formula_values.py" />
-      <source>nearest whole number</source>
-      <translation>entero más cercano</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/shared/formula_values.py" />
-      <source>square root</source>
-      <translation>raíz cuadrada</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/shared/formula_values.py" />
-      <source>{formula} of {item} is undefined</source>
-      <translation>{formula} de {item} no está definido</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/shared/interpretation.py" />
-      <source>The program produces more than {most_blocks} blocks or executes more than {most_lines} lines.</source>
-      <translation>El programa genera más de {most_blocks} bloques o ejecuta más de {most_lines} líneas.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/flow/blocks_without_motion.py" />
-      <source>Check the conditions under which the program reaches this block.</source>
-      <translation>Compruebe las condiciones con las que el programa llega a este bloque.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/flow/blocks_without_motion.py" />
-      <source>In the loop, change a Q parameter that the jump condition uses.</source>
-      <translation>Cambie en el bucle un parámetro Q que use la condición del salto.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/flow/blocks_without_motion.py" />
-      <source>The program reports its own error {number} and stops.</source>
-      <translation>El programa emite su propio error {number} y se para.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/flow/blocks_without_motion.py" />
-      <source>This jump repeats forever because the loop does not change anything that affects a jump.</source>
-      <translation>Este salto se repite sin fin porque el bucle no cambia nada que influya en un salto.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycles/contour_cycles.py" />
@@ -20839,166 +20729,6 @@
       <translation>{form} dentro de un contorno de ciclos SL</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/setup/coordinate_transformations.py" />
-      <source>A datum shift of rotary axis {axis} is not supported.</source>
-      <translation>No se admite un desplazamiento de origen del eje giratorio {axis}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/setup/coordinate_transformations.py" />
-      <source>A scaling factor of 0 is not allowed.</source>
-      <translation>No se permite un factor de escala de 0.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/setup/coordinate_transformations.py" />
-      <source>Correct the row number, or add the row.</source>
-      <translation>Corrija el número de fila o agregue la fila.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/setup/coordinate_transformations.py" />
-      <source>No datum table is selected.</source>
-      <translation>No hay tabla de puntos cero seleccionada.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/setup/coordinate_transformations.py" />
-      <source>Position the rotary axis with an L block, or program the plane with PLANE.</source>
-      <translation>Posicione el eje giratorio con un bloque L o programe el plano con PLANE.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/setup/coordinate_transformations.py" />
-      <source>Program SCL with a factor such as 0.99.</source>
-      <translation>Programe SCL con un factor como 0.99.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/setup/coordinate_transformations.py" />
-      <source>Select the file with SEL TABLE before this block.</source>
-      <translation>Seleccione el archivo con SEL TABLE antes de este bloque.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/setup/coordinate_transformations.py" />
-      <source>The datum table has no row {number}.</source>
-      <translation>La tabla de puntos cero no tiene fila {number}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
-      <source>A lead of {lead} mm at S{rpm} requires a Z feed rate above the maximum of {fastest} mm/min.</source>
-      <translation>Un paso de {lead} mm con S{rpm} requiere en Z un avance superior al máximo de {fastest} mm/min.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
-      <source>Add the parameter to CYCL DEF.</source>
-      <translation>Agregue el parámetro a CYCL DEF.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
-      <source>Cycle {number} moves the cutting edge away from the wall, but {unoriented}.</source>
-      <translation>El ciclo {number} separa el filo de la pared, pero {unoriented}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
-      <source>Cycle {number} needs a running spindle.</source>
-      <translation>El ciclo {number} necesita el husillo en marcha.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
-      <source>Cycle {number} needs a spindle speed.</source>
-      <translation>El ciclo {number} necesita una velocidad de husillo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
-      <source>Cycle {number} needs the point angle of the tool for a programmed diameter.</source>
-      <translation>El ciclo {number} necesita el ángulo de punta de la herramienta para un diámetro programado.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
-      <source>Cycle {number} needs {parameter}.</source>
-      <translation>El ciclo {number} necesita {parameter}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
-      <source>Cycle {number}: Z is not synchronized with the spindle angle, so Z stops while the spindle reverses.</source>
-      <translation>Ciclo {number}: Z no está sincronizado con el ángulo del husillo, así que Z se detiene mientras el husillo invierte el giro.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
-      <source>Cycle {number}: {what}</source>
-      <translation>Ciclo {number}: {what}</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
-      <source>Enter 8 for coolant on or 9 for coolant off.</source>
-      <translation>Indique 8 para conectar el refrigerante o 9 para desconectarlo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
-      <source>Enter a feed rate above 0.</source>
-      <translation>Indique un avance mayor que 0.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
-      <source>Enter a feed rate.</source>
-      <translation>Indique un avance.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
-      <source>Enter an angle from -360 to 360 degrees.</source>
-      <translation>Indique un ángulo de -360 a 360 grados.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
-      <source>Enter the point angle in the tool table, or program Q343=+0 and Q201.</source>
-      <translation>Introduzca el ángulo de punta en la tabla de herramientas, o programe Q343=+0 y Q201.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
-      <source>Program Q214=0, or turn the cutting edge by hand when the program stops for this adjustment.</source>
-      <translation>Programe Q214=0, o gire el filo a mano cuando el programa se pare para este ajuste.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
-      <source>Program S in TOOL CALL.</source>
-      <translation>Programe S en TOOL CALL.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
-      <source>Q{parameter} selects M{number}, which is not a coolant function of this machine.</source>
-      <translation>Q{parameter} selecciona M{number}, que no es una función de refrigerante de esta máquina.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
-      <source>Start the spindle with M3 before the cycle.</source>
-      <translation>Arranque el husillo con M3 antes del ciclo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
-      <source>Use a floating tap holder.</source>
-      <translation>Use un portamachos flotante.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
-      <source>set oriented = true under [spindle] in the machine file if the drive can stop the spindle at an angle</source>
-      <translation>ponga oriented = true en [spindle] del archivo de máquina si el accionamiento puede parar el husillo en un ángulo</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
-      <source>the spindle of this machine cannot be oriented</source>
-      <translation>el husillo de esta máquina no se puede orientar</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
-      <source>{parameter} is not a valid spindle angle.</source>
-      <translation>{parameter} no es un ángulo de husillo válido.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
-      <source>{parameter} is set to rapid, but this is a cutting move.</source>
-      <translation>{parameter} indica rápido, pero este es un movimiento de corte.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
-      <source>{parameter} of cycle {number} is not a valid feed rate.</source>
-      <translation>{parameter} del ciclo {number} no es un avance válido.</translation>
-    </message>
-    <message>
       <location filename="core/interpreter/klartext/cycles/cycle_calls.py" />
       <source> (cylinder surface, {kind})</source>
       <translation> (superficie cilíndrica, {kind})</translation>
@@ -21067,6 +20797,11 @@
       <location filename="core/interpreter/klartext/cycles/cycle_calls.py" />
       <source>Enter a time above 0.</source>
       <translation>Indique un tiempo mayor que 0.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/cycle_calls.py" />
+      <source>Enter an angle from -360 to 360 degrees.</source>
+      <translation>Indique un ángulo de -360 a 360 grados.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycles/cycle_calls.py" />
@@ -21189,59 +20924,119 @@
       <translation>{node} no es un eje.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/motion/feed_rates.py" />
-      <source>Correct the feed rate.</source>
-      <translation>Corrija el avance.</translation>
+      <location filename="core/interpreter/klartext/cycles/cycle_calls.py" />
+      <source>{parameter} is not a valid spindle angle.</source>
+      <translation>{parameter} no es un ángulo de husillo válido.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/motion/feed_rates.py" />
-      <source>Enter the number of teeth (CUT) in the tool table, or program F.</source>
-      <translation>Introduzca el número de dientes (CUT) en la tabla de herramientas, o programe F.</translation>
+      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
+      <source>A lead of {lead} mm at S{rpm} requires a Z feed rate above the maximum of {fastest} mm/min.</source>
+      <translation>Un paso de {lead} mm con S{rpm} requiere en Z un avance superior al máximo de {fastest} mm/min.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/motion/feed_rates.py" />
-      <source>FZ is feed per tooth, but the number of teeth (CUT) of tool {tool} is not in the tool table.</source>
-      <translation>FZ es avance por diente, pero el número de dientes (CUT) de la herramienta {tool} no está en la tabla de herramientas.</translation>
+      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
+      <source>Add the parameter to CYCL DEF.</source>
+      <translation>Agregue el parámetro a CYCL DEF.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/motion/feed_rates.py" />
-      <source>M103 F{number} must be above 0 and at most 100 percent.</source>
-      <translation>M103 F{number} debe ser mayor que 0 y como máximo 100 por ciento.</translation>
+      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
+      <source>Cycle {number} moves the cutting edge away from the wall, but {unoriented}.</source>
+      <translation>El ciclo {number} separa el filo de la pared, pero {unoriented}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/motion/feed_rates.py" />
-      <source>M103 with a Q parameter</source>
-      <translation>M103 con un parámetro Q</translation>
+      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
+      <source>Cycle {number} needs a running spindle.</source>
+      <translation>El ciclo {number} necesita el husillo en marcha.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/motion/feed_rates.py" />
-      <source>M136 in an INCH program</source>
-      <translation>M136 en un programa en pulgadas</translation>
+      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
+      <source>Cycle {number} needs a spindle speed.</source>
+      <translation>El ciclo {number} necesita una velocidad de husillo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/motion/feed_rates.py" />
-      <source>Start the spindle with M3 or M4 before this block.</source>
-      <translation>Arranque el husillo con M3 o M4 antes de este bloque.</translation>
+      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
+      <source>Cycle {number} needs the point angle of the tool for a programmed diameter.</source>
+      <translation>El ciclo {number} necesita el ángulo de punta de la herramienta para un diámetro programado.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/motion/feed_rates.py" />
-      <source>Write M103 F20 for a fifth of the feed.</source>
-      <translation>Escriba M103 F20 para un quinto del avance.</translation>
+      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
+      <source>Cycle {number} needs {parameter}.</source>
+      <translation>El ciclo {number} necesita {parameter}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/motion/feed_rates.py" />
-      <source>{word} depends on the spindle speed, but the spindle is stopped.</source>
-      <translation>{word} depende de la velocidad del husillo, pero el husillo está parado.</translation>
+      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
+      <source>Cycle {number}: Z is not synchronized with the spindle angle, so Z stops while the spindle reverses.</source>
+      <translation>Ciclo {number}: Z no está sincronizado con el ángulo del husillo, así que Z se detiene mientras el husillo invierte el giro.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/motion/feed_rates.py" />
-      <source>{word} uses the programmed S, so the spindle override does not change the feed rate.</source>
-      <translation>{word} usa la S programada, así que el override del husillo no cambia el avance.</translation>
+      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
+      <source>Cycle {number}: {what}</source>
+      <translation>Ciclo {number}: {what}</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/motion/feed_rates.py" />
-      <source>{word} {feed} at S{rpm} gives a feed rate of {count}, which is above the maximum.</source>
-      <translation>{word} {feed} con S{rpm} da un avance de {count}, que supera el máximo.</translation>
+      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
+      <source>Enter 8 for coolant on or 9 for coolant off.</source>
+      <translation>Indique 8 para conectar el refrigerante o 9 para desconectarlo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
+      <source>Enter a feed rate above 0.</source>
+      <translation>Indique un avance mayor que 0.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
+      <source>Enter a feed rate.</source>
+      <translation>Indique un avance.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
+      <source>Enter the point angle in the tool table, or program Q343=+0 and Q201.</source>
+      <translation>Introduzca el ángulo de punta en la tabla de herramientas, o programe Q343=+0 y Q201.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
+      <source>Program Q214=0, or turn the cutting edge by hand when the program stops for this adjustment.</source>
+      <translation>Programe Q214=0, o gire el filo a mano cuando el programa se pare para este ajuste.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
+      <source>Program S in TOOL CALL.</source>
+      <translation>Programe S en TOOL CALL.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
+      <source>Q{parameter} selects M{number}, which is not a coolant function of this machine.</source>
+      <translation>Q{parameter} selecciona M{number}, que no es una función de refrigerante de esta máquina.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
+      <source>Start the spindle with M3 before the cycle.</source>
+      <translation>Arranque el husillo con M3 antes del ciclo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
+      <source>Use a floating tap holder.</source>
+      <translation>Use un portamachos flotante.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
+      <source>set oriented = true under [spindle] in the machine file if the drive can stop the spindle at an angle</source>
+      <translation>ponga oriented = true en [spindle] del archivo de máquina si el accionamiento puede parar el husillo en un ángulo</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
+      <source>the spindle of this machine cannot be oriented</source>
+      <translation>el husillo de esta máquina no se puede orientar</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
+      <source>{parameter} is set to rapid, but this is a cutting move.</source>
+      <translation>{parameter} indica rápido, pero este es un movimiento de corte.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
+      <source>{parameter} of cycle {number} is not a valid feed rate.</source>
+      <translation>{parameter} del ciclo {number} no es un avance válido.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycles/hole_cycles.py" />
@@ -21324,6 +21119,276 @@
       <translation>La herramienta, la profundización o el avance del ciclo 208 no es válido para el agujero.</translation>
     </message>
     <message>
+      <location filename="core/interpreter/klartext/cycles/older_cycles.py" />
+      <source>A pocket cannot be milled at rapid.</source>
+      <translation>Una cajera no se puede fresar en rápido.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/older_cycles.py" />
+      <source>An infeed of {step} mm would need {count} passes, which is too many.</source>
+      <translation>Una profundización de {step} mm necesitaría {count} pasadas, que son demasiadas.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/older_cycles.py" />
+      <source>Cycle 18 needs a spindle speed and a pitch.</source>
+      <translation>El ciclo 18 necesita una velocidad de husillo y un paso.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/older_cycles.py" />
+      <source>Increase the infeed.</source>
+      <translation>Aumente la profundización.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/older_cycles.py" />
+      <source>Line {number}.{part} of the cycle has no {axis}.</source>
+      <translation>La línea {number}.{part} del ciclo no tiene {axis}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/older_cycles.py" />
+      <source>Program S in TOOL CALL and PITCH in cycle 18.</source>
+      <translation>Programe S en TOOL CALL y PITCH en el ciclo 18.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/older_cycles.py" />
+      <source>The slot of cycle 3 has no length.</source>
+      <translation>La ranura del ciclo 3 no tiene longitud.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/older_cycles.py" />
+      <source>The tool is wider than the pocket.</source>
+      <translation>La herramienta es más ancha que la cajera.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/older_cycles.py" />
+      <source>The tool is wider than the slot.</source>
+      <translation>La herramienta es más ancha que la ranura.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/older_cycles.py" />
+      <source>Use a smaller tool.</source>
+      <translation>Use una herramienta menor.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/older_cycles.py" />
+      <source>Write F in CYCL DEF.</source>
+      <translation>Escriba F en CYCL DEF.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/older_cycles.py" />
+      <source>Write the length of the slot in line 3.4.</source>
+      <translation>Escriba la longitud de la ranura en la línea 3.4.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/pocket_cycles.py" />
+      <source>A slot {half} mm wide over {sweep} degrees on a circle {radius} mm in diameter is not possible.</source>
+      <translation>Una ranura de {half} mm de ancho sobre {sweep} grados en un círculo de {radius} mm de diámetro no es posible.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/pocket_cycles.py" />
+      <source>Correct Q218 and Q219.</source>
+      <translation>Corrija Q218 y Q219.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/pocket_cycles.py" />
+      <source>Correct Q219, Q248 and Q375.</source>
+      <translation>Corrija Q219, Q248 y Q375.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/pocket_cycles.py" />
+      <source>Correct the blank dimensions.</source>
+      <translation>Corrija las medidas de la pieza en bruto.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/pocket_cycles.py" />
+      <source>Enter a valid number.</source>
+      <translation>Indique un número válido.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/pocket_cycles.py" />
+      <source>Q367 must be 0, 1, 2 or 3.</source>
+      <translation>Q367 debe ser 0, 1, 2 o 3.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/pocket_cycles.py" />
+      <source>Q367 must be 0, 1, 2, 3 or 4.</source>
+      <translation>Q367 debe ser 0, 1, 2, 3 o 4.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/pocket_cycles.py" />
+      <source>Q377={count} is not a valid number of slots.</source>
+      <translation>Q377={count} no es un número de ranuras válido.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/pocket_cycles.py" />
+      <source>Set Q366=+0 for a center-cutting tool.</source>
+      <translation>Ponga Q366=+0 para una herramienta que corte en el centro.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/pocket_cycles.py" />
+      <source>Set Q370 between 0.1 and 1.9999, and enter the tool radius.</source>
+      <translation>Ponga Q370 entre 0.1 y 1.9999, e indique el radio de la herramienta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/pocket_cycles.py" />
+      <source>The blank is not larger than the stud.</source>
+      <translation>El bruto no es mayor que la isla.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/pocket_cycles.py" />
+      <source>The ends of the slot overlap.</source>
+      <translation>Los extremos de la ranura se solapan.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/pocket_cycles.py" />
+      <source>The slot is wider than it is long.</source>
+      <translation>La ranura es más ancha que larga.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/pocket_cycles.py" />
+      <source>The tool is wider than the pocket or slot.</source>
+      <translation>La herramienta es más ancha que la cajera o la ranura.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/pocket_cycles.py" />
+      <source>With path overlap Q370={overlap} and tool radius {radius} mm, the cycle cannot clear the area.</source>
+      <translation>Con el solapamiento Q370={overlap} y un radio de herramienta de {radius} mm, el ciclo no puede vaciar la superficie.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/point_patterns.py" />
+      <source>Enter a whole number of 1 or more.</source>
+      <translation>Indique un número entero de 1 o más.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/point_patterns.py" />
+      <source>Q{parameter}={count} is not a valid number of positions.</source>
+      <translation>Q{parameter}={count} no es un número de posiciones válido.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/point_patterns.py" />
+      <source>The maximum is {most_points} points.</source>
+      <translation>El máximo es de {most_points} puntos.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/point_patterns.py" />
+      <source>The pattern has too many points: {found_count}.</source>
+      <translation>La figura tiene demasiados puntos: {found_count}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/point_patterns.py" />
+      <source>{form}: {number} is not a valid number of points.</source>
+      <translation>{form}: {number} no es un número de puntos válido.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/flow/blocks_without_motion.py" />
+      <source>Check the conditions under which the program reaches this block.</source>
+      <translation>Compruebe las condiciones con las que el programa llega a este bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/flow/blocks_without_motion.py" />
+      <source>In the loop, change a Q parameter that the jump condition uses.</source>
+      <translation>Cambie en el bucle un parámetro Q que use la condición del salto.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/flow/blocks_without_motion.py" />
+      <source>The program reports its own error {number} and stops.</source>
+      <translation>El programa emite su propio error {number} y se para.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/flow/blocks_without_motion.py" />
+      <source>This jump repeats forever because the loop does not change anything that affects a jump.</source>
+      <translation>Este salto se repite sin fin porque el bucle no cambia nada que influya en un salto.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/flow/mid_program_startup.py" />
+      <source>MIRROR {mirrored}</source>
+      <translation>MIRROR {mirrored}</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/flow/system_data.py" />
+      <source>Add the tool to the tool table.</source>
+      <translation>Agregue la herramienta a la tabla de herramientas.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/flow/system_data.py" />
+      <source>FN 17 SYSWRITE ID50 NR{number} {name}</source>
+      <translation>FN 17 SYSWRITE ID50 NR{number} {name}</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/flow/system_data.py" />
+      <source>FN {function} with ID{word} NR{number} IDX{index}</source>
+      <translation>FN {function} con ID{word} NR{number} IDX{index}</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/flow/system_data.py" />
+      <source>The tool table has no column {empty}, so FN 18 returns {value} as it does for an empty cell.</source>
+      <translation>La tabla de herramientas no tiene columna {empty}, así que FN 18 devuelve {value} como para una celda vacía.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/flow/system_data.py" />
+      <source>Tool {tool} is not in the tool table.</source>
+      <translation>La herramienta {tool} no está en la tabla de herramientas.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/flow/system_data.py" />
+      <source>Writing {name} of tool {tool} to the tool table with FN 17 (enter the value in the tool table instead)</source>
+      <translation>Escribir {name} de la herramienta {tool} en la tabla de herramientas con FN 17 (introduzca el valor en la tabla)</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/flow/word_values.py" />
+      <source>Correct the formula.</source>
+      <translation>Corrija la fórmula.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/flow/word_values.py" />
+      <source>Correct the value.</source>
+      <translation>Corrija el valor.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/flow/word_values.py" />
+      <source>F must be above zero.</source>
+      <translation>F debe ser mayor que cero.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/flow/word_values.py" />
+      <source>No feed rate is active.</source>
+      <translation>No hay ningún avance activo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/flow/word_values.py" />
+      <source>Program F in TOOL CALL.</source>
+      <translation>Programe F en TOOL CALL.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/flow/word_values.py" />
+      <source>Q{number}=PREDEF, but no GLOBAL DEF defines Q{number2}.</source>
+      <translation>Q{number}=PREDEF, pero ningún GLOBAL DEF define Q{number2}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/flow/word_values.py" />
+      <source>The last TOOL CALL has no F.</source>
+      <translation>El último TOOL CALL no tiene F.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/flow/word_values.py" />
+      <source>The result {value} exceeds the limit of {most_q}.</source>
+      <translation>El resultado {value} supera el límite de {most_q}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/flow/word_values.py" />
+      <source>Write F or FMAX.</source>
+      <translation>Escriba F o FMAX.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/flow/word_values.py" />
+      <source>Write GLOBAL DEF before this block, or enter a number.</source>
+      <translation>Escriba GLOBAL DEF antes de este bloque o indique un número.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/flow/word_values.py" />
+      <source>{what} {value} is not between {low} and {maximum}.</source>
+      <translation>{what} {value} no está entre {low} y {maximum}.</translation>
+    </message>
+    <message>
       <location filename="core/interpreter/klartext/klartext_interpreter.py" />
       <source>CYCL CALL</source>
       <translation>CYCL CALL</translation>
@@ -21332,11 +21397,6 @@
       <location filename="core/interpreter/klartext/klartext_interpreter.py" />
       <source>Correct the label number, or add the label.</source>
       <translation>Corrija el número de la etiqueta o agregue la etiqueta.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/klartext_interpreter.py" />
-      <source>Correct the value.</source>
-      <translation>Corrija el valor.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/klartext_interpreter.py" />
@@ -21484,81 +21544,6 @@
       <translation>{what} no tiene efecto en este control.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/setup/m_functions.py" />
-      <source>Assign an output to this machine-builder code under [m_codes], or remove the code.</source>
-      <translation>Asigne en [m_codes] una salida a este código del fabricante, o quite el código.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/setup/m_functions.py" />
-      <source>Check the tool life before you start the program.</source>
-      <translation>Compruebe la vida de la herramienta antes de iniciar el programa.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/setup/m_functions.py" />
-      <source>Define the second machine datum as fixed_points under [axis.X], [axis.Y] and [axis.Z], or use M91 to measure from machine zero.</source>
-      <translation>Defina el segundo cero de la máquina como fixed_points en [axis.X], [axis.Y] y [axis.Z], o use M91 para medir desde el cero de máquina.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/setup/m_functions.py" />
-      <source>M19 stops the spindle at an angle, but {unoriented}.</source>
-      <translation>M19 para el husillo en un ángulo, pero {unoriented}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/setup/m_functions.py" />
-      <source>M91 and M92 cannot be in the same block because they measure from different datums.</source>
-      <translation>M91 y M92 no pueden estar en el mismo bloque porque miden desde ceros distintos.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/setup/m_functions.py" />
-      <source>More than one M function in the block controls the spindle.</source>
-      <translation>Más de una función M del bloque controla el husillo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/setup/m_functions.py" />
-      <source>M{number} is not allowed while M128 is active.</source>
-      <translation>M{number} no está permitido con M128 activo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/setup/m_functions.py" />
-      <source>M{number} is not defined in the machine file.</source>
-      <translation>M{number} no está definido en el archivo de máquina.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/setup/m_functions.py" />
-      <source>M{number} is programmed twice in the block.</source>
-      <translation>M{number} está programado dos veces en el bloque.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/setup/m_functions.py" />
-      <source>M{number} starts the spindle, but no TOOL CALL sets S.</source>
-      <translation>M{number} arranca el husillo, pero ningún TOOL CALL fija S.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/setup/m_functions.py" />
-      <source>On this control, M101 does not change to a replacement tool, so the called tool remains in use.</source>
-      <translation>En este control, M101 no cambia a una herramienta de repuesto, así que se sigue usando la herramienta llamada.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/setup/m_functions.py" />
-      <source>Remove one of the two.</source>
-      <translation>Quite uno de los dos.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/setup/m_functions.py" />
-      <source>Switch M128 off with M129 before this block.</source>
-      <translation>Desactive M128 con M129 antes de este bloque.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/setup/m_functions.py" />
-      <source>TOOL {tool}</source>
-      <translation>TOOL {tool}</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/setup/m_functions.py" />
-      <source>{how_oriented}, or remove M19.</source>
-      <translation>{how_oriented}, o quite M19.</translation>
-    </message>
-    <message>
       <location filename="core/interpreter/klartext/mdi_block.py" />
       <source>/ skips a program block and has no meaning in MDI</source>
       <translation>/ salta un bloque del programa y no significa nada en MDI</translation>
@@ -21619,59 +21604,59 @@
       <translation>{form} es la entrada o la salida de un contorno y no se puede usar en MDI</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/flow/mid_program_startup.py" />
-      <source>MIRROR {mirrored}</source>
-      <translation>MIRROR {mirrored}</translation>
+      <location filename="core/interpreter/klartext/motion/feed_rates.py" />
+      <source>Correct the feed rate.</source>
+      <translation>Corrija el avance.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles/older_cycles.py" />
-      <source>A pocket cannot be milled at rapid.</source>
-      <translation>Una cajera no se puede fresar en rápido.</translation>
+      <location filename="core/interpreter/klartext/motion/feed_rates.py" />
+      <source>Enter the number of teeth (CUT) in the tool table, or program F.</source>
+      <translation>Introduzca el número de dientes (CUT) en la tabla de herramientas, o programe F.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles/older_cycles.py" />
-      <source>An infeed of {step} mm would need {count} passes, which is too many.</source>
-      <translation>Una profundización de {step} mm necesitaría {count} pasadas, que son demasiadas.</translation>
+      <location filename="core/interpreter/klartext/motion/feed_rates.py" />
+      <source>FZ is feed per tooth, but the number of teeth (CUT) of tool {tool} is not in the tool table.</source>
+      <translation>FZ es avance por diente, pero el número de dientes (CUT) de la herramienta {tool} no está en la tabla de herramientas.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles/older_cycles.py" />
-      <source>Cycle 18 needs a spindle speed and a pitch.</source>
-      <translation>El ciclo 18 necesita una velocidad de husillo y un paso.</translation>
+      <location filename="core/interpreter/klartext/motion/feed_rates.py" />
+      <source>M103 F{number} must be above 0 and at most 100 percent.</source>
+      <translation>M103 F{number} debe ser mayor que 0 y como máximo 100 por ciento.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles/older_cycles.py" />
-      <source>Increase the infeed.</source>
-      <translation>Aumente la profundización.</translation>
+      <location filename="core/interpreter/klartext/motion/feed_rates.py" />
+      <source>M103 with a Q parameter</source>
+      <translation>M103 con un parámetro Q</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles/older_cycles.py" />
-      <source>Line {number}.{part} of the cycle has no {axis}.</source>
-      <translation>La línea {number}.{part} del ciclo no tiene {axis}.</translation>
+      <location filename="core/interpreter/klartext/motion/feed_rates.py" />
+      <source>M136 in an INCH program</source>
+      <translation>M136 en un programa en pulgadas</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles/older_cycles.py" />
-      <source>Program S in TOOL CALL and PITCH in cycle 18.</source>
-      <translation>Programe S en TOOL CALL y PITCH en el ciclo 18.</translation>
+      <location filename="core/interpreter/klartext/motion/feed_rates.py" />
+      <source>Start the spindle with M3 or M4 before this block.</source>
+      <translation>Arranque el husillo con M3 o M4 antes de este bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles/older_cycles.py" />
-      <source>The tool is wider than the pocket.</source>
-      <translation>La herramienta es más ancha que la cajera.</translation>
+      <location filename="core/interpreter/klartext/motion/feed_rates.py" />
+      <source>Write M103 F20 for a fifth of the feed.</source>
+      <translation>Escriba M103 F20 para un quinto del avance.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles/older_cycles.py" />
-      <source>The tool is wider than the slot.</source>
-      <translation>La herramienta es más ancha que la ranura.</translation>
+      <location filename="core/interpreter/klartext/motion/feed_rates.py" />
+      <source>{word} depends on the spindle speed, but the spindle is stopped.</source>
+      <translation>{word} depende de la velocidad del husillo, pero el husillo está parado.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles/older_cycles.py" />
-      <source>Use a smaller tool.</source>
-      <translation>Use una herramienta menor.</translation>
+      <location filename="core/interpreter/klartext/motion/feed_rates.py" />
+      <source>{word} uses the programmed S, so the spindle override does not change the feed rate.</source>
+      <translation>{word} usa la S programada, así que el override del husillo no cambia el avance.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles/older_cycles.py" />
-      <source>Write F in CYCL DEF.</source>
-      <translation>Escriba F en CYCL DEF.</translation>
+      <location filename="core/interpreter/klartext/motion/feed_rates.py" />
+      <source>{word} {feed} at S{rpm} gives a feed rate of {count}, which is above the maximum.</source>
+      <translation>{word} {feed} con S{rpm} da un avance de {count}, que supera el máximo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/motion/path_elements.py" />
@@ -21965,6 +21950,11 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/motion/plane_functions.py" />
+      <source>Switch M128 off with M129 before this block.</source>
+      <translation>Desactive M128 con M129 antes de este bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/motion/plane_functions.py" />
       <source>TABLE ROT</source>
       <translation>TABLE ROT</translation>
     </message>
@@ -22014,126 +22004,6 @@
       <translation>{low} y {high}</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles/pocket_cycles.py" />
-      <source>A slot {half} mm wide over {sweep} degrees on a circle {radius} mm in diameter is not possible.</source>
-      <translation>Una ranura de {half} mm de ancho sobre {sweep} grados en un círculo de {radius} mm de diámetro no es posible.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/pocket_cycles.py" />
-      <source>Correct Q218 and Q219.</source>
-      <translation>Corrija Q218 y Q219.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/pocket_cycles.py" />
-      <source>Correct Q219, Q248 and Q375.</source>
-      <translation>Corrija Q219, Q248 y Q375.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/pocket_cycles.py" />
-      <source>Correct the blank dimensions.</source>
-      <translation>Corrija las medidas de la pieza en bruto.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/pocket_cycles.py" />
-      <source>Enter a valid number.</source>
-      <translation>Indique un número válido.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/pocket_cycles.py" />
-      <source>Q367 must be 0, 1, 2 or 3.</source>
-      <translation>Q367 debe ser 0, 1, 2 o 3.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/pocket_cycles.py" />
-      <source>Q367 must be 0, 1, 2, 3 or 4.</source>
-      <translation>Q367 debe ser 0, 1, 2, 3 o 4.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/pocket_cycles.py" />
-      <source>Q377={count} is not a valid number of slots.</source>
-      <translation>Q377={count} no es un número de ranuras válido.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/pocket_cycles.py" />
-      <source>Set Q366=+0 for a center-cutting tool.</source>
-      <translation>Ponga Q366=+0 para una herramienta que corte en el centro.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/pocket_cycles.py" />
-      <source>Set Q370 between 0.1 and 1.9999, and enter the tool radius.</source>
-      <translation>Ponga Q370 entre 0.1 y 1.9999, e indique el radio de la herramienta.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/pocket_cycles.py" />
-      <source>The blank is not larger than the stud.</source>
-      <translation>El bruto no es mayor que la isla.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/pocket_cycles.py" />
-      <source>The ends of the slot overlap.</source>
-      <translation>Los extremos de la ranura se solapan.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/pocket_cycles.py" />
-      <source>The slot is wider than it is long.</source>
-      <translation>La ranura es más ancha que larga.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/pocket_cycles.py" />
-      <source>The tool is wider than the pocket or slot.</source>
-      <translation>La herramienta es más ancha que la cajera o la ranura.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/pocket_cycles.py" />
-      <source>With path overlap Q370={overlap} and tool radius {radius} mm, the cycle cannot clear the area.</source>
-      <translation>Con el solapamiento Q370={overlap} y un radio de herramienta de {radius} mm, el ciclo no puede vaciar la superficie.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/point_patterns.py" />
-      <source>Enter a whole number of 1 or more.</source>
-      <translation>Indique un número entero de 1 o más.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/point_patterns.py" />
-      <source>Q{parameter}={count} is not a valid number of positions.</source>
-      <translation>Q{parameter}={count} no es un número de posiciones válido.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/point_patterns.py" />
-      <source>The maximum is {most_points} points.</source>
-      <translation>El máximo es de {most_points} puntos.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/point_patterns.py" />
-      <source>The pattern has too many points: {found_count}.</source>
-      <translation>La figura tiene demasiados puntos: {found_count}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/point_patterns.py" />
-      <source>{form}: {number} is not a valid number of points.</source>
-      <translation>{form}: {number} no es un número de puntos válido.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/flow/word_values.py" />
-      <source>Correct the formula.</source>
-      <translation>Corrija la fórmula.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/flow/word_values.py" />
-      <source>Q{number}=PREDEF, but no GLOBAL DEF defines Q{number2}.</source>
-      <translation>Q{number}=PREDEF, pero ningún GLOBAL DEF define Q{number2}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/flow/word_values.py" />
-      <source>The result {value} exceeds the limit of {most_q}.</source>
-      <translation>El resultado {value} supera el límite de {most_q}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/flow/word_values.py" />
-      <source>Write GLOBAL DEF before this block, or enter a number.</source>
-      <translation>Escriba GLOBAL DEF antes de este bloque o indique un número.</translation>
-    </message>
-    <message>
       <location filename="core/interpreter/klartext/motion/radius_compensation.py" />
       <source>A tool radius of {radius} mm does not fit the contour: {why}.</source>
       <translation>Un radio de herramienta de {radius} mm no cabe en el contorno: {why}.</translation>
@@ -22159,34 +22029,114 @@
       <translation>Use una herramienta menor o cambie el contorno.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/flow/system_data.py" />
-      <source>Add the tool to the tool table.</source>
-      <translation>Agregue la herramienta a la tabla de herramientas.</translation>
+      <location filename="core/interpreter/klartext/setup/coordinate_transformations.py" />
+      <source>A datum shift of rotary axis {axis} is not supported.</source>
+      <translation>No se admite un desplazamiento de origen del eje giratorio {axis}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/flow/system_data.py" />
-      <source>FN 17 SYSWRITE ID50 NR{number} {name}</source>
-      <translation>FN 17 SYSWRITE ID50 NR{number} {name}</translation>
+      <location filename="core/interpreter/klartext/setup/coordinate_transformations.py" />
+      <source>A scaling factor of 0 is not allowed.</source>
+      <translation>No se permite un factor de escala de 0.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/flow/system_data.py" />
-      <source>FN {function} with ID{word} NR{number} IDX{index}</source>
-      <translation>FN {function} con ID{word} NR{number} IDX{index}</translation>
+      <location filename="core/interpreter/klartext/setup/coordinate_transformations.py" />
+      <source>Correct the row number, or add the row.</source>
+      <translation>Corrija el número de fila o agregue la fila.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/flow/system_data.py" />
-      <source>The tool table has no column {empty}, so FN 18 returns {value} as it does for an empty cell.</source>
-      <translation>La tabla de herramientas no tiene columna {empty}, así que FN 18 devuelve {value} como para una celda vacía.</translation>
+      <location filename="core/interpreter/klartext/setup/coordinate_transformations.py" />
+      <source>No datum table is selected.</source>
+      <translation>No hay tabla de puntos cero seleccionada.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/flow/system_data.py" />
-      <source>Tool {tool} is not in the tool table.</source>
-      <translation>La herramienta {tool} no está en la tabla de herramientas.</translation>
+      <location filename="core/interpreter/klartext/setup/coordinate_transformations.py" />
+      <source>Position the rotary axis with an L block, or program the plane with PLANE.</source>
+      <translation>Posicione el eje giratorio con un bloque L o programe el plano con PLANE.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/flow/system_data.py" />
-      <source>Writing {name} of tool {tool} to the tool table with FN 17 (enter the value in the tool table instead)</source>
-      <translation>Escribir {name} de la herramienta {tool} en la tabla de herramientas con FN 17 (introduzca el valor en la tabla)</translation>
+      <location filename="core/interpreter/klartext/setup/coordinate_transformations.py" />
+      <source>Program SCL with a factor such as 0.99.</source>
+      <translation>Programe SCL con un factor como 0.99.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/setup/coordinate_transformations.py" />
+      <source>Select the file with SEL TABLE before this block.</source>
+      <translation>Seleccione el archivo con SEL TABLE antes de este bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/setup/coordinate_transformations.py" />
+      <source>The datum table has no row {number}.</source>
+      <translation>La tabla de puntos cero no tiene fila {number}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/setup/m_functions.py" />
+      <source>Assign an output to this machine-builder code under [m_codes], or remove the code.</source>
+      <translation>Asigne en [m_codes] una salida a este código del fabricante, o quite el código.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/setup/m_functions.py" />
+      <source>Check the tool life before you start the program.</source>
+      <translation>Compruebe la vida de la herramienta antes de iniciar el programa.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/setup/m_functions.py" />
+      <source>Define the second machine datum as fixed_points under [axis.X], [axis.Y] and [axis.Z], or use M91 to measure from machine zero.</source>
+      <translation>Defina el segundo cero de la máquina como fixed_points en [axis.X], [axis.Y] y [axis.Z], o use M91 para medir desde el cero de máquina.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/setup/m_functions.py" />
+      <source>M19 stops the spindle at an angle, but {unoriented}.</source>
+      <translation>M19 para el husillo en un ángulo, pero {unoriented}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/setup/m_functions.py" />
+      <source>M91 and M92 cannot be in the same block because they measure from different datums.</source>
+      <translation>M91 y M92 no pueden estar en el mismo bloque porque miden desde ceros distintos.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/setup/m_functions.py" />
+      <source>More than one M function in the block controls the spindle.</source>
+      <translation>Más de una función M del bloque controla el husillo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/setup/m_functions.py" />
+      <source>M{number} is not allowed while M128 is active.</source>
+      <translation>M{number} no está permitido con M128 activo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/setup/m_functions.py" />
+      <source>M{number} is not defined in the machine file.</source>
+      <translation>M{number} no está definido en el archivo de máquina.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/setup/m_functions.py" />
+      <source>M{number} is programmed twice in the block.</source>
+      <translation>M{number} está programado dos veces en el bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/setup/m_functions.py" />
+      <source>M{number} starts the spindle, but no TOOL CALL sets S.</source>
+      <translation>M{number} arranca el husillo, pero ningún TOOL CALL fija S.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/setup/m_functions.py" />
+      <source>On this control, M101 does not change to a replacement tool, so the called tool remains in use.</source>
+      <translation>En este control, M101 no cambia a una herramienta de repuesto, así que se sigue usando la herramienta llamada.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/setup/m_functions.py" />
+      <source>Remove one of the two.</source>
+      <translation>Quite uno de los dos.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/setup/m_functions.py" />
+      <source>TOOL {tool}</source>
+      <translation>TOOL {tool}</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/setup/m_functions.py" />
+      <source>{how_oriented}, or remove M19.</source>
+      <translation>{how_oriented}, o quite M19.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/setup/tool_call.py" />
@@ -22239,94 +22189,539 @@
       <translation>La herramienta {tool} no tiene corrector, así que se usa 0 y la máquina no arrancará.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/flow/word_values.py" />
-      <source>F must be above zero.</source>
-      <translation>F debe ser mayor que cero.</translation>
+      <location filename="core/interpreter/omniturn/codes/omniturn_book.py" />
+      <source>taper: X travel over the thread length</source>
+      <translation>cono: recorrido de X en el largo de la rosca</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/flow/word_values.py" />
-      <source>No feed rate is active.</source>
-      <translation>No hay ningún avance activo.</translation>
+      <location filename="core/interpreter/omniturn/codes/omniturn_book.py" />
+      <source>the X coordinate</source>
+      <translation>la coordenada X</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/flow/word_values.py" />
-      <source>Program F in TOOL CALL.</source>
-      <translation>Programe F en TOOL CALL.</translation>
+      <location filename="core/interpreter/omniturn/codes/omniturn_book.py" />
+      <source>the Z coordinate</source>
+      <translation>la coordenada Z</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/flow/word_values.py" />
-      <source>The last TOOL CALL has no F.</source>
-      <translation>El último TOOL CALL no tiene F.</translation>
+      <location filename="core/interpreter/omniturn/codes/omniturn_book.py" />
+      <source>the Z position to which the drill retracts</source>
+      <translation>la posición Z a la que se retira la broca</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/flow/word_values.py" />
-      <source>Write F or FMAX.</source>
-      <translation>Escriba F o FMAX.</translation>
+      <location filename="core/interpreter/omniturn/codes/omniturn_book.py" />
+      <source>the arc center in X</source>
+      <translation>el centro del arco en X</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/flow/word_values.py" />
-      <source>{what} {value} is not between {low} and {maximum}.</source>
-      <translation>{what} {value} no está entre {low} y {maximum}.</translation>
+      <location filename="core/interpreter/omniturn/codes/omniturn_book.py" />
+      <source>the arc center in Z</source>
+      <translation>el centro del arco en Z</translation>
     </message>
     <message>
-      <location filename="core/interpreter/shared/machine_requirements.py" />
-      <source>a thread pull-out synchronized with the spindle; end the thread in a groove instead</source>
-      <translation>una salida de rosca sincronizada con el husillo; en su lugar, termine la rosca en una ranura</translation>
+      <location filename="core/interpreter/omniturn/codes/omniturn_book.py" />
+      <source>the feed</source>
+      <translation>el avance</translation>
     </message>
     <message>
-      <location filename="core/interpreter/shared/machine_requirements.py" />
-      <source>axes other than X and Z</source>
-      <translation>ejes distintos de X y Z</translation>
+      <location filename="core/interpreter/omniturn/codes/omniturn_book.py" />
+      <source>the feed per minute</source>
+      <translation>el avance por minuto</translation>
     </message>
     <message>
-      <location filename="core/interpreter/shared/machine_requirements.py" />
-      <source>chained threads or threads with a variable lead; cut each thread separately with its own lead instead</source>
-      <translation>roscas encadenadas o de paso variable; en su lugar, corte cada rosca por separado con su propio paso</translation>
+      <location filename="core/interpreter/omniturn/codes/omniturn_book.py" />
+      <source>the feed per revolution</source>
+      <translation>el avance por vuelta</translation>
     </message>
     <message>
-      <location filename="core/interpreter/shared/machine_requirements.py" />
-      <source>constant surface speed; program the spindle speed in rpm with G97 instead</source>
-      <translation>velocidad superficial constante; en su lugar, programe la velocidad del husillo en rpm con G97</translation>
+      <location filename="core/interpreter/omniturn/codes/omniturn_book.py" />
+      <source>the shift in X</source>
+      <translation>el desplazamiento en X</translation>
     </message>
     <message>
-      <location filename="core/interpreter/shared/machine_requirements.py" />
-      <source>input {name}</source>
-      <translation>la entrada {name}</translation>
+      <location filename="core/interpreter/omniturn/codes/omniturn_book.py" />
+      <source>the shift in Z</source>
+      <translation>el desplazamiento en Z</translation>
     </message>
     <message>
-      <location filename="core/interpreter/shared/machine_requirements.py" />
-      <source>milling with the plane commands (~PLXC) and (~PLZC)</source>
-      <translation>fresado con los comandos de plano (~PLXC) y (~PLZC)</translation>
+      <location filename="core/interpreter/omniturn/codes/omniturn_book.py" />
+      <source>the subroutine number</source>
+      <translation>el número de la subrutina</translation>
     </message>
     <message>
-      <location filename="core/interpreter/shared/machine_requirements.py" />
-      <source>output collet</source>
-      <translation>la salida de la pinza</translation>
+      <location filename="core/interpreter/omniturn/consequent_faults.py" />
+      <source>The arc center is programmed on the next line.</source>
+      <translation>El centro del arco está programado en la línea siguiente.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/shared/machine_requirements.py" />
-      <source>output coolant</source>
-      <translation>la salida del refrigerante</translation>
+      <location filename="core/interpreter/omniturn/consequent_faults.py" />
+      <source>Write {word} on the same line as the arc.</source>
+      <translation>Escriba {word} en la misma línea que el arco.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/shared/machine_requirements.py" />
-      <source>spindle orientation to an angle</source>
-      <translation>la orientación del husillo a un ángulo</translation>
+      <location filename="core/interpreter/omniturn/cycles/canned_cycles.py" />
+      <source>Look for a missing decimal point in {letter}.</source>
+      <translation>Busque un punto decimal que falta en {letter}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/shared/machine_requirements.py" />
-      <source>the C axis</source>
-      <translation>el eje C</translation>
+      <location filename="core/interpreter/omniturn/cycles/canned_cycles.py" />
+      <source>{text} would make {count} {what}; the maximum is {most_passes}.</source>
+      <translation>{text} haría {count} {what}; el máximo es {most_passes}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/shared/machine_requirements.py" />
-      <source>threading with constant surface speed; program G97 before the thread</source>
-      <translation>roscado con velocidad de corte constante; programe G97 antes de la rosca</translation>
+      <location filename="core/interpreter/omniturn/cycles/cycle_contour.py" />
+      <source>Correct the line.</source>
+      <translation>Corrija la línea.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/shared/machine_requirements.py" />
-      <source>write {code} = {{ output = "NAME", on = true }} under [m_codes] in the machine file, where NAME is an output under [io.out], or {code2} = {{ ignored = true }} if the code does nothing on this machine</source>
-      <translation>escriba {code} = {{ output = "NAME", on = true }} en [m_codes] del archivo de máquina, donde NAME es una salida de [io.out], o {code2} = {{ ignored = true }} si el código no hace nada en esta máquina</translation>
+      <location filename="core/interpreter/omniturn/cycles/cycle_contour.py" />
+      <source>G{one_shot} is not allowed in a contour</source>
+      <translation>G{one_shot} no está permitido en un contorno</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/cycle_contour.py" />
+      <source>Nose compensation cannot be turned on or off in a contour</source>
+      <translation>La compensación de punta no se puede activar ni desactivar en un contorno</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/cycle_contour.py" />
+      <source>Program a separate contour for finishing.</source>
+      <translation>Programe un contorno aparte para el acabado.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/cycle_contour.py" />
+      <source>The contour changes modes or coordinates; the previous ones are restored after the cycle.</source>
+      <translation>El contorno cambia modos o coordenadas; después del ciclo se restablecen los valores anteriores.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/cycle_contour.py" />
+      <source>The contour of G{one_shot} does not contain a line or an arc.</source>
+      <translation>El contorno de G{one_shot} no contiene ninguna recta ni arco.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/cycle_contour.py" />
+      <source>The first line of a contour defines its start point and cannot contain an arc or a corner</source>
+      <translation>La primera línea de un contorno define su punto de inicio y no puede contener un arco ni una esquina</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/cycle_contour.py" />
+      <source>This line of the contour cannot be read</source>
+      <translation>Esta línea del contorno no se puede leer</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/cycle_contour.py" />
+      <source>Write only X and Z of the first point.</source>
+      <translation>Escriba sólo la X y la Z del primer punto.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/cycle_contour.py" />
+      <source>Write the contour block by block, with only straight moves, arcs, chamfers and roundings.</source>
+      <translation>Escriba el contorno bloque por bloque, solo con movimientos rectos, arcos, chaflanes y redondeos.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/cycle_contour.py" />
+      <source>Write the points of the contour.</source>
+      <translation>Escriba los puntos del contorno.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/cycle_contour.py" />
+      <source>{line} is not allowed in a contour</source>
+      <translation>{line} no está permitido en un contorno</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/cycle_contour.py" />
+      <source>{words} and other words that do not belong to a contour are ignored in the contour of G{one_shot}.</source>
+      <translation>{words} y otras palabras que no pertenecen a un contorno se ignoran en el contorno de G{one_shot}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/drilling_cycles.py" />
+      <source>Correct K, or drill with G81.</source>
+      <translation>Corrija K, o taladre con G81.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/drilling_cycles.py" />
+      <source>Correct Z, or move the start point farther away from the part.</source>
+      <translation>Corrija Z, o aleje más de la pieza el punto de inicio.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/drilling_cycles.py" />
+      <source>R is the Z position to which the drill retracts from the hole.</source>
+      <translation>R es la posición Z a la que la broca se retira del agujero.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/drilling_cycles.py" />
+      <source>The bottom of the hole at {depth} is not deeper than the start point at {z}.</source>
+      <translation>El fondo del agujero en {depth} no está más profundo que el punto de inicio en {z}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/drilling_cycles.py" />
+      <source>{text} is inside the hole, at or below the depth of the first peck.</source>
+      <translation>{text} está dentro del agujero, a la profundidad del primer picoteo o más abajo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/drilling_cycles.py" />
+      <source>{text}: the peck exceeds the hole depth of {depth}.</source>
+      <translation>{text}: el picoteo supera la profundidad del agujero, que es {depth}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
+      <source>Both ends of the contour have the same {letter} as the start point, so the contour does not enclose an area to cut.</source>
+      <translation>Los dos extremos del contorno tienen la misma {letter} que el punto de inicio, así que el contorno no encierra un área que cortar.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
+      <source>Check whether the tool can plunge into the material.</source>
+      <translation>Compruebe si la herramienta puede penetrar en el material.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
+      <source>Check whether the tool fits into the undercut.</source>
+      <translation>Compruebe si la herramienta cabe en el destalonado.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
+      <source>Correct {letter} or the start point.</source>
+      <translation>Corrija {letter} o el punto de inicio.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
+      <source>In {letter}, the start point is between the two ends of the contour, but it must be outside them.</source>
+      <translation>En {letter}, el punto inicial está entre los dos extremos del contorno, pero debe estar fuera de ellos.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
+      <source>Increase I, or program the contour with fewer moves.</source>
+      <translation>Aumente I, o programe el contorno con menos movimientos.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
+      <source>Move the start point away from the contour.</source>
+      <translation>Aleje del contorno el punto de inicio.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
+      <source>Move the start point so that both ends of the contour are on the same side of it, in X and in Z.</source>
+      <translation>Ponga el punto inicial de modo que ambos extremos del contorno queden al mismo lado, en X y en Z.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
+      <source>No material remains to be cut between the contour and the start point.</source>
+      <translation>No queda material por cortar entre el contorno y el punto de inicio.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
+      <source>On the path from the start point to the contour and back, the tool comes closer to the contour than the distance U.</source>
+      <translation>En el recorrido del punto de inicio al contorno y de regreso, la herramienta se acerca al contorno a menos de la distancia U.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
+      <source>Program the contour with fewer, longer moves.</source>
+      <translation>Programe el contorno con menos movimientos, más largos.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
+      <source>Reduce U, or widen the narrow part of the contour.</source>
+      <translation>Reduzca U, o ensanche la parte estrecha del contorno.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
+      <source>Start farther from the contour in X.</source>
+      <translation>Empiece más lejos del contorno en X.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
+      <source>The allowance {text} leaves no material for the box cycle to cut.</source>
+      <translation>La sobremedida {text} no deja material para que lo corte el ciclo de caja.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
+      <source>The box has zero size along {letter} because its corner is at the start point.</source>
+      <translation>La caja tiene medida cero en {letter} porque su esquina está en el punto de inicio.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
+      <source>The contour goes deeper immediately after its first point; start the contour at the lowest X and move up the face first.</source>
+      <translation>El contorno baja justo después de su primer punto; empiece el contorno en la X más baja y suba primero por la cara.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
+      <source>The contour has {contour_count} lines and arcs; the maximum is {most_elements}.</source>
+      <translation>El contorno tiene {contour_count} líneas y arcos; el máximo es {most_elements}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
+      <source>The contour reverses along Z. The roughing passes do not reach this undercut, so the pass along the contour cuts all of its material.</source>
+      <translation>El contorno retrocede en Z. Las pasadas de desbaste no llegan a este destalonado, así que la pasada a lo largo del contorno corta todo su material.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
+      <source>The contour rises and falls again, so the tool plunges into the material after the rise.</source>
+      <translation>El contorno sube y vuelve a bajar, así que la herramienta penetra en el material después de la subida.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
+      <source>U must be less than the distance in X from the start point to the programmed X.</source>
+      <translation>U debe ser menor que la distancia en X del punto de inicio a la X programada.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
+      <source>{count} passes along a contour of {elements} lines and arcs are too many to calculate.</source>
+      <translation>{count} pasadas a lo largo de un contorno de {elements} líneas y arcos son demasiadas para calcular.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
+      <source>{text} cannot find a continuous path along the contour at distance U.</source>
+      <translation>{text} no puede hallar una trayectoria continua a lo largo del contorno a la distancia U.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
+      <source>At {rpm} rpm this lead needs a feed of {value}; the maximum is {limit}.</source>
+      <translation>A {rpm} rpm este paso necesita un avance de {value}; el máximo es {limit}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
+      <source>Because of the flank angle, the last pass would start beyond its end point in Z.</source>
+      <translation>Por el ángulo de flanco, la última pasada empezaría más allá de su punto final en Z.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
+      <source>Check I (a larger I gives fewer passes) and the X start position of the tool.</source>
+      <translation>Compruebe I (una I mayor da menos pasadas) y la posición inicial X de la herramienta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
+      <source>Check the sign of X and the start position of the tool.</source>
+      <translation>Compruebe el signo de X y la posición inicial de la herramienta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
+      <source>Correct I (the depth of the first pass) or K.</source>
+      <translation>Corrija I (la profundidad de la primera pasada) o K.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
+      <source>Correct Z, or move the tool away before G33.</source>
+      <translation>Corrija Z, o aleje la herramienta antes de G33.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
+      <source>Did you mean K{feed}?</source>
+      <translation>¿Quiso escribir K{feed}?</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
+      <source>Position the tool at the depth of the first pass before this line.</source>
+      <translation>Posicione la herramienta a la profundidad de la primera pasada antes de esta línea.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
+      <source>Start farther away from the end point Z.</source>
+      <translation>Empiece más lejos del punto final Z.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
+      <source>Start farther from the thread, or reduce S.</source>
+      <translation>Empiece más lejos de la rosca, o reduzca S.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
+      <source>The acceleration distance is {run_up}, but the Z axis needs {needed} to reach the threading feed rate.</source>
+      <translation>La distancia de aceleración es {run_up}, pero el eje Z necesita {needed} para alcanzar el avance de roscado.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
+      <source>The lead K is missing, but the line contains {feed}.</source>
+      <translation>Falta el paso K, pero la línea contiene {feed}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
+      <source>The thread ends at the same Z where it starts.</source>
+      <translation>La rosca termina en la misma Z donde empieza.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
+      <source>The thread takes {passes} passes.</source>
+      <translation>La rosca hace {passes} pasadas.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
+      <source>The thread would take {count} passes; the maximum is {most_passes}.</source>
+      <translation>La rosca haría {count} pasadas; el máximo es {most_passes}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
+      <source>Use G35 for a larger lead.</source>
+      <translation>Use G35 para un paso mayor.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
+      <source>Use G35F2 for a larger lead.</source>
+      <translation>Use G35F2 para un paso mayor.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
+      <source>the tool is at radius {x}</source>
+      <translation>la herramienta está en radio {x}</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
+      <source>{text} is on the other side of the spindle centerline: {position}.</source>
+      <translation>{text} está del otro lado del eje del husillo: {position}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
+      <source>{text} leaves no material to cut because {position}.</source>
+      <translation>{text} no deja material por cortar porque {position}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
+      <source>{text}: the first pass would be deeper than the lead.</source>
+      <translation>{text}: la primera pasada sería más profunda que el paso.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
+      <source>{text}: the minimum lead is {minimum}.</source>
+      <translation>{text}: el paso mínimo es {minimum}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
+      <source>A subroutine must not call itself.</source>
+      <translation>Una subrutina no debe llamarse a sí misma.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
+      <source>Add G75 or G78, or remove RF.</source>
+      <translation>Agregue G75 o G78, o quite RF.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
+      <source>Add LF where the loop ends.</source>
+      <translation>Agregue LF donde termina el bucle.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
+      <source>Add LS with a count, or remove LF.</source>
+      <translation>Agregue LS con una cuenta, o quite LF.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
+      <source>Add M99 at the end of the subroutine.</source>
+      <translation>Agregue M99 al final de la subrutina.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
+      <source>LF has no matching LS.</source>
+      <translation>LF no tiene su LS.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
+      <source>M99 is not in a subroutine.</source>
+      <translation>M99 no está en una subrutina.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
+      <source>Move this line before M30, or start a subroutine with }n.</source>
+      <translation>Mueva esta línea antes de M30, o empiece una subrutina con }n.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
+      <source>RF has no matching G75 or G78.</source>
+      <translation>RF no tiene su G75 o G78.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
+      <source>Subroutine calls are nested more than {deepest_call} levels deep.</source>
+      <translation>Las llamadas a subrutinas están anidadas a más de {deepest_call} niveles.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
+      <source>Subroutine {inside} has no M99 before this line.</source>
+      <translation>La subrutina {inside} no tiene M99 antes de esta línea.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
+      <source>Subroutine {inside} has no M99.</source>
+      <translation>La subrutina {inside} no tiene M99.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
+      <source>Subroutine {number} already begins on line {first}.</source>
+      <translation>La subrutina {number} ya empieza en la línea {first}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
+      <source>Subroutine {number} is called, but the program does not contain }}{number2}.</source>
+      <translation>Se llama la subrutina {number}, pero el programa no contiene }}{number2}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
+      <source>The contour of G{one_shot} has no RF.</source>
+      <translation>El contorno de G{one_shot} no tiene RF.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
+      <source>The main program ends without M30 or M02.</source>
+      <translation>El programa principal termina sin M30 ni M02.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
+      <source>This line is after the end of the program but not in a subroutine.</source>
+      <translation>Esta línea está después del final del programa, pero no en una subrutina.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
+      <source>Write M30 at the end of the program, or delete this line.</source>
+      <translation>Escriba M30 al final del programa o borre esta línea.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
+      <source>Write M30 before the subroutines.</source>
+      <translation>Escriba M30 antes de las subrutinas.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
+      <source>Write RF alone on the line after the contour, or P with a subroutine number.</source>
+      <translation>Escriba RF solo en la línea después del contorno, o P con un número de subrutina.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
+      <source>Write the subroutine after M30.</source>
+      <translation>Escriba la subrutina después de M30.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
+      <source>{text} has no matching LF.</source>
+      <translation>{text} no tiene su LF.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/flow/program_size.py" />
+      <source>Reduce the loop counts.</source>
+      <translation>Reduzca las cuentas de los bucles.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/flow/program_size.py" />
+      <source>The program executes {lines} lines; the maximum is {most_lines}.</source>
+      <translation>El programa ejecuta {lines} líneas; el máximo es {most_lines}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/flow/program_size.py" />
+      <source>The program generates {blocks} blocks; the maximum is {most_blocks}.</source>
+      <translation>El programa genera {blocks} bloques; el máximo es {most_blocks}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/flow/program_size.py" />
+      <source>about 10^{tens}</source>
+      <translation>cerca de 10^{tens}</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/mdi_line.py" />
+      <source>/ skips a program line and has no meaning in MDI.</source>
+      <translation>/ salta una línea del programa y no significa nada en MDI.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/mdi_line.py" />
+      <source>{radius} rounds the corner with the next move, but MDI runs only one line.</source>
+      <translation>{radius} redondea la esquina con el movimiento siguiente, pero MDI ejecuta sólo una línea.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/motion/arc_moves.py" />
@@ -22432,16 +22827,6 @@
       <location filename="core/interpreter/omniturn/motion/c_axis.py" />
       <source>{word} is finer than the resolution of {step} degrees; {count} is used.</source>
       <translation>{word} es más fino que la resolución de {step} grados; se usa {count}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/canned_cycles.py" />
-      <source>Look for a missing decimal point in {letter}.</source>
-      <translation>Busque un punto decimal que falta en {letter}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/canned_cycles.py" />
-      <source>{text} would make {count} {what}; the maximum is {most_passes}.</source>
-      <translation>{text} haría {count} {what}; el máximo es {most_passes}.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/motion/coarse_feeds.py" />
@@ -22564,121 +22949,6 @@
       <translation>{what} en la línea {line} no es una recta</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/cycles/cycle_contour.py" />
-      <source>Correct the line.</source>
-      <translation>Corrija la línea.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/cycle_contour.py" />
-      <source>G{one_shot} is not allowed in a contour</source>
-      <translation>G{one_shot} no está permitido en un contorno</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/cycle_contour.py" />
-      <source>Nose compensation cannot be turned on or off in a contour</source>
-      <translation>La compensación de punta no se puede activar ni desactivar en un contorno</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/cycle_contour.py" />
-      <source>Program a separate contour for finishing.</source>
-      <translation>Programe un contorno aparte para el acabado.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/cycle_contour.py" />
-      <source>The contour changes modes or coordinates; the previous ones are restored after the cycle.</source>
-      <translation>El contorno cambia modos o coordenadas; después del ciclo se restablecen los valores anteriores.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/cycle_contour.py" />
-      <source>The contour of G{one_shot} does not contain a line or an arc.</source>
-      <translation>El contorno de G{one_shot} no contiene ninguna recta ni arco.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/cycle_contour.py" />
-      <source>The first line of a contour defines its start point and cannot contain an arc or a corner</source>
-      <translation>La primera línea de un contorno define su punto de inicio y no puede contener un arco ni una esquina</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/cycle_contour.py" />
-      <source>This line of the contour cannot be read</source>
-      <translation>Esta línea del contorno no se puede leer</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/cycle_contour.py" />
-      <source>Write only X and Z of the first point.</source>
-      <translation>Escriba sólo la X y la Z del primer punto.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/cycle_contour.py" />
-      <source>Write the contour block by block, with only straight moves, arcs, chamfers and roundings.</source>
-      <translation>Escriba el contorno bloque por bloque, solo con movimientos rectos, arcos, chaflanes y redondeos.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/cycle_contour.py" />
-      <source>Write the points of the contour.</source>
-      <translation>Escriba los puntos del contorno.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/cycle_contour.py" />
-      <source>{line} is not allowed in a contour</source>
-      <translation>{line} no está permitido en un contorno</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/cycle_contour.py" />
-      <source>{words} and other words that do not belong to a contour are ignored in the contour of G{one_shot}.</source>
-      <translation>{words} y otras palabras que no pertenecen a un contorno se ignoran en el contorno de G{one_shot}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/drilling_cycles.py" />
-      <source>Correct K, or drill with G81.</source>
-      <translation>Corrija K, o taladre con G81.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/drilling_cycles.py" />
-      <source>Correct Z, or move the start point farther away from the part.</source>
-      <translation>Corrija Z, o aleje más de la pieza el punto de inicio.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/drilling_cycles.py" />
-      <source>R is the Z position to which the drill retracts from the hole.</source>
-      <translation>R es la posición Z a la que la broca se retira del agujero.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/drilling_cycles.py" />
-      <source>The bottom of the hole at {depth} is not deeper than the start point at {z}.</source>
-      <translation>El fondo del agujero en {depth} no está más profundo que el punto de inicio en {z}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/drilling_cycles.py" />
-      <source>{text} is inside the hole, at or below the depth of the first peck.</source>
-      <translation>{text} está dentro del agujero, a la profundidad del primer picoteo o más abajo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/drilling_cycles.py" />
-      <source>{text}: the peck exceeds the hole depth of {depth}.</source>
-      <translation>{text}: el picoteo supera la profundidad del agujero, que es {depth}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/setup/spindle_and_dwell.py" />
-      <source>Check F; with G04, F is in seconds.</source>
-      <translation>Compruebe F; con G04, F está en segundos.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/setup/spindle_and_dwell.py" />
-      <source>Program a dwell of at least G04F{needed} after this line.</source>
-      <translation>Programe una espera de al menos G04F{needed} después de esta línea.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/setup/spindle_and_dwell.py" />
-      <source>The C drive does not signal when C is in position; at this point, C needs another {needed} s to finish its move.</source>
-      <translation>El accionamiento de C no avisa cuando C está en posición; en este punto, C necesita {needed} s más para terminar su movimiento.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/setup/spindle_and_dwell.py" />
-      <source>The dwell lasts {seconds} minutes.</source>
-      <translation>La espera dura {seconds} minutos.</translation>
-    </message>
-    <message>
       <location filename="core/interpreter/omniturn/motion/feeds.py" />
       <source>Check F and G94/G95.</source>
       <translation>Compruebe F y G94/G95.</translation>
@@ -22747,161 +23017,6 @@
       <location filename="core/interpreter/omniturn/motion/feeds.py" />
       <source>Write F on this line or an earlier line.</source>
       <translation>Escriba F en esta línea o en una anterior.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/consequent_faults.py" />
-      <source>The arc center is programmed on the next line.</source>
-      <translation>El centro del arco está programado en la línea siguiente.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/consequent_faults.py" />
-      <source>Write {word} on the same line as the arc.</source>
-      <translation>Escriba {word} en la misma línea que el arco.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
-      <source>A subroutine must not call itself.</source>
-      <translation>Una subrutina no debe llamarse a sí misma.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
-      <source>Add G75 or G78, or remove RF.</source>
-      <translation>Agregue G75 o G78, o quite RF.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
-      <source>Add LF where the loop ends.</source>
-      <translation>Agregue LF donde termina el bucle.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
-      <source>Add LS with a count, or remove LF.</source>
-      <translation>Agregue LS con una cuenta, o quite LF.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
-      <source>Add M99 at the end of the subroutine.</source>
-      <translation>Agregue M99 al final de la subrutina.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
-      <source>LF has no matching LS.</source>
-      <translation>LF no tiene su LS.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
-      <source>M99 is not in a subroutine.</source>
-      <translation>M99 no está en una subrutina.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
-      <source>Move this line before M30, or start a subroutine with }n.</source>
-      <translation>Mueva esta línea antes de M30, o empiece una subrutina con }n.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
-      <source>RF has no matching G75 or G78.</source>
-      <translation>RF no tiene su G75 o G78.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
-      <source>Subroutine calls are nested more than {deepest_call} levels deep.</source>
-      <translation>Las llamadas a subrutinas están anidadas a más de {deepest_call} niveles.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
-      <source>Subroutine {inside} has no M99 before this line.</source>
-      <translation>La subrutina {inside} no tiene M99 antes de esta línea.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
-      <source>Subroutine {inside} has no M99.</source>
-      <translation>La subrutina {inside} no tiene M99.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
-      <source>Subroutine {number} already begins on line {first}.</source>
-      <translation>La subrutina {number} ya empieza en la línea {first}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
-      <source>Subroutine {number} is called, but the program does not contain }}{number2}.</source>
-      <translation>Se llama la subrutina {number}, pero el programa no contiene }}{number2}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
-      <source>The contour of G{one_shot} has no RF.</source>
-      <translation>El contorno de G{one_shot} no tiene RF.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
-      <source>The main program ends without M30 or M02.</source>
-      <translation>El programa principal termina sin M30 ni M02.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
-      <source>This line is after the end of the program but not in a subroutine.</source>
-      <translation>Esta línea está después del final del programa, pero no en una subrutina.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
-      <source>Write M30 at the end of the program, or delete this line.</source>
-      <translation>Escriba M30 al final del programa o borre esta línea.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
-      <source>Write M30 before the subroutines.</source>
-      <translation>Escriba M30 antes de las subrutinas.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
-      <source>Write RF alone on the line after the contour, or P with a subroutine number.</source>
-      <translation>Escriba RF solo en la línea después del contorno, o P con un número de subrutina.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
-      <source>Write the subroutine after M30.</source>
-      <translation>Escriba la subrutina después de M30.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/flow/loops_and_subroutines.py" />
-      <source>{text} has no matching LF.</source>
-      <translation>{text} no tiene su LF.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/setup/m_codes.py" />
-      <source>In the machine file, assign an output to this M code.</source>
-      <translation>En el archivo de máquina, asigne una salida a este código M.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/setup/m_codes.py" />
-      <source>M{code} has no effect because the machine file defines this code as ignored.</source>
-      <translation>M{code} no tiene efecto porque el archivo de máquina define este código como ignorado.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/setup/m_codes.py" />
-      <source>Set enabled = true for {code} under [m_codes].</source>
-      <translation>Ponga enabled = true para {code} en [m_codes].</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/setup/m_codes.py" />
-      <source>{name} is defined but not enabled in the machine file.</source>
-      <translation>{name} está definido pero no habilitado en el archivo de máquina.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/setup/m_codes.py" />
-      <source>{name} is not a valid code on this machine. {habit}</source>
-      <translation>{name} no es un código válido en esta máquina. {habit}</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/mdi_line.py" />
-      <source>/ skips a program line and has no meaning in MDI.</source>
-      <translation>/ salta una línea del programa y no significa nada en MDI.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/mdi_line.py" />
-      <source>{radius} rounds the corner with the next move, but MDI runs only one line.</source>
-      <translation>{radius} redondea la esquina con el movimiento siguiente, pero MDI ejecuta sólo una línea.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/motion/nose_compensation.py" />
@@ -23084,64 +23199,104 @@
       <translation>{what} no está permitido con G{state} activo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/codes/omniturn_book.py" />
-      <source>taper: X travel over the thread length</source>
-      <translation>cono: recorrido de X en el largo de la rosca</translation>
+      <location filename="core/interpreter/omniturn/motion/plane_switching.py" />
+      <source>(~{name}) needs the tool on the negative X side, but X is {pixels}.</source>
+      <translation>(~{name}) necesita la herramienta en el lado X negativo, pero X es {pixels}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/codes/omniturn_book.py" />
-      <source>the X coordinate</source>
-      <translation>la coordenada X</translation>
+      <location filename="core/interpreter/omniturn/motion/plane_switching.py" />
+      <source>D is allowed only with (~PLZC).</source>
+      <translation>D sólo está permitida con (~PLZC).</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/codes/omniturn_book.py" />
-      <source>the Z coordinate</source>
-      <translation>la coordenada Z</translation>
+      <location filename="core/interpreter/omniturn/motion/plane_switching.py" />
+      <source>D is programmed while Y is {y}, so D would move Y.</source>
+      <translation>D se programa con Y en {y}, así que D movería Y.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/codes/omniturn_book.py" />
-      <source>the Z position to which the drill retracts</source>
-      <translation>la posición Z a la que se retira la broca</translation>
+      <location filename="core/interpreter/omniturn/motion/plane_switching.py" />
+      <source>D must be a diameter greater than 0.</source>
+      <translation>D debe ser un diámetro mayor que 0.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/codes/omniturn_book.py" />
-      <source>the arc center in X</source>
-      <translation>el centro del arco en X</translation>
+      <location filename="core/interpreter/omniturn/motion/plane_switching.py" />
+      <source>H is allowed only with (~PLXC).</source>
+      <translation>H sólo está permitida con (~PLXC).</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/codes/omniturn_book.py" />
-      <source>the arc center in Z</source>
-      <translation>el centro del arco en Z</translation>
+      <location filename="core/interpreter/omniturn/motion/plane_switching.py" />
+      <source>H is programmed after a move or F, but must come first.</source>
+      <translation>H está programada después de un movimiento o de F, pero debe ir primero.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/codes/omniturn_book.py" />
-      <source>the feed</source>
-      <translation>el avance</translation>
+      <location filename="core/interpreter/omniturn/motion/plane_switching.py" />
+      <source>I and J are the coordinates of the arc center.</source>
+      <translation>I y J son las coordenadas del centro del arco.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/codes/omniturn_book.py" />
-      <source>the feed per minute</source>
-      <translation>el avance por minuto</translation>
+      <location filename="core/interpreter/omniturn/motion/plane_switching.py" />
+      <source>Move to Y0 before you program D.</source>
+      <translation>Vaya a Y0 antes de programar D.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/codes/omniturn_book.py" />
-      <source>the feed per revolution</source>
-      <translation>el avance por vuelta</translation>
+      <location filename="core/interpreter/omniturn/motion/plane_switching.py" />
+      <source>Move to negative X before this line.</source>
+      <translation>Muévase a X negativa antes de esta línea.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/codes/omniturn_book.py" />
-      <source>the shift in X</source>
-      <translation>el desplazamiento en X</translation>
+      <location filename="core/interpreter/omniturn/motion/plane_switching.py" />
+      <source>The path comes within {nearest} of the spindle centerline, but with the programmed H the tool cannot come closer to the centerline than {minimum}.</source>
+      <translation>La trayectoria pasa a {nearest} del eje del husillo, pero con la H programada la herramienta no puede acercarse al eje a menos de {minimum}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/codes/omniturn_book.py" />
-      <source>the shift in Z</source>
-      <translation>el desplazamiento en Z</translation>
+      <location filename="core/interpreter/omniturn/motion/plane_switching.py" />
+      <source>The tool centerline is offset from the spindle centerline by H.</source>
+      <translation>La línea central de la herramienta está desplazada H respecto al eje del husillo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/codes/omniturn_book.py" />
-      <source>the subroutine number</source>
-      <translation>el número de la subrutina</translation>
+      <location filename="core/interpreter/omniturn/motion/plane_switching.py" />
+      <source>Write H before the first move and before F.</source>
+      <translation>Escriba H antes del primer movimiento y antes de F.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/motion/plane_switching.py" />
+      <source>Z{z} is past the spindle centerline; with (~PLZC), Z is the diameter at the tool tip.</source>
+      <translation>Z{z} está más allá del eje de giro del husillo; con (~PLZC), Z es el diámetro en la punta de la herramienta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/motion/straight_moves.py" />
+      <source>The first move after {place} has no {ending}.</source>
+      <translation>El primer movimiento tras {place} no lleva {ending}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/motion/straight_moves.py" />
+      <source>This move is a rapid because of the G00 next to the comment on line {title_rapid}.</source>
+      <translation>Este movimiento es rápido por el G00 junto al comentario de la línea {title_rapid}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/motion/straight_moves.py" />
+      <source>Write G01 if the move is meant to cut.</source>
+      <translation>Escriba G01 si el movimiento debe cortar.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/motion/straight_moves.py" />
+      <source>Write both X and Z, or write G92 before this move.</source>
+      <translation>Escriba X y Z, o escriba G92 antes de este movimiento.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/motion/straight_moves.py" />
+      <source>the T word on line {tool_line}</source>
+      <translation>la palabra T de la línea {tool_line}</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/motion/straight_moves.py" />
+      <source>{word} is finer than the resolution of {step} {name}; {value} is used.</source>
+      <translation>{word} es más fino que la resolución de {step} {name}; se usa {value}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/motion/straight_moves.py" />
+      <source>{word} is finer than the resolution; {value} is used.</source>
+      <translation>{word} es más fino que la resolución; se usa {value}.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/omniturn_interpreter.py" />
@@ -23152,11 +23307,6 @@
       <location filename="core/interpreter/omniturn/omniturn_interpreter.py" />
       <source>Program G90 or G91 first.</source>
       <translation>Programe primero G90 o G91.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/omniturn_interpreter.py" />
-      <source>Reduce the loop counts.</source>
-      <translation>Reduzca las cuentas de los bucles.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/omniturn_interpreter.py" />
@@ -23374,194 +23524,34 @@
       <translation>{word} no es un código válido en este control. {habit}</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/motion/plane_switching.py" />
-      <source>(~{name}) needs the tool on the negative X side, but X is {pixels}.</source>
-      <translation>(~{name}) necesita la herramienta en el lado X negativo, pero X es {pixels}.</translation>
+      <location filename="core/interpreter/omniturn/setup/m_codes.py" />
+      <source>In the machine file, assign an output to this M code.</source>
+      <translation>En el archivo de máquina, asigne una salida a este código M.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/motion/plane_switching.py" />
-      <source>D is allowed only with (~PLZC).</source>
-      <translation>D sólo está permitida con (~PLZC).</translation>
+      <location filename="core/interpreter/omniturn/setup/m_codes.py" />
+      <source>M{code} has no effect because the machine file defines this code as ignored.</source>
+      <translation>M{code} no tiene efecto porque el archivo de máquina define este código como ignorado.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/motion/plane_switching.py" />
-      <source>D is programmed while Y is {y}, so D would move Y.</source>
-      <translation>D se programa con Y en {y}, así que D movería Y.</translation>
+      <location filename="core/interpreter/omniturn/setup/m_codes.py" />
+      <source>Set enabled = true for {code} under [m_codes].</source>
+      <translation>Ponga enabled = true para {code} en [m_codes].</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/motion/plane_switching.py" />
-      <source>D must be a diameter greater than 0.</source>
-      <translation>D debe ser un diámetro mayor que 0.</translation>
+      <location filename="core/interpreter/omniturn/setup/m_codes.py" />
+      <source>{name} is defined but not enabled in the machine file.</source>
+      <translation>{name} está definido pero no habilitado en el archivo de máquina.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/motion/plane_switching.py" />
-      <source>H is allowed only with (~PLXC).</source>
-      <translation>H sólo está permitida con (~PLXC).</translation>
+      <location filename="core/interpreter/omniturn/setup/m_codes.py" />
+      <source>{name} is not a valid code on this machine. {habit}</source>
+      <translation>{name} no es un código válido en esta máquina. {habit}</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/motion/plane_switching.py" />
-      <source>H is programmed after a move or F, but must come first.</source>
-      <translation>H está programada después de un movimiento o de F, pero debe ir primero.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/motion/plane_switching.py" />
-      <source>I and J are the coordinates of the arc center.</source>
-      <translation>I y J son las coordenadas del centro del arco.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/motion/plane_switching.py" />
-      <source>Move to Y0 before you program D.</source>
-      <translation>Vaya a Y0 antes de programar D.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/motion/plane_switching.py" />
-      <source>Move to negative X before this line.</source>
-      <translation>Muévase a X negativa antes de esta línea.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/motion/plane_switching.py" />
-      <source>The path comes within {nearest} of the spindle centerline, but with the programmed H the tool cannot come closer to the centerline than {minimum}.</source>
-      <translation>La trayectoria pasa a {nearest} del eje del husillo, pero con la H programada la herramienta no puede acercarse al eje a menos de {minimum}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/motion/plane_switching.py" />
-      <source>The tool centerline is offset from the spindle centerline by H.</source>
-      <translation>La línea central de la herramienta está desplazada H respecto al eje del husillo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/motion/plane_switching.py" />
-      <source>Write H before the first move and before F.</source>
-      <translation>Escriba H antes del primer movimiento y antes de F.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/motion/plane_switching.py" />
-      <source>Z{z} is past the spindle centerline; with (~PLZC), Z is the diameter at the tool tip.</source>
-      <translation>Z{z} está más allá del eje de giro del husillo; con (~PLZC), Z es el diámetro en la punta de la herramienta.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/flow/program_size.py" />
-      <source>The program executes {lines} lines; the maximum is {most_lines}.</source>
-      <translation>El programa ejecuta {lines} líneas; el máximo es {most_lines}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/flow/program_size.py" />
-      <source>The program generates {blocks} blocks; the maximum is {most_blocks}.</source>
-      <translation>El programa genera {blocks} bloques; el máximo es {most_blocks}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/flow/program_size.py" />
-      <source>about 10^{tens}</source>
-      <translation>cerca de 10^{tens}</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
-      <source>Both ends of the contour have the same {letter} as the start point, so the contour does not enclose an area to cut.</source>
-      <translation>Los dos extremos del contorno tienen la misma {letter} que el punto de inicio, así que el contorno no encierra un área que cortar.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
-      <source>Check whether the tool can plunge into the material.</source>
-      <translation>Compruebe si la herramienta puede penetrar en el material.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
-      <source>Check whether the tool fits into the undercut.</source>
-      <translation>Compruebe si la herramienta cabe en el destalonado.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
-      <source>Correct {letter} or the start point.</source>
-      <translation>Corrija {letter} o el punto de inicio.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
-      <source>In {letter}, the start point is between the two ends of the contour, but it must be outside them.</source>
-      <translation>En {letter}, el punto inicial está entre los dos extremos del contorno, pero debe estar fuera de ellos.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
-      <source>Increase I, or program the contour with fewer moves.</source>
-      <translation>Aumente I, o programe el contorno con menos movimientos.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
-      <source>Move the start point away from the contour.</source>
-      <translation>Aleje del contorno el punto de inicio.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
-      <source>Move the start point so that both ends of the contour are on the same side of it, in X and in Z.</source>
-      <translation>Ponga el punto inicial de modo que ambos extremos del contorno queden al mismo lado, en X y en Z.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
-      <source>No material remains to be cut between the contour and the start point.</source>
-      <translation>No queda material por cortar entre el contorno y el punto de inicio.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
-      <source>On the path from the start point to the contour and back, the tool comes closer to the contour than the distance U.</source>
-      <translation>En el recorrido del punto de inicio al contorno y de regreso, la herramienta se acerca al contorno a menos de la distancia U.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
-      <source>Program the contour with fewer, longer moves.</source>
-      <translation>Programe el contorno con menos movimientos, más largos.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
-      <source>Reduce U, or widen the narrow part of the contour.</source>
-      <translation>Reduzca U, o ensanche la parte estrecha del contorno.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
-      <source>Start farther from the contour in X.</source>
-      <translation>Empiece más lejos del contorno en X.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
-      <source>The allowance {text} leaves no material for the box cycle to cut.</source>
-      <translation>La sobremedida {text} no deja material para que lo corte el ciclo de caja.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
-      <source>The box has zero size along {letter} because its corner is at the start point.</source>
-      <translation>La caja tiene medida cero en {letter} porque su esquina está en el punto de inicio.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
-      <source>The contour goes deeper immediately after its first point; start the contour at the lowest X and move up the face first.</source>
-      <translation>El contorno baja justo después de su primer punto; empiece el contorno en la X más baja y suba primero por la cara.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
-      <source>The contour has {contour_count} lines and arcs; the maximum is {most_elements}.</source>
-      <translation>El contorno tiene {contour_count} líneas y arcos; el máximo es {most_elements}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
-      <source>The contour reverses along Z. The roughing passes do not reach this undercut, so the pass along the contour cuts all of its material.</source>
-      <translation>El contorno retrocede en Z. Las pasadas de desbaste no llegan a este destalonado, así que la pasada a lo largo del contorno corta todo su material.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
-      <source>The contour rises and falls again, so the tool plunges into the material after the rise.</source>
-      <translation>El contorno sube y vuelve a bajar, así que la herramienta penetra en el material después de la subida.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
-      <source>U must be less than the distance in X from the start point to the programmed X.</source>
-      <translation>U debe ser menor que la distancia en X del punto de inicio a la X programada.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
-      <source>{count} passes along a contour of {elements} lines and arcs are too many to calculate.</source>
-      <translation>{count} pasadas a lo largo de un contorno de {elements} líneas y arcos son demasiadas para calcular.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
-      <source>{text} cannot find a continuous path along the contour at distance U.</source>
-      <translation>{text} no puede hallar una trayectoria continua a lo largo del contorno a la distancia U.</translation>
+      <location filename="core/interpreter/omniturn/setup/spindle_and_dwell.py" />
+      <source>Check F; with G04, F is in seconds.</source>
+      <translation>Compruebe F; con G04, F está en segundos.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/setup/spindle_and_dwell.py" />
@@ -23574,149 +23564,19 @@
       <translation>G76 ({css_min} rpm) es mayor que G77 ({css_max} rpm).</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/motion/straight_moves.py" />
-      <source>The first move after {place} has no {ending}.</source>
-      <translation>El primer movimiento tras {place} no lleva {ending}.</translation>
+      <location filename="core/interpreter/omniturn/setup/spindle_and_dwell.py" />
+      <source>Program a dwell of at least G04F{needed} after this line.</source>
+      <translation>Programe una espera de al menos G04F{needed} después de esta línea.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/motion/straight_moves.py" />
-      <source>This move is a rapid because of the G00 next to the comment on line {title_rapid}.</source>
-      <translation>Este movimiento es rápido por el G00 junto al comentario de la línea {title_rapid}.</translation>
+      <location filename="core/interpreter/omniturn/setup/spindle_and_dwell.py" />
+      <source>The C drive does not signal when C is in position; at this point, C needs another {needed} s to finish its move.</source>
+      <translation>El accionamiento de C no avisa cuando C está en posición; en este punto, C necesita {needed} s más para terminar su movimiento.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/motion/straight_moves.py" />
-      <source>Write G01 if the move is meant to cut.</source>
-      <translation>Escriba G01 si el movimiento debe cortar.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/motion/straight_moves.py" />
-      <source>Write both X and Z, or write G92 before this move.</source>
-      <translation>Escriba X y Z, o escriba G92 antes de este movimiento.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/motion/straight_moves.py" />
-      <source>the T word on line {tool_line}</source>
-      <translation>la palabra T de la línea {tool_line}</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/motion/straight_moves.py" />
-      <source>{word} is finer than the resolution of {step} {name}; {value} is used.</source>
-      <translation>{word} es más fino que la resolución de {step} {name}; se usa {value}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/motion/straight_moves.py" />
-      <source>{word} is finer than the resolution; {value} is used.</source>
-      <translation>{word} es más fino que la resolución; se usa {value}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
-      <source>At {rpm} rpm this lead needs a feed of {value}; the maximum is {limit}.</source>
-      <translation>A {rpm} rpm este paso necesita un avance de {value}; el máximo es {limit}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
-      <source>Because of the flank angle, the last pass would start beyond its end point in Z.</source>
-      <translation>Por el ángulo de flanco, la última pasada empezaría más allá de su punto final en Z.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
-      <source>Check I (a larger I gives fewer passes) and the X start position of the tool.</source>
-      <translation>Compruebe I (una I mayor da menos pasadas) y la posición inicial X de la herramienta.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
-      <source>Check the sign of X and the start position of the tool.</source>
-      <translation>Compruebe el signo de X y la posición inicial de la herramienta.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
-      <source>Correct I (the depth of the first pass) or K.</source>
-      <translation>Corrija I (la profundidad de la primera pasada) o K.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
-      <source>Correct Z, or move the tool away before G33.</source>
-      <translation>Corrija Z, o aleje la herramienta antes de G33.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
-      <source>Did you mean K{feed}?</source>
-      <translation>¿Quiso escribir K{feed}?</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
-      <source>Position the tool at the depth of the first pass before this line.</source>
-      <translation>Posicione la herramienta a la profundidad de la primera pasada antes de esta línea.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
-      <source>Start farther away from the end point Z.</source>
-      <translation>Empiece más lejos del punto final Z.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
-      <source>Start farther from the thread, or reduce S.</source>
-      <translation>Empiece más lejos de la rosca, o reduzca S.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
-      <source>The acceleration distance is {run_up}, but the Z axis needs {needed} to reach the threading feed rate.</source>
-      <translation>La distancia de aceleración es {run_up}, pero el eje Z necesita {needed} para alcanzar el avance de roscado.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
-      <source>The lead K is missing, but the line contains {feed}.</source>
-      <translation>Falta el paso K, pero la línea contiene {feed}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
-      <source>The thread ends at the same Z where it starts.</source>
-      <translation>La rosca termina en la misma Z donde empieza.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
-      <source>The thread takes {passes} passes.</source>
-      <translation>La rosca hace {passes} pasadas.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
-      <source>The thread would take {count} passes; the maximum is {most_passes}.</source>
-      <translation>La rosca haría {count} pasadas; el máximo es {most_passes}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
-      <source>Use G35 for a larger lead.</source>
-      <translation>Use G35 para un paso mayor.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
-      <source>Use G35F2 for a larger lead.</source>
-      <translation>Use G35F2 para un paso mayor.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
-      <source>the tool is at radius {x}</source>
-      <translation>la herramienta está en radio {x}</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
-      <source>{text} is on the other side of the spindle centerline: {position}.</source>
-      <translation>{text} está del otro lado del eje del husillo: {position}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
-      <source>{text} leaves no material to cut because {position}.</source>
-      <translation>{text} no deja material por cortar porque {position}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
-      <source>{text}: the first pass would be deeper than the lead.</source>
-      <translation>{text}: la primera pasada sería más profunda que el paso.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
-      <source>{text}: the minimum lead is {minimum}.</source>
-      <translation>{text}: el paso mínimo es {minimum}.</translation>
+      <location filename="core/interpreter/omniturn/setup/spindle_and_dwell.py" />
+      <source>The dwell lasts {seconds} minutes.</source>
+      <translation>La espera dura {seconds} minutos.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/setup/tools_and_offsets.py" />
@@ -23944,124 +23804,164 @@
       <translation>líneas {first} a {last}</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/motion/chamfers_and_rounds.py" />
-      <source>Program a different end point.</source>
-      <translation>Programe un punto final distinto.</translation>
+      <location filename="core/interpreter/shared/control_flow.py" />
+      <source>{source} line {line}: {value}</source>
+      <translation>{source} línea {line}: {value}</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/motion/chamfers_and_rounds.py" />
-      <source>Program two consecutive moves for the corner.</source>
-      <translation>Programe dos movimientos seguidos para la esquina.</translation>
+      <location filename="core/interpreter/shared/formula_values.py" />
+      <source>A function has too few or too many arguments</source>
+      <translation>Una función tiene argumentos de menos o de más</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/motion/chamfers_and_rounds.py" />
-      <source>Use CHF, CHR and RND only with G1, G2 and G3.</source>
-      <translation>Use CHF, CHR y RND sólo con G1, G2 y G3.</translation>
+      <location filename="core/interpreter/shared/formula_values.py" />
+      <source>The formula divides by zero</source>
+      <translation>La fórmula divide por cero</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/motion/chamfers_and_rounds.py" />
-      <source>Write G18 before this block.</source>
-      <translation>Escriba G18 antes de este bloque.</translation>
+      <location filename="core/interpreter/shared/formula_values.py" />
+      <source>The result is too large</source>
+      <translation>El resultado es demasiado grande</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/motion/chamfers_and_rounds.py" />
-      <source>corners in X and Z need G18</source>
-      <translation>las esquinas en X y Z necesitan G18</translation>
+      <location filename="core/interpreter/shared/formula_values.py" />
+      <source>arc cosine</source>
+      <translation>arco coseno</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/motion/chamfers_and_rounds.py" />
-      <source>the block is not a line or an arc</source>
-      <translation>el bloque no es una recta ni un arco</translation>
+      <location filename="core/interpreter/shared/formula_values.py" />
+      <source>arc sine</source>
+      <translation>arco seno</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/motion/chamfers_and_rounds.py" />
-      <source>the corner needs {needed} mm of the move on line {line}, which is only {left} mm long</source>
-      <translation>la esquina necesita {needed} mm del movimiento de la línea {line}, que sólo mide {left} mm</translation>
+      <location filename="core/interpreter/shared/formula_values.py" />
+      <source>arc tangent</source>
+      <translation>arco tangente</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/motion/chamfers_and_rounds.py" />
-      <source>the corner size</source>
-      <translation>el tamaño de la esquina</translation>
+      <location filename="core/interpreter/shared/formula_values.py" />
+      <source>common logarithm</source>
+      <translation>logaritmo decimal</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/motion/chamfers_and_rounds.py" />
-      <source>the moves on lines {line} and {line2} are in the same direction and do not form a corner.</source>
-      <translation>los movimientos de las líneas {line} y {line2} van en la misma dirección y no forman una esquina.</translation>
+      <location filename="core/interpreter/shared/formula_values.py" />
+      <source>exclusive or</source>
+      <translation>o exclusivo</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/motion/chamfers_and_rounds.py" />
-      <source>the next move, on line {line}, is not a line or an arc in X and Z</source>
-      <translation>el movimiento siguiente, en la línea {line}, no es una recta ni un arco en X y Z</translation>
+      <location filename="core/interpreter/shared/formula_values.py" />
+      <source>greater than or equal</source>
+      <translation>mayor o igual</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/flow/control_structures.py" />
-      <source>Add the matching end statement.</source>
-      <translation>Agregue la instrucción de final correspondiente.</translation>
+      <location filename="core/interpreter/shared/formula_values.py" />
+      <source>integer part</source>
+      <translation>parte entera</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/flow/control_structures.py" />
-      <source>Check the preceding blocks for the cause.</source>
-      <translation>Busque la causa en los bloques anteriores.</translation>
+      <location filename="core/interpreter/shared/formula_values.py" />
+      <source>integer quotient</source>
+      <translation>cociente entero</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/flow/control_structures.py" />
-      <source>Check the start of the control structure.</source>
-      <translation>Compruebe el inicio de la estructura de control.</translation>
+      <location filename="core/interpreter/shared/formula_values.py" />
+      <source>less than or equal</source>
+      <translation>menor o igual</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/flow/control_structures.py" />
-      <source>Correct the array sizes; at most {most_dimensions} dimensions are allowed.</source>
-      <translation>Corrija los tamaños del array; se permiten como máximo {most_dimensions} dimensiones.</translation>
+      <location filename="core/interpreter/shared/formula_values.py" />
+      <source>natural logarithm</source>
+      <translation>logaritmo natural</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/flow/control_structures.py" />
-      <source>Correct the label or the direction of the jump.</source>
-      <translation>Corrija la etiqueta o la dirección del salto.</translation>
+      <location filename="core/interpreter/shared/formula_values.py" />
+      <source>nearest whole number</source>
+      <translation>entero más cercano</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/flow/control_structures.py" />
-      <source>Shorten the list, or enlarge the array.</source>
-      <translation>Acorte la lista o agrande el array.</translation>
+      <location filename="core/interpreter/shared/formula_values.py" />
+      <source>square root</source>
+      <translation>raíz cuadrada</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/flow/control_structures.py" />
-      <source>Write DEF INT {jump} before this block.</source>
-      <translation>Escriba DEF INT {jump} antes de este bloque.</translation>
+      <location filename="core/interpreter/shared/formula_values.py" />
+      <source>{formula} of {item} is undefined</source>
+      <translation>{formula} de {item} no está definido</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/flow/control_structures.py" />
-      <source>array {item} needs {left} more elements for this list.</source>
-      <translation>al array {item} le faltan {left} elementos para esta lista.</translation>
+      <location filename="core/interpreter/shared/interpretation.py" />
+      <source>The program produces more than {most_blocks} blocks or executes more than {most_lines} lines.</source>
+      <translation>El programa genera más de {most_blocks} bloques o ejecuta más de {most_lines} líneas.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/flow/control_structures.py" />
-      <source>label {target} was not found in the search direction of {steering}.</source>
-      <translation>no se encontró la etiqueta {target} en la dirección de búsqueda de {steering}.</translation>
+      <location filename="core/interpreter/shared/machine_requirements.py" />
+      <source>a thread pull-out synchronized with the spindle; end the thread in a groove instead</source>
+      <translation>una salida de rosca sincronizada con el husillo; en su lugar, termine la rosca en una ranura</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/flow/control_structures.py" />
-      <source>the name {jump} is not defined with DEF.</source>
-      <translation>el nombre {jump} no está definido con DEF.</translation>
+      <location filename="core/interpreter/shared/machine_requirements.py" />
+      <source>axes other than X and Z</source>
+      <translation>ejes distintos de X y Z</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/flow/control_structures.py" />
-      <source>the program itself triggers alarm {number}.</source>
-      <translation>el propio programa dispara la alarma {number}.</translation>
+      <location filename="core/interpreter/shared/machine_requirements.py" />
+      <source>chained threads or threads with a variable lead; cut each thread separately with its own lead instead</source>
+      <translation>roscas encadenadas o de paso variable; en su lugar, corte cada rosca por separado con su propio paso</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/flow/control_structures.py" />
-      <source>{item}{sizes}: an array must have 1 to {largest_array} elements.</source>
-      <translation>{item}{sizes}: un array debe tener de 1 a {largest_array} elementos.</translation>
+      <location filename="core/interpreter/shared/machine_requirements.py" />
+      <source>constant surface speed; program the spindle speed in rpm with G97 instead</source>
+      <translation>velocidad superficial constante; en su lugar, programe la velocidad del husillo en rpm con G97</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/flow/control_structures.py" />
-      <source>{steering} has no matching end.</source>
-      <translation>{steering} no tiene un final correspondiente.</translation>
+      <location filename="core/interpreter/shared/machine_requirements.py" />
+      <source>input {name}</source>
+      <translation>la entrada {name}</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/flow/control_structures.py" />
-      <source>{steering} has no matching start.</source>
-      <translation>{steering} no tiene un inicio correspondiente.</translation>
+      <location filename="core/interpreter/shared/machine_requirements.py" />
+      <source>milling with the plane commands (~PLXC) and (~PLZC)</source>
+      <translation>fresado con los comandos de plano (~PLXC) y (~PLZC)</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/shared/machine_requirements.py" />
+      <source>output collet</source>
+      <translation>la salida de la pinza</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/shared/machine_requirements.py" />
+      <source>output coolant</source>
+      <translation>la salida del refrigerante</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/shared/machine_requirements.py" />
+      <source>spindle orientation to an angle</source>
+      <translation>la orientación del husillo a un ángulo</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/shared/machine_requirements.py" />
+      <source>the C axis</source>
+      <translation>el eje C</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/shared/machine_requirements.py" />
+      <source>threading with constant surface speed; program G97 before the thread</source>
+      <translation>roscado con velocidad de corte constante; programe G97 antes de la rosca</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/shared/machine_requirements.py" />
+      <source>write {code} = {{ output = "NAME", on = true }} under [m_codes] in the machine file, where NAME is an output under [io.out], or {code2} = {{ ignored = true }} if the code does nothing on this machine</source>
+      <translation>escriba {code} = {{ output = "NAME", on = true }} en [m_codes] del archivo de máquina, donde NAME es una salida de [io.out], o {code2} = {{ ignored = true }} si el código no hace nada en esta máquina</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/shared/turn_at_axis.py" />
+      <source>At the spindle centerline, the tool does not move while C turns; route the path around the centerline.</source>
+      <translation>En el eje del husillo, la herramienta no se mueve mientras gira C; lleve la trayectoria por un lado del eje.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/shared/turn_at_axis.py" />
+      <source>The path passes through the spindle centerline, where C turns by {angle} degrees.</source>
+      <translation>La trayectoria pasa por el eje del husillo, donde C gira {angle} grados.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/cycles/cycle_calls.py" />
@@ -24290,6 +24190,16 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/cycles/drilling_cycles.py" />
+      <source>Write MCALL CYCLE81( ) or another cycle before this block.</source>
+      <translation>Escriba MCALL CYCLE81( ) u otro ciclo antes de este bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/drilling_cycles.py" />
+      <source>Write TRANSMIT before this block, or program the positions after MCALL.</source>
+      <translation>Escriba TRANSMIT antes de este bloque, o programe las posiciones después de MCALL.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/drilling_cycles.py" />
       <source>this lathe has no Y axis</source>
       <translation>este torno no tiene eje Y</translation>
     </message>
@@ -24302,6 +24212,16 @@
       <location filename="core/interpreter/sinumerik/cycles/drilling_cycles.py" />
       <source>{call} needs S in rpm.</source>
       <translation>{call} necesita S en rpm.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/drilling_cycles.py" />
+      <source>{call} uses positions in X and Y, but this lathe has no Y axis.</source>
+      <translation>{call} usa posiciones en X e Y, pero este torno no tiene eje Y.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/drilling_cycles.py" />
+      <source>{call} uses the cycle called with MCALL, but no MCALL is active.</source>
+      <translation>{call} usa el ciclo llamado con MCALL, pero no hay ningún MCALL activo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/cycles/drilling_cycles.py" />
@@ -24322,6 +24242,16 @@
       <location filename="core/interpreter/sinumerik/cycles/drilling_cycles.py" />
       <source>{name} is not beyond RFP as seen from RTP (RTP {retract}, RFP {reference}, depth {bottom})</source>
       <translation>{name} no está más allá de RFP visto desde RTP (RTP {retract}, RFP {reference}, profundidad {bottom})</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/drilling_cycles.py" />
+      <source>{name} is the distance between the holes and must be greater than 0</source>
+      <translation>{name} es la distancia entre los agujeros y debe ser mayor que 0</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/drilling_cycles.py" />
+      <source>{name} is the number of holes and must be greater than 0</source>
+      <translation>{name} es el número de agujeros y debe ser mayor que 0</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/cycles/drilling_cycles.py" />
@@ -24357,6 +24287,856 @@
       <location filename="core/interpreter/sinumerik/cycles/drilling_cycles.py" />
       <source>{name} would move the tool deeper into the hole</source>
       <translation>{name} llevaría la herramienta más adentro del agujero</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
+      <source>Check the angles.</source>
+      <translation>Compruebe los ángulos.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
+      <source>Correct SPD or DIAG.</source>
+      <translation>Corrija SPD o DIAG.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
+      <source>Correct the offsets of the two tool corners.</source>
+      <translation>Corrija los correctores de las dos esquinas de la herramienta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
+      <source>Enter 3 for M3 or 4 for M4.</source>
+      <translation>Indique 3 para M3 o 4 para M4.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
+      <source>Enter _DIAG1 and _DIAG2 as diameters, and omit _AMODE.</source>
+      <translation>Indique _DIAG1 y _DIAG2 como diámetros y omita _AMODE.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
+      <source>Enter diameters, with SPD as the largest.</source>
+      <translation>Indique diámetros, con SPD como el mayor.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
+      <source>Program a face groove as a CYCLE95 contour or in G1 blocks.</source>
+      <translation>Programe una ranura frontal como contorno de CYCLE95 o en bloques G1.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
+      <source>Set both tool corners on the TOOL OFFSETS page (F8).</source>
+      <translation>Ponga las dos esquinas de la herramienta en la página CORRECTORES DE HERRAMIENTA (F8).</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
+      <source>Set {other} on the TOOL OFFSETS page (F8).</source>
+      <translation>Ponga {other} en la página CORRECTORES DE HERRAMIENTA (F8).</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
+      <source>Use a narrower tool.</source>
+      <translation>Use una herramienta más angosta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
+      <source>Write S and M3 before this block.</source>
+      <translation>Escriba S y M3 antes de este bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
+      <source>Write _FF1.</source>
+      <translation>Escriba _FF1.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
+      <source>cut the chamfer or the radius with G1 before the cycle</source>
+      <translation>corte el chaflán o el radio con G1 antes del ciclo</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
+      <source>program a groove on a taper as a CYCLE95 contour</source>
+      <translation>programe una ranura en un cono como contorno de CYCLE95</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
+      <source>program the corners as a CYCLE95 contour, or chamfer them with G1</source>
+      <translation>programe las esquinas como contorno de CYCLE95, o achaflánelas con G1</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
+      <source>the spindle is stopped, and neither _SV1 with _SDAC nor S with M3 starts it.</source>
+      <translation>el husillo está parado, y ni _SV1 con _SDAC ni S con M3 lo arrancan.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
+      <source>the tool only retracts, because this machine has no parts catcher</source>
+      <translation>la herramienta sólo se retira, porque esta máquina no tiene recogedor de piezas</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
+      <source>{call} assumes a tool {width} mm wide because {key} is not set.</source>
+      <translation>{call} supone una herramienta de {width} mm de ancho porque {key} no está puesto.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
+      <source>{call} needs the tool width, but the other tool corner ({name}) is not set.</source>
+      <translation>{call} necesita el ancho de la herramienta, pero la otra esquina de la herramienta ({name}) no está puesta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
+      <source>{key} and {other} are at the same position, so the tool has no width.</source>
+      <translation>{key} y {other} están en la misma posición, así que la herramienta no tiene ancho.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
+      <source>{name} cannot be {value}</source>
+      <translation>{name} no puede ser {value}</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
+      <source>{name} is {high} including FAL2 on both flanks, but the tool is {width} wide</source>
+      <translation>{name} es {high} con FAL2 incluido en ambos flancos, pero la herramienta mide {width} de ancho</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
+      <source>{name} is {kind}, which specifies a face groove and is not supported</source>
+      <translation>{name} es {kind}, que indica una ranura frontal y no se admite</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
+      <source>{name} is {slow} but must be between SPD {surface} and _DIAG2 {last}</source>
+      <translation>{name} es {slow}, pero debe estar entre SPD {surface} y _DIAG2 {last}</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
+      <source>{name} is {value}, which is not a valid speed for this spindle</source>
+      <translation>{name} es {value}, que no es una velocidad válida para este husillo</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
+      <source>{name} makes the groove reach past the spindle centerline</source>
+      <translation>{name} hace que la ranura llegue más allá del eje del husillo</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
+      <source>{name} must be 1 to 8 or 11 to 18</source>
+      <translation>{name} debe ser de 1 a 8 o de 11 a 18</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
+      <source>{name} must be a flank angle from 0 to less than 90 degrees</source>
+      <translation>{name} debe ser un ángulo de flanco de 0 a menos de 90 grados</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
+      <source>{name} must be a time of 0 s or more</source>
+      <translation>{name} debe ser un tiempo de 0 s o más</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
+      <source>{name} specifies depths measured from SPD, which is not supported</source>
+      <translation>{name} especifica profundidades medidas desde SPD, lo que no se admite</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
+      <source>{name} would need {count} cuts, which is too many</source>
+      <translation>{name} necesitaría {count} cortes, que son demasiados</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
+      <source>{name} would need {count} steps, which is too many</source>
+      <translation>{name} necesitaría {count} penetraciones, que son demasiadas</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
+      <source>Check the direction of the contour.</source>
+      <translation>Compruebe la dirección del contorno.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
+      <source>End the contour at a point where the tool can leave it.</source>
+      <translation>Termine el contorno en un punto donde la herramienta pueda salir de él.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
+      <source>Enter 1 for roughing, 5 for finishing or 9 for both, for external machining along Z.</source>
+      <translation>Indique 1 para desbastar, 5 para acabar o 9 para ambos, para mecanizado exterior a lo largo de Z.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
+      <source>Enter the tip quadrant on the TOOL OFFSETS page (F8).</source>
+      <translation>Introduzca el cuadrante de punta en la página CORRECTORES DE HERRAMIENTA (F8).</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
+      <source>Reduce FAL, or widen the narrow part of the contour.</source>
+      <translation>Reduzca FAL, o ensanche la parte estrecha del contorno.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
+      <source>Split the contour into smaller parts.</source>
+      <translation>Divida el contorno en partes menores.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
+      <source>Write FF2.</source>
+      <translation>Escriba FF2.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
+      <source>Write MID.</source>
+      <translation>Escriba MID.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
+      <source>Write {name}.</source>
+      <translation>Escriba {name}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
+      <source>the tool has no tip quadrant, so {call} ignores the nose radius on tapers and arcs.</source>
+      <translation>la herramienta no tiene cuadrante de punta, así que {call} no considera el radio de punta en conos y arcos.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
+      <source>with allowance {name}, no continuous path along the contour is possible</source>
+      <translation>con la sobremedida {name} no es posible una trayectoria continua a lo largo del contorno</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
+      <source>{name} has {contour_count} elements; the maximum is {most_elements}</source>
+      <translation>{name} tiene {contour_count} elementos; el máximo es {most_elements}</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
+      <source>{name} is missing, and no F is active</source>
+      <translation>{name} falta, y no hay ninguna F activa</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
+      <source>{name} is missing, but the contour has a relief cut</source>
+      <translation>{name} falta, pero el contorno tiene un destalonado</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
+      <source>{name} is missing, so the depth of a pass is not defined</source>
+      <translation>{name} falta, así que no está definida la profundidad de una pasada</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
+      <source>{name} is missing; valid types are 1 to 12</source>
+      <translation>{name} falta; los tipos válidos son de 1 a 12</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
+      <source>{name} is {value}; valid types are 1 to 12</source>
+      <translation>{name} es {value}; los tipos válidos son de 1 a 12</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
+      <source>{name} refers to a contour without lines or arcs</source>
+      <translation>{name} se refiere a un contorno sin rectas ni arcos</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
+      <source>{name} specifies a contour that the tool cannot approach or leave with enough clearance</source>
+      <translation>{name} indica un contorno al que la herramienta no puede acercarse, o del que no puede salir, con holgura suficiente</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
+      <source>{name} specifies a contour with no material to cut</source>
+      <translation>{name} indica un contorno sin material por cortar</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
+      <source>{name} would interrupt a pass {count} times, which is too many</source>
+      <translation>{name} interrumpiría una pasada {count} veces, que son demasiadas</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
+      <source>{name} would need {count} passes, which is too many</source>
+      <translation>{name} necesitaría {count} pasadas, que son demasiadas</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
+      <source>Enter 0, or the reverse direction: 4 after M3, or 3 after M4.</source>
+      <translation>Indique 0 o el sentido inverso: 4 tras M3, o 3 tras M4.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
+      <source>Enter PIT in mm.</source>
+      <translation>Indique PIT en mm.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
+      <source>Enter PIT or MPIT, or ENC 1 to use the active feed rate.</source>
+      <translation>Indique PIT o MPIT, o ENC 1 para usar el avance activo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
+      <source>Enter Z of the end point.</source>
+      <translation>Indique la Z del punto final.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
+      <source>Enter a speed, or program S before the cycle.</source>
+      <translation>Indique una velocidad, o programe S antes del ciclo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
+      <source>Lower the speed.</source>
+      <translation>Baje la velocidad.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
+      <source>No spindle speed is programmed for {code}.</source>
+      <translation>No hay velocidad de husillo programada para {code}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
+      <source>Write G97 with S and M3 or M4 before this block.</source>
+      <translation>Escriba G97 con S y M3 o M4 antes de este bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
+      <source>Write S before this block.</source>
+      <translation>Escriba S antes de este bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
+      <source>Write S in the block.</source>
+      <translation>Escriba S en el bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
+      <source>Write SPOS=0 before this block.</source>
+      <translation>Escriba SPOS=0 antes de este bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
+      <source>{call} needs the spindle to turn at a speed in rpm.</source>
+      <translation>{call} necesita que el husillo gire a una velocidad en rpm.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
+      <source>{call}: {name} is {value} rpm, but tapping with the C axis is limited to the C-axis maximum of {maximum} rpm.</source>
+      <translation>{call}: {name} es {value} rpm, pero el roscado con el eje C está limitado al máximo del eje C, {maximum} rpm.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
+      <source>{code} does not move along Z.</source>
+      <translation>{code} no se mueve a lo largo de Z.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
+      <source>{code} needs the lead K.</source>
+      <translation>{code} necesita el paso K.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
+      <source>{code} turns the spindle as the C axis, but the spindle is not locked as C.</source>
+      <translation>{code} gira el husillo como eje C, pero el husillo no está bloqueado como C.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
+      <source>{name} does not define a lead</source>
+      <translation>{name} no define ningún paso</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
+      <source>{name} does not define a speed</source>
+      <translation>{name} no define ninguna velocidad</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
+      <source>{name} does not reverse the spindle for the tap</source>
+      <translation>{name} no invierte el husillo para el macho</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
+      <source>{name} is 4, which specifies the lead as a module</source>
+      <translation>{name} es 4, que indica el paso como módulo</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
+      <source>{name} is {value} but must be 0, 1, 11 or 20</source>
+      <translation>{name} es {value}, pero debe ser 0, 1, 11 o 20</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
+      <source>{name} starts the spindle, but no S is programmed</source>
+      <translation>{name} arranca el husillo, pero no hay ninguna S programada</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
+      <source>{other}: {code} can tap only along Z.</source>
+      <translation>{other}: {code} sólo puede roscar a lo largo de Z.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/thread_cycle.py" />
+      <source>CYCLE99 supports only the functions of CYCLE97</source>
+      <translation>CYCLE99 admite sólo las funciones de CYCLE97</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/thread_cycle.py" />
+      <source>Correct SPL or FPL.</source>
+      <translation>Corrija SPL o FPL.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/thread_cycle.py" />
+      <source>Enter PIT, or MPIT from 3 to 68 for M3 to M68.</source>
+      <translation>Indique PIT, o MPIT de 3 a 68 para M3 a M68.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/thread_cycle.py" />
+      <source>Enter a value from 300101 to 300104.</source>
+      <translation>Indique un valor de 300101 a 300104.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/thread_cycle.py" />
+      <source>Enter half the thread angle.</source>
+      <translation>Indique la mitad del ángulo de rosca.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/thread_cycle.py" />
+      <source>Enter the number of passes.</source>
+      <translation>Indique el número de pasadas.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/thread_cycle.py" />
+      <source>Omit MPIT.</source>
+      <translation>Omita MPIT.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/thread_cycle.py" />
+      <source>Reduce FAL.</source>
+      <translation>Reduzca FAL.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/thread_cycle.py" />
+      <source>{name} does not continue the thread in the same Z direction</source>
+      <translation>{name} no continúa la rosca en la misma dirección Z</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/thread_cycle.py" />
+      <source>{name} does not match a thread with lead {pit}</source>
+      <translation>{name} no corresponde a una rosca de paso {pit}</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/thread_cycle.py" />
+      <source>{name} is 0, so nothing would be cut</source>
+      <translation>{name} es 0, así que no se cortaría nada</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/thread_cycle.py" />
+      <source>{name} is a lead and must be greater than 0</source>
+      <translation>{name} es un paso y debe ser mayor que 0</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/thread_cycle.py" />
+      <source>{name} is not less than TDEP, so no depth remains for roughing</source>
+      <translation>{name} no es menor que TDEP, así que no queda profundidad para desbastar</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/thread_cycle.py" />
+      <source>{name} is the same position as the start of the thread</source>
+      <translation>{name} es la misma posición que el inicio de la rosca</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/thread_cycle.py" />
+      <source>{name} is {value}: the last digit must be 1 to 4, and the sixth digit must be 3 (roughing and finishing together)</source>
+      <translation>{name} es {value}: la última cifra debe ser de 1 a 4, y la sexta debe ser 3 (desbaste y acabado juntos)</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/thread_cycle.py" />
+      <source>{name} must be a flank angle of less than 60 degrees</source>
+      <translation>{name} debe ser un ángulo de flanco de menos de 60 grados</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/thread_cycle.py" />
+      <source>{name} must be a start angle from 0 to less than 360 degrees</source>
+      <translation>{name} debe ser un ángulo de entrada de 0 a menos de 360 grados</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/undercut_cycles.py" />
+      <source>Correct FORM, or use another tool.</source>
+      <translation>Corrija FORM o use otra herramienta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/undercut_cycles.py" />
+      <source>Enter 1 for roughing, 2 for finishing or 3 for both.</source>
+      <translation>Indique 1 para desbastar, 2 para acabar o 3 para ambos.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/undercut_cycles.py" />
+      <source>Program the undercut block by block.</source>
+      <translation>Programe la garganta bloque a bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/undercut_cycles.py" />
+      <source>Use a tool with a smaller nose radius.</source>
+      <translation>Use una herramienta con menor radio de punta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/undercut_cycles.py" />
+      <source>Write form "A", "B", "E" or "F". For forms C and D, use CYCLE96. Program a free form (T) block by block.</source>
+      <translation>Escriba la forma "A", "B", "E" o "F". Para las formas C y D use CYCLE96. Programe la forma libre (T) bloque a bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/undercut_cycles.py" />
+      <source>program the undercut block by block</source>
+      <translation>programe la garganta bloque a bloque</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/undercut_cycles.py" />
+      <source>the nose radius {nose_radius} does not fit into this undercut: {why}.</source>
+      <translation>el radio de punta {nose_radius} no cabe en esta garganta: {why}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/undercut_cycles.py" />
+      <source>the nose radius {nose} is larger than the radius {radius} of this undercut.</source>
+      <translation>el radio de punta {nose} es mayor que el radio {radius} de esta garganta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/undercut_cycles.py" />
+      <source>the tip quadrant of the tool is {quadrant}, but an undercut needs a quadrant from 1 to 4.</source>
+      <translation>el cuadrante de punta de la herramienta es {quadrant}, pero una garganta necesita un cuadrante de 1 a 4.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/undercut_cycles.py" />
+      <source>{name} is {diameter}, but must be greater than 3 mm for an undercut</source>
+      <translation>{name} es {diameter}, pero debe ser mayor que 3 mm para una garganta</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/undercut_cycles.py" />
+      <source>{name} is {form}, which is not supported</source>
+      <translation>{name} es {form}, que no se admite</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/undercut_cycles.py" />
+      <source>{name} is {nominal}, which is not a coarse thread size from M3 to M{largest_of_all}</source>
+      <translation>{name} es {nominal}, que no es una medida de rosca gruesa de M3 a M{largest_of_all}</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/undercut_cycles.py" />
+      <source>{name} must be "A", "B", "C" or "D"</source>
+      <translation>{name} debe ser "A", "B", "C" o "D"</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/undercut_cycles.py" />
+      <source>{name} must be "E" or "F"</source>
+      <translation>{name} debe ser "E" o "F"</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/undercut_cycles.py" />
+      <source>{name} specifies a lead of {lead}, but no undercut is defined for that lead</source>
+      <translation>{name} indica un paso de {lead}, pero no hay ninguna garganta definida para ese paso</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/undercut_cycles.py" />
+      <source>{name} {form} is for inside undercuts, but the cutting edge of the tool is for outside undercuts</source>
+      <translation>{name} {form} es para gargantas interiores, pero el filo de la herramienta es para gargantas exteriores</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/undercut_cycles.py" />
+      <source>{name} {form} is for outside undercuts, but the cutting edge of the tool is for inside undercuts</source>
+      <translation>{name} {form} es para gargantas exteriores, pero el filo de la herramienta es para gargantas interiores</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/block_search.py" />
+      <source>{call} calls another program and cannot be used in MDI</source>
+      <translation>{call} llama a otro programa y no se puede usar en MDI</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/block_search.py" />
+      <source>{steering} jumps to another block and cannot be used in MDI</source>
+      <translation>{steering} salta a otro bloque y no se puede usar en MDI</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/block_search.py" />
+      <source>{word} is allowed only between two blocks of a contour</source>
+      <translation>{word} sólo se permite entre dos bloques de un contorno</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/control_structures.py" />
+      <source>Add the matching end statement.</source>
+      <translation>Agregue la instrucción de final correspondiente.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/control_structures.py" />
+      <source>Check the preceding blocks for the cause.</source>
+      <translation>Busque la causa en los bloques anteriores.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/control_structures.py" />
+      <source>Check the start of the control structure.</source>
+      <translation>Compruebe el inicio de la estructura de control.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/control_structures.py" />
+      <source>Correct the array sizes; at most {most_dimensions} dimensions are allowed.</source>
+      <translation>Corrija los tamaños del array; se permiten como máximo {most_dimensions} dimensiones.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/control_structures.py" />
+      <source>Correct the label or the direction of the jump.</source>
+      <translation>Corrija la etiqueta o la dirección del salto.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/control_structures.py" />
+      <source>Shorten the list, or enlarge the array.</source>
+      <translation>Acorte la lista o agrande el array.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/control_structures.py" />
+      <source>Write DEF INT {jump} before this block.</source>
+      <translation>Escriba DEF INT {jump} antes de este bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/control_structures.py" />
+      <source>array {item} needs {left} more elements for this list.</source>
+      <translation>al array {item} le faltan {left} elementos para esta lista.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/control_structures.py" />
+      <source>label {target} was not found in the search direction of {steering}.</source>
+      <translation>no se encontró la etiqueta {target} en la dirección de búsqueda de {steering}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/control_structures.py" />
+      <source>the name {jump} is not defined with DEF.</source>
+      <translation>el nombre {jump} no está definido con DEF.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/control_structures.py" />
+      <source>the program itself triggers alarm {number}.</source>
+      <translation>el propio programa dispara la alarma {number}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/control_structures.py" />
+      <source>{item}{sizes}: an array must have 1 to {largest_array} elements.</source>
+      <translation>{item}{sizes}: un array debe tener de 1 a {largest_array} elementos.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/control_structures.py" />
+      <source>{steering} has no matching end.</source>
+      <translation>{steering} no tiene un final correspondiente.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/control_structures.py" />
+      <source>{steering} has no matching start.</source>
+      <translation>{steering} no tiene un inicio correspondiente.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/parameter_passing.py" />
+      <source>Correct the call, or the PROC line of the subprogram.</source>
+      <translation>Corrija la llamada, o la línea PROC del subprograma.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/parameter_passing.py" />
+      <source>Pass a variable or an R parameter.</source>
+      <translation>Pase una variable o un parámetro R.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/parameter_passing.py" />
+      <source>Pass the name of an array without an index.</source>
+      <translation>Pase el nombre de un array sin índice.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/parameter_passing.py" />
+      <source>Use the array sizes given in the PROC line.</source>
+      <translation>Use los tamaños de array indicados en la línea PROC.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/parameter_passing.py" />
+      <source>no parameters</source>
+      <translation>ningún parámetro</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/parameter_passing.py" />
+      <source>{call} accepts {parameters_count}, but the call passes {arguments_count}.</source>
+      <translation>{call} admite {parameters_count}, pero la llamada pasa {arguments_count}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/parameter_passing.py" />
+      <source>{count} parameter</source>
+      <translation>{count} parámetro</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/parameter_passing.py" />
+      <source>{count} parameters</source>
+      <translation>{count} parámetros</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/parameter_passing.py" />
+      <source>{name} has {text} elements, but this size does not match the dimensions of {parameter}.</source>
+      <translation>{name} tiene {text} elementos, pero este tamaño no coincide con las dimensiones de {parameter}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/parameter_passing.py" />
+      <source>{parameter} of {call} is a VAR array, so the call must pass an array.</source>
+      <translation>{parameter} de {call} es un array VAR, así que la llamada debe pasar un array.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/parameter_passing.py" />
+      <source>{parameter} of {call} is a VAR parameter, so the call must pass a variable.</source>
+      <translation>{parameter} de {call} es un parámetro VAR, así que la llamada debe pasar una variable.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/subprogram_flow.py" />
+      <source>Correct the label.</source>
+      <translation>Corrija la etiqueta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/subprogram_flow.py" />
+      <source>In the loop, change a variable that the condition uses; to make another part, use Cycle Start instead.</source>
+      <translation>Cambie en el bucle una variable que use la condición; para hacer otra pieza, use el arranque de ciclo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/subprogram_flow.py" />
+      <source>Put the whole section to be repeated before or after this block.</source>
+      <translation>Ponga toda la sección que se repite antes o después de este bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/subprogram_flow.py" />
+      <source>P{passes} is not a valid repeat count.</source>
+      <translation>P{passes} no es un número de repeticiones válido.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/subprogram_flow.py" />
+      <source>Write a repeat count from P1 to P{most_passes}.</source>
+      <translation>Escriba un número de repeticiones de P1 a P{most_passes}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/subprogram_flow.py" />
+      <source>label {missing}, which {steering} uses, is not in this program.</source>
+      <translation>la etiqueta {missing}, que usa {steering}, no está en este programa.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/subprogram_flow.py" />
+      <source>subprogram calls are nested more than {deepest_call} levels deep.</source>
+      <translation>las llamadas a subprogramas están anidadas a más de {deepest_call} niveles.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/subprogram_flow.py" />
+      <source>subprogram {call} does not exist.</source>
+      <translation>el subprograma {call} no existe.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/subprogram_flow.py" />
+      <source>the program section to be repeated contains the {steering} block or does not end before that block.</source>
+      <translation>la sección del programa que se repite contiene el bloque de {steering} o no termina antes de ese bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/subprogram_flow.py" />
+      <source>this jump repeats forever because nothing in the loop changes the result of a jump condition.</source>
+      <translation>este salto se repite sin fin porque nada en el bucle cambia el resultado de una condición de salto.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/variables.py" />
+      <source>Use a variable of type REAL or INT.</source>
+      <translation>Use una variable de tipo REAL o INT.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/variables.py" />
+      <source>Use a whole number of 0 or more as the index.</source>
+      <translation>Use como índice un número entero de 0 o más.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/variables.py" />
+      <source>Use indices from 0; the last element is {letters}[{last}].</source>
+      <translation>Use índices desde 0; el último elemento es {letters}[{last}].</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/variables.py" />
+      <source>Write DEF REAL {word} before this block.</source>
+      <translation>Escriba DEF REAL {word} antes de este bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/variables.py" />
+      <source>Write the value, or an R parameter that contains it.</source>
+      <translation>Escriba el valor, o un parámetro R que lo contenga.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/variables.py" />
+      <source>Write {name}=… before this block, or set the value in R PARAMETERS (F10).</source>
+      <translation>Escriba {name}=… antes de este bloque, o ponga el valor en PARÁMETROS R (F10).</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/variables.py" />
+      <source>{letters} is a system variable, which TurnDesk cannot read.</source>
+      <translation>{letters} es una variable de sistema, que TurnDesk no puede leer.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/variables.py" />
+      <source>{letters}[{item}] does not exist.</source>
+      <translation>{letters}[{item}] no existe.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/variables.py" />
+      <source>{name} has no value and is treated as 0: neither the program nor the operator has set it.</source>
+      <translation>{name} no tiene valor y se trata como 0: ni el programa ni el operador lo ha puesto.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/variables.py" />
+      <source>{name} is not an element of {letters}, which has {text} elements.</source>
+      <translation>{name} no es un elemento de {letters}, que tiene {text} elementos.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/variables.py" />
+      <source>{name} is text, not a number.</source>
+      <translation>{name} es texto, no un número.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/motion/chamfers_and_rounds.py" />
+      <source>Program a different end point.</source>
+      <translation>Programe un punto final distinto.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/motion/chamfers_and_rounds.py" />
+      <source>Program two consecutive moves for the corner.</source>
+      <translation>Programe dos movimientos seguidos para la esquina.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/motion/chamfers_and_rounds.py" />
+      <source>Use CHF, CHR and RND only with G1, G2 and G3.</source>
+      <translation>Use CHF, CHR y RND sólo con G1, G2 y G3.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/motion/chamfers_and_rounds.py" />
+      <source>Write G18 before this block.</source>
+      <translation>Escriba G18 antes de este bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/motion/chamfers_and_rounds.py" />
+      <source>corners in X and Z need G18</source>
+      <translation>las esquinas en X y Z necesitan G18</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/motion/chamfers_and_rounds.py" />
+      <source>the block is not a line or an arc</source>
+      <translation>el bloque no es una recta ni un arco</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/motion/chamfers_and_rounds.py" />
+      <source>the corner needs {needed} mm of the move on line {line}, which is only {left} mm long</source>
+      <translation>la esquina necesita {needed} mm del movimiento de la línea {line}, que sólo mide {left} mm</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/motion/chamfers_and_rounds.py" />
+      <source>the corner size</source>
+      <translation>el tamaño de la esquina</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/motion/chamfers_and_rounds.py" />
+      <source>the moves on lines {line} and {line2} are in the same direction and do not form a corner.</source>
+      <translation>los movimientos de las líneas {line} y {line2} van en la misma dirección y no forman una esquina.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/motion/chamfers_and_rounds.py" />
+      <source>the next move, on line {line}, is not a line or an arc in X and Z</source>
+      <translation>el movimiento siguiente, en la línea {line}, no es una recta ni un arco en X y Z</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/motion/fixed_points.py" />
@@ -24427,136 +25207,6 @@
       <location filename="core/interpreter/sinumerik/motion/fixed_points.py" />
       <source>{word}: the machine file does not define a fixed point for {axis}.</source>
       <translation>{word}: el archivo de máquina no define un punto fijo de {axis}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
-      <source>Check the angles.</source>
-      <translation>Compruebe los ángulos.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
-      <source>Correct SPD or DIAG.</source>
-      <translation>Corrija SPD o DIAG.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
-      <source>Correct the offsets of the two tool corners.</source>
-      <translation>Corrija los correctores de las dos esquinas de la herramienta.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
-      <source>Program a face groove as a CYCLE95 contour or in G1 blocks.</source>
-      <translation>Programe una ranura frontal como contorno de CYCLE95 o en bloques G1.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
-      <source>Set both tool corners on the TOOL OFFSETS page (F8).</source>
-      <translation>Ponga las dos esquinas de la herramienta en la página CORRECTORES DE HERRAMIENTA (F8).</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
-      <source>Set {other} on the TOOL OFFSETS page (F8).</source>
-      <translation>Ponga {other} en la página CORRECTORES DE HERRAMIENTA (F8).</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
-      <source>Use a narrower tool.</source>
-      <translation>Use una herramienta más angosta.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
-      <source>program a groove on a taper as a CYCLE95 contour</source>
-      <translation>programe una ranura en un cono como contorno de CYCLE95</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
-      <source>program the corners as a CYCLE95 contour, or chamfer them with G1</source>
-      <translation>programe las esquinas como contorno de CYCLE95, o achaflánelas con G1</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
-      <source>{call} assumes a tool {width} mm wide because {key} is not set.</source>
-      <translation>{call} supone una herramienta de {width} mm de ancho porque {key} no está puesto.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
-      <source>{call} needs the tool width, but the other tool corner ({name}) is not set.</source>
-      <translation>{call} necesita el ancho de la herramienta, pero la otra esquina de la herramienta ({name}) no está puesta.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
-      <source>{key} and {other} are at the same position, so the tool has no width.</source>
-      <translation>{key} y {other} están en la misma posición, así que la herramienta no tiene ancho.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
-      <source>{name} is {high} including FAL2 on both flanks, but the tool is {width} wide</source>
-      <translation>{name} es {high} con FAL2 incluido en ambos flancos, pero la herramienta mide {width} de ancho</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
-      <source>{name} is {kind}, which specifies a face groove and is not supported</source>
-      <translation>{name} es {kind}, que indica una ranura frontal y no se admite</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
-      <source>{name} makes the groove reach past the spindle centerline</source>
-      <translation>{name} hace que la ranura llegue más allá del eje del husillo</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
-      <source>{name} must be 1 to 8 or 11 to 18</source>
-      <translation>{name} debe ser de 1 a 8 o de 11 a 18</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
-      <source>{name} must be a flank angle from 0 to less than 90 degrees</source>
-      <translation>{name} debe ser un ángulo de flanco de 0 a menos de 90 grados</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
-      <source>{name} must be a time of 0 s or more</source>
-      <translation>{name} debe ser un tiempo de 0 s o más</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
-      <source>{name} would need {count} cuts, which is too many</source>
-      <translation>{name} necesitaría {count} cortes, que son demasiados</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
-      <source>{name} would need {count} steps, which is too many</source>
-      <translation>{name} necesitaría {count} penetraciones, que son demasiadas</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/drilling_cycles.py" />
-      <source>Write MCALL CYCLE81( ) or another cycle before this block.</source>
-      <translation>Escriba MCALL CYCLE81( ) u otro ciclo antes de este bloque.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/drilling_cycles.py" />
-      <source>Write TRANSMIT before this block, or program the positions after MCALL.</source>
-      <translation>Escriba TRANSMIT antes de este bloque, o programe las posiciones después de MCALL.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/drilling_cycles.py" />
-      <source>{call} uses positions in X and Y, but this lathe has no Y axis.</source>
-      <translation>{call} usa posiciones en X e Y, pero este torno no tiene eje Y.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/drilling_cycles.py" />
-      <source>{call} uses the cycle called with MCALL, but no MCALL is active.</source>
-      <translation>{call} usa el ciclo llamado con MCALL, pero no hay ningún MCALL activo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/drilling_cycles.py" />
-      <source>{name} is the distance between the holes and must be greater than 0</source>
-      <translation>{name} es la distancia entre los agujeros y debe ser mayor que 0</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/drilling_cycles.py" />
-      <source>{name} is the number of holes and must be greater than 0</source>
-      <translation>{name} es el número de agujeros y debe ser mayor que 0</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/motion/linear_moves.py" />
@@ -24677,321 +25327,6 @@
       <location filename="core/interpreter/sinumerik/motion/linear_moves.py" />
       <source>{word}: {form} needs a rotary axis.</source>
       <translation>{word}: {form} necesita un eje giratorio.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
-      <source>Remove this word, or define an output named live under [io.out] in the machine file.</source>
-      <translation>Quite esta palabra, o defina una salida llamada live en [io.out] del archivo de máquina.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
-      <source>Set the live tool to {value} rpm by hand.</source>
-      <translation>Ponga la herramienta motorizada a {value} rpm a mano.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
-      <source>Write M3, and use a tool that cuts in that direction.</source>
-      <translation>Escriba M3 y use una herramienta que corte en ese sentido.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
-      <source>Write S2= in the block.</source>
-      <translation>Escriba S2= en el bloque.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
-      <source>{word} starts the live tool, but its speed is not programmed with S.</source>
-      <translation>{word} arranca la herramienta motorizada, pero su velocidad no está programada con S.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
-      <source>{word}: the live tool turns in only one direction.</source>
-      <translation>{word}: la herramienta motorizada gira en un solo sentido.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
-      <source>{word}: the speed cannot be negative; M3 and M4 set the direction.</source>
-      <translation>{word}: la velocidad no puede ser negativa; M3 y M4 fijan el sentido.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
-      <source>{word}: this machine has one spindle and no output for a live tool.</source>
-      <translation>{word}: esta máquina tiene un solo husillo y ninguna salida para una herramienta motorizada.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
-      <source>{word}: this machine only switches the live tool on and off; the speed is set at the drive of the live tool.</source>
-      <translation>{word}: esta máquina sólo enciende y apaga la herramienta motorizada; la velocidad se ajusta en el accionamiento de la herramienta motorizada.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/m_functions.py" />
-      <source>Call a subprogram by its name, and end it with M17.</source>
-      <translation>Llame un subprograma por su nombre y termínelo con M17.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/m_functions.py" />
-      <source>M{code} belongs to the ISO dialect of this control.</source>
-      <translation>M{code} pertenece al dialecto ISO de este control.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/m_functions.py" />
-      <source>M{code} is a machine-builder code that has no function on this machine</source>
-      <translation>M{code} es un código del fabricante de la máquina que no tiene función en esta máquina</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/m_functions.py" />
-      <source>M{code} is defined but not enabled in the machine file.</source>
-      <translation>M{code} está definido pero no habilitado en el archivo de máquina.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/m_functions.py" />
-      <source>T changes the tool automatically on this machine</source>
-      <translation>en esta máquina T cambia la herramienta automáticamente</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/m_functions.py" />
-      <source>Write M5 before this block.</source>
-      <translation>Escriba M5 antes de este bloque.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/m_functions.py" />
-      <source>the machine file contains ignored = true for this M code</source>
-      <translation>el archivo de máquina contiene ignored = true para este código M</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/m_functions.py" />
-      <source>{what}, so the machine will not start.</source>
-      <translation>{what}, así que la máquina no arrancará.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/m_functions.py" />
-      <source>{word} cannot open the chuck while the spindle turns.</source>
-      <translation>{word} no puede abrir el plato mientras gira el husillo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/flow/block_search.py" />
-      <source>{call} calls another program and cannot be used in MDI</source>
-      <translation>{call} llama a otro programa y no se puede usar en MDI</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/flow/block_search.py" />
-      <source>{steering} jumps to another block and cannot be used in MDI</source>
-      <translation>{steering} salta a otro bloque y no se puede usar en MDI</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/flow/block_search.py" />
-      <source>{word} is allowed only between two blocks of a contour</source>
-      <translation>{word} sólo se permite entre dos bloques de un contorno</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
-      <source>Correct the factor; to reverse an axis, use MIRROR.</source>
-      <translation>Corrija el factor; para invertir un eje, use MIRROR.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
-      <source>Correct the move, or write WALIMOF.</source>
-      <translation>Corrija el movimiento, o escriba WALIMOF.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
-      <source>G{plane} cannot change the plane while G{nose_comp} is active.</source>
-      <translation>G{plane} no puede cambiar el plano con G{nose_comp} activo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
-      <source>J: an arc in G18 uses I and K.</source>
-      <translation>J: un arco en G18 usa I y K.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
-      <source>Remove this axis, or select a machine file that has this axis.</source>
-      <translation>Quite este eje, o elija un archivo de máquina que lo tenga.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
-      <source>Remove this word; TRANSMIT and TRACYL create Y from X and C.</source>
-      <translation>Quite esta palabra; TRANSMIT y TRACYL forman Y con X y C.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
-      <source>Write G{plane} before this block.</source>
-      <translation>Escriba G{plane} antes de este bloque.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
-      <source>Write {key} RPL=…</source>
-      <translation>Escriba {key} RPL=…</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
-      <source>Write {word} with a plain number.</source>
-      <translation>Escriba {word} con un número simple.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
-      <source>radius compensation in {total} needs G{plane}.</source>
-      <translation>la compensación de radio en {total} necesita G{plane}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
-      <source>unknown axis: this machine has no third axis.</source>
-      <translation>eje desconocido: esta máquina no tiene tercer eje.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
-      <source>{name} has no effect because {why}.</source>
-      <translation>{name} no tiene efecto porque {why}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
-      <source>{name} moves past the working area limit that G{value} sets at {limit} mm.</source>
-      <translation>{name} pasa del límite de la zona de trabajo que G{value} fija en {limit} mm.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
-      <source>{word} can be used only with ROT.</source>
-      <translation>{word} sólo se puede usar con ROT.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
-      <source>{word} can be used only with X and Z.</source>
-      <translation>{word} sólo se puede usar con X y Z.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
-      <source>{word}: a factor must be between 0.001 and 1000.</source>
-      <translation>{word}: un factor debe estar entre 0.001 y 1000.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
-      <source>{word}: an offset must be a plain number.</source>
-      <translation>{word}: un desplazamiento debe ser un número simple.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
-      <source>{word}: on a lathe, {key} rotates the plane with RPL=, not with axis words.</source>
-      <translation>{word}: en un torno, {key} gira el plano con RPL=, no con palabras de eje.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
-      <source>{word}: this lathe has no Y axis.</source>
-      <translation>{word}: este torno no tiene eje Y.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/flow/parameter_passing.py" />
-      <source>Correct the call, or the PROC line of the subprogram.</source>
-      <translation>Corrija la llamada, o la línea PROC del subprograma.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/flow/parameter_passing.py" />
-      <source>Pass a variable or an R parameter.</source>
-      <translation>Pase una variable o un parámetro R.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/flow/parameter_passing.py" />
-      <source>Pass the name of an array without an index.</source>
-      <translation>Pase el nombre de un array sin índice.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/flow/parameter_passing.py" />
-      <source>Use the array sizes given in the PROC line.</source>
-      <translation>Use los tamaños de array indicados en la línea PROC.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/flow/parameter_passing.py" />
-      <source>no parameters</source>
-      <translation>ningún parámetro</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/flow/parameter_passing.py" />
-      <source>{call} accepts {parameters_count}, but the call passes {arguments_count}.</source>
-      <translation>{call} admite {parameters_count}, pero la llamada pasa {arguments_count}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/flow/parameter_passing.py" />
-      <source>{count} parameter</source>
-      <translation>{count} parámetro</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/flow/parameter_passing.py" />
-      <source>{count} parameters</source>
-      <translation>{count} parámetros</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/flow/parameter_passing.py" />
-      <source>{name} has {text} elements, but this size does not match the dimensions of {parameter}.</source>
-      <translation>{name} tiene {text} elementos, pero este tamaño no coincide con las dimensiones de {parameter}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/flow/parameter_passing.py" />
-      <source>{parameter} of {call} is a VAR array, so the call must pass an array.</source>
-      <translation>{parameter} de {call} es un array VAR, así que la llamada debe pasar un array.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/flow/parameter_passing.py" />
-      <source>{parameter} of {call} is a VAR parameter, so the call must pass a variable.</source>
-      <translation>{parameter} de {call} es un parámetro VAR, así que la llamada debe pasar una variable.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
-      <source>Enter 3 for M3 or 4 for M4.</source>
-      <translation>Indique 3 para M3 o 4 para M4.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
-      <source>Enter _DIAG1 and _DIAG2 as diameters, and omit _AMODE.</source>
-      <translation>Indique _DIAG1 y _DIAG2 como diámetros y omita _AMODE.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
-      <source>Enter diameters, with SPD as the largest.</source>
-      <translation>Indique diámetros, con SPD como el mayor.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
-      <source>Write S and M3 before this block.</source>
-      <translation>Escriba S y M3 antes de este bloque.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
-      <source>Write _FF1.</source>
-      <translation>Escriba _FF1.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
-      <source>cut the chamfer or the radius with G1 before the cycle</source>
-      <translation>corte el chaflán o el radio con G1 antes del ciclo</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
-      <source>the spindle is stopped, and neither _SV1 with _SDAC nor S with M3 starts it.</source>
-      <translation>el husillo está parado, y ni _SV1 con _SDAC ni S con M3 lo arrancan.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
-      <source>the tool only retracts, because this machine has no parts catcher</source>
-      <translation>la herramienta sólo se retira, porque esta máquina no tiene recogedor de piezas</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
-      <source>{name} cannot be {value}</source>
-      <translation>{name} no puede ser {value}</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
-      <source>{name} is {slow} but must be between SPD {surface} and _DIAG2 {last}</source>
-      <translation>{name} es {slow}, pero debe estar entre SPD {surface} y _DIAG2 {last}</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
-      <source>{name} is {value}, which is not a valid speed for this spindle</source>
-      <translation>{name} es {value}, que no es una velocidad válida para este husillo</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/grooving_cycles.py" />
-      <source>{name} specifies depths measured from SPD, which is not supported</source>
-      <translation>{name} especifica profundidades medidas desde SPD, lo que no se admite</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/motion/radius_compensation.py" />
@@ -25294,576 +25629,6 @@
       <translation>{word} no está entre 1 y 200.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
-      <source>Add the axes to the block.</source>
-      <translation>Agregue los ejes al bloque.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
-      <source>CYCLE800: this lathe has no swivel head.</source>
-      <translation>CYCLE800: este torno no tiene cabezal orientable.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
-      <source>Check the loops, and reduce the repeat counts of the calls.</source>
-      <translation>Compruebe los bucles y reduzca las repeticiones de las llamadas.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
-      <source>Shorten the list.</source>
-      <translation>Acorte la lista.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
-      <source>Use a different function, or correct "control" under [machine] in the machine file.</source>
-      <translation>Use otra función, o corrija "control" en [machine] del archivo de máquina.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
-      <source>Write DEF REAL {word} before this block.</source>
-      <translation>Escriba DEF REAL {word} antes de este bloque.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
-      <source>the line is part of a G41 or G42 contour; start before the approach</source>
-      <translation>la línea forma parte de un contorno de G41 o G42; empiece antes de la entrada</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
-      <source>the line is part of a corner or a contour in {transformed}; start before the approach</source>
-      <translation>la línea forma parte de una esquina o un contorno en {transformed}; empiece antes de la entrada</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
-      <source>the name {name} is not defined: it is neither a word nor a variable of this program.</source>
-      <translation>el nombre {name} no está definido: no es una palabra ni una variable de este programa.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
-      <source>the program exceeds the limit of {most_blocks} blocks or {most_lines} executed lines.</source>
-      <translation>el programa supera el límite de {most_blocks} bloques o {most_lines} líneas ejecutadas.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
-      <source>{name} is not a function of the SINUMERIK {control} on this machine.</source>
-      <translation>{name} no es una función del SINUMERIK {control} de esta máquina.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
-      <source>{word} can be used only with {total}.</source>
-      <translation>{word} sólo se puede usar con {total}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
-      <source>{word} is effective only in a block that moves an axis.</source>
-      <translation>{word} sólo actúa en un bloque que mueve un eje.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
-      <source>{word}: the array needs {left} more elements for this list.</source>
-      <translation>{word}: al array le faltan {left} elementos para esta lista.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_state.py" />
-      <source>{word}: {what} must be greater than 0.</source>
-      <translation>{word}: {what} debe ser mayor que 0.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
-      <source>G4 must be in a separate block with F (seconds) or S (revolutions).</source>
-      <translation>G4 debe ir en un bloque aparte con F (segundos) o S (vueltas).</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
-      <source>M{value} and M{value2} cannot be in the same block.</source>
-      <translation>M{value} y M{value2} no pueden estar en el mismo bloque.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
-      <source>Program this function for spindle 1, or remove it.</source>
-      <translation>Programe esta función para el husillo 1, o quítela.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
-      <source>Put this word in a block that contains a move.</source>
-      <translation>Ponga esta palabra en un bloque que contenga un movimiento.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
-      <source>Split the block into two or more blocks.</source>
-      <translation>Divida el bloque en dos o más bloques.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
-      <source>Use only one G code from each group in a block.</source>
-      <translation>Use sólo un código G de cada grupo en un bloque.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
-      <source>Write M with a number.</source>
-      <translation>Escriba M con un número.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
-      <source>the block contains {m_count} M codes.</source>
-      <translation>el bloque contiene {m_count} códigos M.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
-      <source>{before} and {word} belong to the same group ({group}) and cannot be in the same block.</source>
-      <translation>{before} y {word} son del mismo grupo ({group}) y no pueden estar en el mismo bloque.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
-      <source>{corners} and {corners2} cannot be in the same block.</source>
-      <translation>{corners} y {corners2} no pueden estar en el mismo bloque.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
-      <source>{corners} is in a block without X or Z.</source>
-      <translation>{corners} está en un bloque sin X ni Z.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
-      <source>{key} must be in a separate block that contains only axes.</source>
-      <translation>{key} debe ir en un bloque aparte que contenga sólo ejes.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
-      <source>{word} is not a G function of this control.</source>
-      <translation>{word} no es una función G de este control.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
-      <source>{word} is programmed twice in the block.</source>
-      <translation>{word} está programado dos veces en el bloque.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
-      <source>{word}: the M function must be a number.</source>
-      <translation>{word}: la función M debe ser un número.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
-      <source>{word}: this machine can position only one spindle; spindle 2 is its live tool.</source>
-      <translation>{word}: esta máquina sólo puede posicionar un husillo; el husillo 2 es su herramienta motorizada.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
-      <source>Close the collet first.</source>
-      <translation>Cierre antes la pinza.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
-      <source>Correct G25 or G26.</source>
-      <translation>Corrija G25 o G26.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
-      <source>Enter F in seconds or S in revolutions.</source>
-      <translation>Indique F en segundos o S en vueltas.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
-      <source>Enter an angle from 0 to less than 360 degrees.</source>
-      <translation>Indique un ángulo de 0 a menos de 360 grados.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
-      <source>Enter an angle of less than 360 degrees.</source>
-      <translation>Indique un ángulo menor de 360 grados.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
-      <source>G4 {word} waits for spindle revolutions, but the spindle is stopped.</source>
-      <translation>G4 {word} espera vueltas del husillo, pero el husillo está parado.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
-      <source>Select the machine sinumerik-live, whose spindle is the C axis.</source>
-      <translation>Elija la máquina sinumerik-live, cuyo husillo es el eje C.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
-      <source>Set oriented = true under [spindle] in the machine file if the drive can stop the spindle at an angle, or write M5 and index the part with C.</source>
-      <translation>Ponga oriented = true en [spindle] del archivo de máquina si el accionamiento puede parar el husillo en un ángulo, o escriba M5 y divida la pieza con C.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
-      <source>Start the spindle with M3 or M4, or write G4 F.</source>
-      <translation>Arranque el husillo con M3 o M4, o escriba G4 F.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
-      <source>Write G97 if S is in rpm.</source>
-      <translation>Escriba G97 si S está en rpm.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
-      <source>Write S in the block.</source>
-      <translation>Escriba S en el bloque.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
-      <source>Write SPOS with an angle before this block.</source>
-      <translation>Escriba SPOS con un ángulo antes de este bloque.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
-      <source>a surface speed of {word} m/min is too high for any tool.</source>
-      <translation>una velocidad de corte de {word} m/min es demasiado alta para cualquier herramienta.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
-      <source>the speed limit</source>
-      <translation>el límite de velocidad</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
-      <source>the spindle of this machine cannot be oriented because C has a separate drive and the machine file does not enable orientation by the spindle drive.</source>
-      <translation>el husillo de esta máquina no se puede orientar porque C tiene un accionamiento propio y el archivo de máquina no habilita la orientación con el accionamiento del husillo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
-      <source>the spindle of this machine cannot be oriented because the machine has no C axis and the machine file does not enable orientation by the spindle drive.</source>
-      <translation>el husillo de esta máquina no se puede orientar porque la máquina no tiene eje C y el archivo de máquina no habilita la orientación con el accionamiento del husillo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
-      <source>the spindle of this machine is not a C axis because C has a separate drive; the spindle drive can only turn the spindle to an angle.</source>
-      <translation>el husillo de esta máquina no es un eje C porque C tiene un accionamiento propio; el accionamiento del husillo sólo puede girar el husillo a un ángulo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
-      <source>the spindle of this machine is not a C axis because the machine has no C axis; the spindle drive can only turn the spindle to an angle.</source>
-      <translation>el husillo de esta máquina no es un eje C porque la máquina no tiene eje C; el accionamiento del husillo sólo puede girar el husillo a un ángulo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
-      <source>{word} is a dwell of {seconds} s; the maximum is {longest_dwell} s.</source>
-      <translation>{word} es una espera de {seconds} s; el máximo es {longest_dwell} s.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
-      <source>{word} is above the spindle maximum of {highest} rpm.</source>
-      <translation>{word} supera el máximo del husillo de {highest} rpm.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
-      <source>{word} is not a valid speed limit.</source>
-      <translation>{word} no es un límite de velocidad válido.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
-      <source>{word} is relative to a spindle angle, but the spindle has not been positioned at an angle.</source>
-      <translation>{word} es relativo a un ángulo del husillo, pero el husillo no está posicionado en ningún ángulo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
-      <source>{word} needs a controlled spindle, which this machine does not have.</source>
-      <translation>{word} necesita un husillo controlado, que esta máquina no tiene.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
-      <source>{word} starts the spindle with the collet open.</source>
-      <translation>{word} arranca el husillo con la pinza abierta.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
-      <source>{word} starts the spindle, but S is 0 or not programmed.</source>
-      <translation>{word} arranca el husillo, pero S es 0 o no está programada.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
-      <source>{word}: a dwell cannot be negative.</source>
-      <translation>{word}: una espera no puede ser negativa.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
-      <source>{word}: on this drive, a spindle positioning move must be less than one revolution.</source>
-      <translation>{word}: con este accionamiento, un movimiento de posicionado del husillo debe ser menor de una vuelta.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
-      <source>{word}: the minimum speed {lowest} is above the maximum speed {highest}.</source>
-      <translation>{word}: la velocidad mínima {lowest} supera la velocidad máxima {highest}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
-      <source>{word}: {value} is not a valid spindle angle.</source>
-      <translation>{word}: {value} no es un ángulo de husillo válido.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
-      <source>Check the direction of the contour.</source>
-      <translation>Compruebe la dirección del contorno.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
-      <source>End the contour at a point where the tool can leave it.</source>
-      <translation>Termine el contorno en un punto donde la herramienta pueda salir de él.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
-      <source>Enter 1 for roughing, 5 for finishing or 9 for both, for external machining along Z.</source>
-      <translation>Indique 1 para desbastar, 5 para acabar o 9 para ambos, para mecanizado exterior a lo largo de Z.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
-      <source>Enter the tip quadrant on the TOOL OFFSETS page (F8).</source>
-      <translation>Introduzca el cuadrante de punta en la página CORRECTORES DE HERRAMIENTA (F8).</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
-      <source>Reduce FAL, or widen the narrow part of the contour.</source>
-      <translation>Reduzca FAL, o ensanche la parte estrecha del contorno.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
-      <source>Split the contour into smaller parts.</source>
-      <translation>Divida el contorno en partes menores.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
-      <source>Write FF2.</source>
-      <translation>Escriba FF2.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
-      <source>Write MID.</source>
-      <translation>Escriba MID.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
-      <source>Write {name}.</source>
-      <translation>Escriba {name}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
-      <source>the tool has no tip quadrant, so {call} ignores the nose radius on tapers and arcs.</source>
-      <translation>la herramienta no tiene cuadrante de punta, así que {call} no considera el radio de punta en conos y arcos.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
-      <source>with allowance {name}, no continuous path along the contour is possible</source>
-      <translation>con la sobremedida {name} no es posible una trayectoria continua a lo largo del contorno</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
-      <source>{name} has {contour_count} elements; the maximum is {most_elements}</source>
-      <translation>{name} tiene {contour_count} elementos; el máximo es {most_elements}</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
-      <source>{name} is missing, and no F is active</source>
-      <translation>{name} falta, y no hay ninguna F activa</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
-      <source>{name} is missing, but the contour has a relief cut</source>
-      <translation>{name} falta, pero el contorno tiene un destalonado</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
-      <source>{name} is missing, so the depth of a pass is not defined</source>
-      <translation>{name} falta, así que no está definida la profundidad de una pasada</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
-      <source>{name} is missing; valid types are 1 to 12</source>
-      <translation>{name} falta; los tipos válidos son de 1 a 12</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
-      <source>{name} is {value}; valid types are 1 to 12</source>
-      <translation>{name} es {value}; los tipos válidos son de 1 a 12</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
-      <source>{name} refers to a contour without lines or arcs</source>
-      <translation>{name} se refiere a un contorno sin rectas ni arcos</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
-      <source>{name} specifies a contour that the tool cannot approach or leave with enough clearance</source>
-      <translation>{name} indica un contorno al que la herramienta no puede acercarse, o del que no puede salir, con holgura suficiente</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
-      <source>{name} specifies a contour with no material to cut</source>
-      <translation>{name} indica un contorno sin material por cortar</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
-      <source>{name} would interrupt a pass {count} times, which is too many</source>
-      <translation>{name} interrumpiría una pasada {count} veces, que son demasiadas</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
-      <source>{name} would need {count} passes, which is too many</source>
-      <translation>{name} necesitaría {count} pasadas, que son demasiadas</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/flow/subprogram_flow.py" />
-      <source>Correct the label.</source>
-      <translation>Corrija la etiqueta.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/flow/subprogram_flow.py" />
-      <source>In the loop, change a variable that the condition uses; to make another part, use Cycle Start instead.</source>
-      <translation>Cambie en el bucle una variable que use la condición; para hacer otra pieza, use el arranque de ciclo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/flow/subprogram_flow.py" />
-      <source>Put the whole section to be repeated before or after this block.</source>
-      <translation>Ponga toda la sección que se repite antes o después de este bloque.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/flow/subprogram_flow.py" />
-      <source>P{passes} is not a valid repeat count.</source>
-      <translation>P{passes} no es un número de repeticiones válido.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/flow/subprogram_flow.py" />
-      <source>Write a repeat count from P1 to P{most_passes}.</source>
-      <translation>Escriba un número de repeticiones de P1 a P{most_passes}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/flow/subprogram_flow.py" />
-      <source>label {missing}, which {steering} uses, is not in this program.</source>
-      <translation>la etiqueta {missing}, que usa {steering}, no está en este programa.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/flow/subprogram_flow.py" />
-      <source>subprogram calls are nested more than {deepest_call} levels deep.</source>
-      <translation>las llamadas a subprogramas están anidadas a más de {deepest_call} niveles.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/flow/subprogram_flow.py" />
-      <source>subprogram {call} does not exist.</source>
-      <translation>el subprograma {call} no existe.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/flow/subprogram_flow.py" />
-      <source>the program section to be repeated contains the {steering} block or does not end before that block.</source>
-      <translation>la sección del programa que se repite contiene el bloque de {steering} o no termina antes de ese bloque.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/flow/subprogram_flow.py" />
-      <source>this jump repeats forever because nothing in the loop changes the result of a jump condition.</source>
-      <translation>este salto se repite sin fin porque nada en el bucle cambia el resultado de una condición de salto.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
-      <source>Enter 0, or the reverse direction: 4 after M3, or 3 after M4.</source>
-      <translation>Indique 0 o el sentido inverso: 4 tras M3, o 3 tras M4.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
-      <source>Enter PIT in mm.</source>
-      <translation>Indique PIT en mm.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
-      <source>Enter PIT or MPIT, or ENC 1 to use the active feed rate.</source>
-      <translation>Indique PIT o MPIT, o ENC 1 para usar el avance activo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
-      <source>Enter Z of the end point.</source>
-      <translation>Indique la Z del punto final.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
-      <source>Enter a speed, or program S before the cycle.</source>
-      <translation>Indique una velocidad, o programe S antes del ciclo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
-      <source>Lower the speed.</source>
-      <translation>Baje la velocidad.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
-      <source>No spindle speed is programmed for {code}.</source>
-      <translation>No hay velocidad de husillo programada para {code}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
-      <source>Write G97 with S and M3 or M4 before this block.</source>
-      <translation>Escriba G97 con S y M3 o M4 antes de este bloque.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
-      <source>Write S before this block.</source>
-      <translation>Escriba S antes de este bloque.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
-      <source>Write SPOS=0 before this block.</source>
-      <translation>Escriba SPOS=0 antes de este bloque.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
-      <source>{call} needs the spindle to turn at a speed in rpm.</source>
-      <translation>{call} necesita que el husillo gire a una velocidad en rpm.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
-      <source>{call}: {name} is {value} rpm, but tapping with the C axis is limited to the C-axis maximum of {maximum} rpm.</source>
-      <translation>{call}: {name} es {value} rpm, pero el roscado con el eje C está limitado al máximo del eje C, {maximum} rpm.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
-      <source>{code} does not move along Z.</source>
-      <translation>{code} no se mueve a lo largo de Z.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
-      <source>{code} needs the lead K.</source>
-      <translation>{code} necesita el paso K.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
-      <source>{code} turns the spindle as the C axis, but the spindle is not locked as C.</source>
-      <translation>{code} gira el husillo como eje C, pero el husillo no está bloqueado como C.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
-      <source>{name} does not define a lead</source>
-      <translation>{name} no define ningún paso</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
-      <source>{name} does not define a speed</source>
-      <translation>{name} no define ninguna velocidad</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
-      <source>{name} does not reverse the spindle for the tap</source>
-      <translation>{name} no invierte el husillo para el macho</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
-      <source>{name} is 4, which specifies the lead as a module</source>
-      <translation>{name} es 4, que indica el paso como módulo</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
-      <source>{name} is {value} but must be 0, 1, 11 or 20</source>
-      <translation>{name} es {value}, pero debe ser 0, 1, 11 o 20</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
-      <source>{name} starts the spindle, but no S is programmed</source>
-      <translation>{name} arranca el husillo, pero no hay ninguna S programada</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
-      <source>{other}: {code} can tap only along Z.</source>
-      <translation>{other}: {code} sólo puede roscar a lo largo de Z.</translation>
-    </message>
-    <message>
       <location filename="core/interpreter/sinumerik/motion/third_axis.py" />
       <source>the end point {end} is outside the machine range of {low} to {high}</source>
       <translation>el punto final {end} está fuera del margen de la máquina de {low} a {high}</translation>
@@ -25877,91 +25642,6 @@
       <location filename="core/interpreter/sinumerik/motion/third_axis.py" />
       <source>{value} is not a valid position of a modulo axis; valid positions are from 0 to less than 360</source>
       <translation>{value} no es una posición válida de un eje módulo; las posiciones válidas van de 0 a menos de 360</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/thread_cycle.py" />
-      <source>CYCLE99 supports only the functions of CYCLE97</source>
-      <translation>CYCLE99 admite sólo las funciones de CYCLE97</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/thread_cycle.py" />
-      <source>Correct SPL or FPL.</source>
-      <translation>Corrija SPL o FPL.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/thread_cycle.py" />
-      <source>Enter PIT, or MPIT from 3 to 68 for M3 to M68.</source>
-      <translation>Indique PIT, o MPIT de 3 a 68 para M3 a M68.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/thread_cycle.py" />
-      <source>Enter a value from 300101 to 300104.</source>
-      <translation>Indique un valor de 300101 a 300104.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/thread_cycle.py" />
-      <source>Enter half the thread angle.</source>
-      <translation>Indique la mitad del ángulo de rosca.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/thread_cycle.py" />
-      <source>Enter the number of passes.</source>
-      <translation>Indique el número de pasadas.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/thread_cycle.py" />
-      <source>Omit MPIT.</source>
-      <translation>Omita MPIT.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/thread_cycle.py" />
-      <source>Reduce FAL.</source>
-      <translation>Reduzca FAL.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/thread_cycle.py" />
-      <source>{name} does not continue the thread in the same Z direction</source>
-      <translation>{name} no continúa la rosca en la misma dirección Z</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/thread_cycle.py" />
-      <source>{name} does not match a thread with lead {pit}</source>
-      <translation>{name} no corresponde a una rosca de paso {pit}</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/thread_cycle.py" />
-      <source>{name} is 0, so nothing would be cut</source>
-      <translation>{name} es 0, así que no se cortaría nada</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/thread_cycle.py" />
-      <source>{name} is a lead and must be greater than 0</source>
-      <translation>{name} es un paso y debe ser mayor que 0</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/thread_cycle.py" />
-      <source>{name} is not less than TDEP, so no depth remains for roughing</source>
-      <translation>{name} no es menor que TDEP, así que no queda profundidad para desbastar</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/thread_cycle.py" />
-      <source>{name} is the same position as the start of the thread</source>
-      <translation>{name} es la misma posición que el inicio de la rosca</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/thread_cycle.py" />
-      <source>{name} is {value}: the last digit must be 1 to 4, and the sixth digit must be 3 (roughing and finishing together)</source>
-      <translation>{name} es {value}: la última cifra debe ser de 1 a 4, y la sexta debe ser 3 (desbaste y acabado juntos)</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/thread_cycle.py" />
-      <source>{name} must be a flank angle of less than 60 degrees</source>
-      <translation>{name} debe ser un ángulo de flanco de menos de 60 grados</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/thread_cycle.py" />
-      <source>{name} must be a start angle from 0 to less than 360 degrees</source>
-      <translation>{name} debe ser un ángulo de entrada de 0 a menos de 360 grados</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/motion/thread_moves.py" />
@@ -26089,56 +25769,6 @@
       <translation>{word}: el cambio del paso debe ser mayor que 0.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/setup/tools_and_edges.py" />
-      <source>Enter the tool number as a whole number.</source>
-      <translation>Indique el número de herramienta como número entero.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/tools_and_edges.py" />
-      <source>Enter this name as the remark of a tool (F8).</source>
-      <translation>Introduzca este nombre como nota de una herramienta (F8).</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/tools_and_edges.py" />
-      <source>Set the offset of the tool on the TOOL OFFSETS page (F8); tools are T1 to T32.</source>
-      <translation>Ponga el corrector de la herramienta en la página de correctores (F8); las herramientas son de T1 a T32.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/tools_and_edges.py" />
-      <source>Write T before this block.</source>
-      <translation>Escriba T antes de este bloque.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/tools_and_edges.py" />
-      <source>{edge}: no tool is active.</source>
-      <translation>{edge}: no hay ninguna herramienta activa.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/tools_and_edges.py" />
-      <source>{key} has no tool offset, so 0 is used and the machine will not start.</source>
-      <translation>{key} no tiene corrector de herramienta, así que se usa 0 y la máquina no arrancará.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/tools_and_edges.py" />
-      <source>{name} does not exist: {key} has no such cutting edge in the tool offsets.</source>
-      <translation>{name} no existe: {key} no tiene ese filo en los correctores.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/tools_and_edges.py" />
-      <source>{word} calls tool {word2} on this control; write {meant}.</source>
-      <translation>{word} llama a la herramienta {word2} en este control; escriba {meant}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/tools_and_edges.py" />
-      <source>{word} results in {value}, which is not a tool number.</source>
-      <translation>{word} resulta en {value}, que no es un número de herramienta.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/tools_and_edges.py" />
-      <source>{word}: cutting edges are D1 to D9; D0 deselects the cutting edge.</source>
-      <translation>{word}: los filos son de D1 a D9; D0 deselecciona el filo.</translation>
-    </message>
-    <message>
       <location filename="core/interpreter/sinumerik/motion/transformations.py" />
       <source>DIAMON is active: in TRANSMIT, X is a diameter, but Y is not.</source>
       <translation>DIAMON está activo: en TRANSMIT, X es un diámetro, pero Y no.</translation>
@@ -26157,6 +25787,11 @@
       <location filename="core/interpreter/sinumerik/motion/transformations.py" />
       <source>Set X of G{settable} to 0, or write G500.</source>
       <translation>Ponga X de G{settable} a 0, o escriba G500.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/motion/transformations.py" />
+      <source>Split the block into two or more blocks.</source>
+      <translation>Divida el bloque en dos o más bloques.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/motion/transformations.py" />
@@ -26235,6 +25870,11 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/motion/transformed_plane.py" />
+      <source>Write G{plane} before this block.</source>
+      <translation>Escriba G{plane} antes de este bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/motion/transformed_plane.py" />
       <source>a thread along Z needs the spindle running, but {word} uses the spindle as C.</source>
       <translation>una rosca a lo largo de Z necesita el husillo en marcha, pero {word} usa el husillo como C.</translation>
     </message>
@@ -26279,149 +25919,519 @@
       <translation>{word}: {word2} ya controla C.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/cycles/undercut_cycles.py" />
-      <source>Correct FORM, or use another tool.</source>
-      <translation>Corrija FORM o use otra herramienta.</translation>
+      <location filename="core/interpreter/sinumerik/setup/m_functions.py" />
+      <source>Call a subprogram by its name, and end it with M17.</source>
+      <translation>Llame un subprograma por su nombre y termínelo con M17.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/cycles/undercut_cycles.py" />
-      <source>Enter 1 for roughing, 2 for finishing or 3 for both.</source>
-      <translation>Indique 1 para desbastar, 2 para acabar o 3 para ambos.</translation>
+      <location filename="core/interpreter/sinumerik/setup/m_functions.py" />
+      <source>M{code} belongs to the ISO dialect of this control.</source>
+      <translation>M{code} pertenece al dialecto ISO de este control.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/cycles/undercut_cycles.py" />
-      <source>Program the undercut block by block.</source>
-      <translation>Programe la garganta bloque a bloque.</translation>
+      <location filename="core/interpreter/sinumerik/setup/m_functions.py" />
+      <source>M{code} is a machine-builder code that has no function on this machine</source>
+      <translation>M{code} es un código del fabricante de la máquina que no tiene función en esta máquina</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/cycles/undercut_cycles.py" />
-      <source>Use a tool with a smaller nose radius.</source>
-      <translation>Use una herramienta con menor radio de punta.</translation>
+      <location filename="core/interpreter/sinumerik/setup/m_functions.py" />
+      <source>M{code} is defined but not enabled in the machine file.</source>
+      <translation>M{code} está definido pero no habilitado en el archivo de máquina.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/cycles/undercut_cycles.py" />
-      <source>Write form "A", "B", "E" or "F". For forms C and D, use CYCLE96. Program a free form (T) block by block.</source>
-      <translation>Escriba la forma "A", "B", "E" o "F". Para las formas C y D use CYCLE96. Programe la forma libre (T) bloque a bloque.</translation>
+      <location filename="core/interpreter/sinumerik/setup/m_functions.py" />
+      <source>T changes the tool automatically on this machine</source>
+      <translation>en esta máquina T cambia la herramienta automáticamente</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/cycles/undercut_cycles.py" />
-      <source>program the undercut block by block</source>
-      <translation>programe la garganta bloque a bloque</translation>
+      <location filename="core/interpreter/sinumerik/setup/m_functions.py" />
+      <source>Write M5 before this block.</source>
+      <translation>Escriba M5 antes de este bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/cycles/undercut_cycles.py" />
-      <source>the nose radius {nose_radius} does not fit into this undercut: {why}.</source>
-      <translation>el radio de punta {nose_radius} no cabe en esta garganta: {why}.</translation>
+      <location filename="core/interpreter/sinumerik/setup/m_functions.py" />
+      <source>the machine file contains ignored = true for this M code</source>
+      <translation>el archivo de máquina contiene ignored = true para este código M</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/cycles/undercut_cycles.py" />
-      <source>the nose radius {nose} is larger than the radius {radius} of this undercut.</source>
-      <translation>el radio de punta {nose} es mayor que el radio {radius} de esta garganta.</translation>
+      <location filename="core/interpreter/sinumerik/setup/m_functions.py" />
+      <source>{what}, so the machine will not start.</source>
+      <translation>{what}, así que la máquina no arrancará.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/cycles/undercut_cycles.py" />
-      <source>the tip quadrant of the tool is {quadrant}, but an undercut needs a quadrant from 1 to 4.</source>
-      <translation>el cuadrante de punta de la herramienta es {quadrant}, pero una garganta necesita un cuadrante de 1 a 4.</translation>
+      <location filename="core/interpreter/sinumerik/setup/m_functions.py" />
+      <source>{word} cannot open the chuck while the spindle turns.</source>
+      <translation>{word} no puede abrir el plato mientras gira el husillo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/cycles/undercut_cycles.py" />
-      <source>{name} is {diameter}, but must be greater than 3 mm for an undercut</source>
-      <translation>{name} es {diameter}, pero debe ser mayor que 3 mm para una garganta</translation>
+      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
+      <source>Correct the factor; to reverse an axis, use MIRROR.</source>
+      <translation>Corrija el factor; para invertir un eje, use MIRROR.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/cycles/undercut_cycles.py" />
-      <source>{name} is {form}, which is not supported</source>
-      <translation>{name} es {form}, que no se admite</translation>
+      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
+      <source>Correct the move, or write WALIMOF.</source>
+      <translation>Corrija el movimiento, o escriba WALIMOF.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/cycles/undercut_cycles.py" />
-      <source>{name} is {nominal}, which is not a coarse thread size from M3 to M{largest_of_all}</source>
-      <translation>{name} es {nominal}, que no es una medida de rosca gruesa de M3 a M{largest_of_all}</translation>
+      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
+      <source>G{plane} cannot change the plane while G{nose_comp} is active.</source>
+      <translation>G{plane} no puede cambiar el plano con G{nose_comp} activo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/cycles/undercut_cycles.py" />
-      <source>{name} must be "A", "B", "C" or "D"</source>
-      <translation>{name} debe ser "A", "B", "C" o "D"</translation>
+      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
+      <source>J: an arc in G18 uses I and K.</source>
+      <translation>J: un arco en G18 usa I y K.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/cycles/undercut_cycles.py" />
-      <source>{name} must be "E" or "F"</source>
-      <translation>{name} debe ser "E" o "F"</translation>
+      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
+      <source>Remove this axis, or select a machine file that has this axis.</source>
+      <translation>Quite este eje, o elija un archivo de máquina que lo tenga.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/cycles/undercut_cycles.py" />
-      <source>{name} specifies a lead of {lead}, but no undercut is defined for that lead</source>
-      <translation>{name} indica un paso de {lead}, pero no hay ninguna garganta definida para ese paso</translation>
+      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
+      <source>Remove this word; TRANSMIT and TRACYL create Y from X and C.</source>
+      <translation>Quite esta palabra; TRANSMIT y TRACYL forman Y con X y C.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/cycles/undercut_cycles.py" />
-      <source>{name} {form} is for inside undercuts, but the cutting edge of the tool is for outside undercuts</source>
-      <translation>{name} {form} es para gargantas interiores, pero el filo de la herramienta es para gargantas exteriores</translation>
+      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
+      <source>Write {key} RPL=…</source>
+      <translation>Escriba {key} RPL=…</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/cycles/undercut_cycles.py" />
-      <source>{name} {form} is for outside undercuts, but the cutting edge of the tool is for inside undercuts</source>
-      <translation>{name} {form} es para gargantas exteriores, pero el filo de la herramienta es para gargantas interiores</translation>
+      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
+      <source>Write {word} with a plain number.</source>
+      <translation>Escriba {word} con un número simple.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/flow/variables.py" />
-      <source>Use a variable of type REAL or INT.</source>
-      <translation>Use una variable de tipo REAL o INT.</translation>
+      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
+      <source>radius compensation in {total} needs G{plane}.</source>
+      <translation>la compensación de radio en {total} necesita G{plane}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/flow/variables.py" />
-      <source>Use a whole number of 0 or more as the index.</source>
-      <translation>Use como índice un número entero de 0 o más.</translation>
+      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
+      <source>unknown axis: this machine has no third axis.</source>
+      <translation>eje desconocido: esta máquina no tiene tercer eje.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/flow/variables.py" />
-      <source>Use indices from 0; the last element is {letters}[{last}].</source>
-      <translation>Use índices desde 0; el último elemento es {letters}[{last}].</translation>
+      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
+      <source>{name} has no effect because {why}.</source>
+      <translation>{name} no tiene efecto porque {why}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/flow/variables.py" />
-      <source>Write the value, or an R parameter that contains it.</source>
-      <translation>Escriba el valor, o un parámetro R que lo contenga.</translation>
+      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
+      <source>{name} moves past the working area limit that G{value} sets at {limit} mm.</source>
+      <translation>{name} pasa del límite de la zona de trabajo que G{value} fija en {limit} mm.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/flow/variables.py" />
-      <source>Write {name}=… before this block, or set the value in R PARAMETERS (F10).</source>
-      <translation>Escriba {name}=… antes de este bloque, o ponga el valor en PARÁMETROS R (F10).</translation>
+      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
+      <source>{word} can be used only with ROT.</source>
+      <translation>{word} sólo se puede usar con ROT.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/flow/variables.py" />
-      <source>{letters} is a system variable, which TurnDesk cannot read.</source>
-      <translation>{letters} es una variable de sistema, que TurnDesk no puede leer.</translation>
+      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
+      <source>{word} can be used only with X and Z.</source>
+      <translation>{word} sólo se puede usar con X y Z.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/flow/variables.py" />
-      <source>{letters}[{item}] does not exist.</source>
-      <translation>{letters}[{item}] no existe.</translation>
+      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
+      <source>{word}: a factor must be between 0.001 and 1000.</source>
+      <translation>{word}: un factor debe estar entre 0.001 y 1000.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/flow/variables.py" />
-      <source>{name} has no value and is treated as 0: neither the program nor the operator has set it.</source>
-      <translation>{name} no tiene valor y se trata como 0: ni el programa ni el operador lo ha puesto.</translation>
+      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
+      <source>{word}: an offset must be a plain number.</source>
+      <translation>{word}: un desplazamiento debe ser un número simple.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/flow/variables.py" />
-      <source>{name} is not an element of {letters}, which has {text} elements.</source>
-      <translation>{name} no es un elemento de {letters}, que tiene {text} elementos.</translation>
+      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
+      <source>{word}: on a lathe, {key} rotates the plane with RPL=, not with axis words.</source>
+      <translation>{word}: en un torno, {key} gira el plano con RPL=, no con palabras de eje.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/flow/variables.py" />
-      <source>{name} is text, not a number.</source>
-      <translation>{name} es texto, no un número.</translation>
+      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
+      <source>{word}: this lathe has no Y axis.</source>
+      <translation>{word}: este torno no tiene eje Y.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/shared/turn_at_axis.py" />
-      <source>At the spindle centerline, the tool does not move while C turns; route the path around the centerline.</source>
-      <translation>En el eje del husillo, la herramienta no se mueve mientras gira C; lleve la trayectoria por un lado del eje.</translation>
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
+      <source>Close the collet first.</source>
+      <translation>Cierre antes la pinza.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/shared/turn_at_axis.py" />
-      <source>The path passes through the spindle centerline, where C turns by {angle} degrees.</source>
-      <translation>La trayectoria pasa por el eje del husillo, donde C gira {angle} grados.</translation>
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
+      <source>Correct G25 or G26.</source>
+      <translation>Corrija G25 o G26.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
+      <source>Enter F in seconds or S in revolutions.</source>
+      <translation>Indique F en segundos o S en vueltas.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
+      <source>Enter an angle from 0 to less than 360 degrees.</source>
+      <translation>Indique un ángulo de 0 a menos de 360 grados.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
+      <source>Enter an angle of less than 360 degrees.</source>
+      <translation>Indique un ángulo menor de 360 grados.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
+      <source>G4 {word} waits for spindle revolutions, but the spindle is stopped.</source>
+      <translation>G4 {word} espera vueltas del husillo, pero el husillo está parado.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
+      <source>Remove this word, or define an output named live under [io.out] in the machine file.</source>
+      <translation>Quite esta palabra, o defina una salida llamada live en [io.out] del archivo de máquina.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
+      <source>Select the machine sinumerik-live, whose spindle is the C axis.</source>
+      <translation>Elija la máquina sinumerik-live, cuyo husillo es el eje C.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
+      <source>Set oriented = true under [spindle] in the machine file if the drive can stop the spindle at an angle, or write M5 and index the part with C.</source>
+      <translation>Ponga oriented = true en [spindle] del archivo de máquina si el accionamiento puede parar el husillo en un ángulo, o escriba M5 y divida la pieza con C.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
+      <source>Set the live tool to {value} rpm by hand.</source>
+      <translation>Ponga la herramienta motorizada a {value} rpm a mano.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
+      <source>Start the spindle with M3 or M4, or write G4 F.</source>
+      <translation>Arranque el husillo con M3 o M4, o escriba G4 F.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
+      <source>Write G97 if S is in rpm.</source>
+      <translation>Escriba G97 si S está en rpm.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
+      <source>Write M3, and use a tool that cuts in that direction.</source>
+      <translation>Escriba M3 y use una herramienta que corte en ese sentido.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
+      <source>Write S2= in the block.</source>
+      <translation>Escriba S2= en el bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
+      <source>Write SPOS with an angle before this block.</source>
+      <translation>Escriba SPOS con un ángulo antes de este bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
+      <source>a surface speed of {word} m/min is too high for any tool.</source>
+      <translation>una velocidad de corte de {word} m/min es demasiado alta para cualquier herramienta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
+      <source>the speed limit</source>
+      <translation>el límite de velocidad</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
+      <source>the spindle of this machine cannot be oriented because C has a separate drive and the machine file does not enable orientation by the spindle drive.</source>
+      <translation>el husillo de esta máquina no se puede orientar porque C tiene un accionamiento propio y el archivo de máquina no habilita la orientación con el accionamiento del husillo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
+      <source>the spindle of this machine cannot be oriented because the machine has no C axis and the machine file does not enable orientation by the spindle drive.</source>
+      <translation>el husillo de esta máquina no se puede orientar porque la máquina no tiene eje C y el archivo de máquina no habilita la orientación con el accionamiento del husillo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
+      <source>the spindle of this machine is not a C axis because C has a separate drive; the spindle drive can only turn the spindle to an angle.</source>
+      <translation>el husillo de esta máquina no es un eje C porque C tiene un accionamiento propio; el accionamiento del husillo sólo puede girar el husillo a un ángulo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
+      <source>the spindle of this machine is not a C axis because the machine has no C axis; the spindle drive can only turn the spindle to an angle.</source>
+      <translation>el husillo de esta máquina no es un eje C porque la máquina no tiene eje C; el accionamiento del husillo sólo puede girar el husillo a un ángulo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
+      <source>{word} is a dwell of {seconds} s; the maximum is {longest_dwell} s.</source>
+      <translation>{word} es una espera de {seconds} s; el máximo es {longest_dwell} s.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
+      <source>{word} is above the spindle maximum of {highest} rpm.</source>
+      <translation>{word} supera el máximo del husillo de {highest} rpm.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
+      <source>{word} is not a valid speed limit.</source>
+      <translation>{word} no es un límite de velocidad válido.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
+      <source>{word} is relative to a spindle angle, but the spindle has not been positioned at an angle.</source>
+      <translation>{word} es relativo a un ángulo del husillo, pero el husillo no está posicionado en ningún ángulo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
+      <source>{word} needs a controlled spindle, which this machine does not have.</source>
+      <translation>{word} necesita un husillo controlado, que esta máquina no tiene.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
+      <source>{word} starts the live tool, but its speed is not programmed with S.</source>
+      <translation>{word} arranca la herramienta motorizada, pero su velocidad no está programada con S.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
+      <source>{word} starts the spindle with the collet open.</source>
+      <translation>{word} arranca el husillo con la pinza abierta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
+      <source>{word} starts the spindle, but S is 0 or not programmed.</source>
+      <translation>{word} arranca el husillo, pero S es 0 o no está programada.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
+      <source>{word}: a dwell cannot be negative.</source>
+      <translation>{word}: una espera no puede ser negativa.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
+      <source>{word}: on this drive, a spindle positioning move must be less than one revolution.</source>
+      <translation>{word}: con este accionamiento, un movimiento de posicionado del husillo debe ser menor de una vuelta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
+      <source>{word}: the live tool turns in only one direction.</source>
+      <translation>{word}: la herramienta motorizada gira en un solo sentido.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
+      <source>{word}: the minimum speed {lowest} is above the maximum speed {highest}.</source>
+      <translation>{word}: la velocidad mínima {lowest} supera la velocidad máxima {highest}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
+      <source>{word}: the speed cannot be negative; M3 and M4 set the direction.</source>
+      <translation>{word}: la velocidad no puede ser negativa; M3 y M4 fijan el sentido.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
+      <source>{word}: this machine has one spindle and no output for a live tool.</source>
+      <translation>{word}: esta máquina tiene un solo husillo y ninguna salida para una herramienta motorizada.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
+      <source>{word}: this machine only switches the live tool on and off; the speed is set at the drive of the live tool.</source>
+      <translation>{word}: esta máquina sólo enciende y apaga la herramienta motorizada; la velocidad se ajusta en el accionamiento de la herramienta motorizada.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
+      <source>{word}: {value} is not a valid spindle angle.</source>
+      <translation>{word}: {value} no es un ángulo de husillo válido.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/setup/tools_and_edges.py" />
+      <source>Enter the tool number as a whole number.</source>
+      <translation>Indique el número de herramienta como número entero.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/setup/tools_and_edges.py" />
+      <source>Enter this name as the remark of a tool (F8).</source>
+      <translation>Introduzca este nombre como nota de una herramienta (F8).</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/setup/tools_and_edges.py" />
+      <source>Set the offset of the tool on the TOOL OFFSETS page (F8); tools are T1 to T32.</source>
+      <translation>Ponga el corrector de la herramienta en la página de correctores (F8); las herramientas son de T1 a T32.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/setup/tools_and_edges.py" />
+      <source>Write T before this block.</source>
+      <translation>Escriba T antes de este bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/setup/tools_and_edges.py" />
+      <source>{edge}: no tool is active.</source>
+      <translation>{edge}: no hay ninguna herramienta activa.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/setup/tools_and_edges.py" />
+      <source>{key} has no tool offset, so 0 is used and the machine will not start.</source>
+      <translation>{key} no tiene corrector de herramienta, así que se usa 0 y la máquina no arrancará.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/setup/tools_and_edges.py" />
+      <source>{name} does not exist: {key} has no such cutting edge in the tool offsets.</source>
+      <translation>{name} no existe: {key} no tiene ese filo en los correctores.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/setup/tools_and_edges.py" />
+      <source>{word} calls tool {word2} on this control; write {meant}.</source>
+      <translation>{word} llama a la herramienta {word2} en este control; escriba {meant}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/setup/tools_and_edges.py" />
+      <source>{word} results in {value}, which is not a tool number.</source>
+      <translation>{word} resulta en {value}, que no es un número de herramienta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/setup/tools_and_edges.py" />
+      <source>{word}: cutting edges are D1 to D9; D0 deselects the cutting edge.</source>
+      <translation>{word}: los filos son de D1 a D9; D0 deselecciona el filo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
+      <source>Add the axes to the block.</source>
+      <translation>Agregue los ejes al bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
+      <source>CYCLE800: this lathe has no swivel head.</source>
+      <translation>CYCLE800: este torno no tiene cabezal orientable.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
+      <source>Check the loops, and reduce the repeat counts of the calls.</source>
+      <translation>Compruebe los bucles y reduzca las repeticiones de las llamadas.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
+      <source>Shorten the list.</source>
+      <translation>Acorte la lista.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
+      <source>Use a different function, or correct "control" under [machine] in the machine file.</source>
+      <translation>Use otra función, o corrija "control" en [machine] del archivo de máquina.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
+      <source>the line is part of a G41 or G42 contour; start before the approach</source>
+      <translation>la línea forma parte de un contorno de G41 o G42; empiece antes de la entrada</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
+      <source>the line is part of a corner or a contour in {transformed}; start before the approach</source>
+      <translation>la línea forma parte de una esquina o un contorno en {transformed}; empiece antes de la entrada</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
+      <source>the name {name} is not defined: it is neither a word nor a variable of this program.</source>
+      <translation>el nombre {name} no está definido: no es una palabra ni una variable de este programa.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
+      <source>the program exceeds the limit of {most_blocks} blocks or {most_lines} executed lines.</source>
+      <translation>el programa supera el límite de {most_blocks} bloques o {most_lines} líneas ejecutadas.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
+      <source>{name} is not a function of the SINUMERIK {control} on this machine.</source>
+      <translation>{name} no es una función del SINUMERIK {control} de esta máquina.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
+      <source>{word} can be used only with {total}.</source>
+      <translation>{word} sólo se puede usar con {total}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
+      <source>{word} is effective only in a block that moves an axis.</source>
+      <translation>{word} sólo actúa en un bloque que mueve un eje.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
+      <source>{word}: the array needs {left} more elements for this list.</source>
+      <translation>{word}: al array le faltan {left} elementos para esta lista.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_state.py" />
+      <source>{word}: {what} must be greater than 0.</source>
+      <translation>{word}: {what} debe ser mayor que 0.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
+      <source>G4 must be in a separate block with F (seconds) or S (revolutions).</source>
+      <translation>G4 debe ir en un bloque aparte con F (segundos) o S (vueltas).</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
+      <source>M{value} and M{value2} cannot be in the same block.</source>
+      <translation>M{value} y M{value2} no pueden estar en el mismo bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
+      <source>Program this function for spindle 1, or remove it.</source>
+      <translation>Programe esta función para el husillo 1, o quítela.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
+      <source>Put this word in a block that contains a move.</source>
+      <translation>Ponga esta palabra en un bloque que contenga un movimiento.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
+      <source>Use only one G code from each group in a block.</source>
+      <translation>Use sólo un código G de cada grupo en un bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
+      <source>Write M with a number.</source>
+      <translation>Escriba M con un número.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
+      <source>the block contains {m_count} M codes.</source>
+      <translation>el bloque contiene {m_count} códigos M.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
+      <source>{before} and {word} belong to the same group ({group}) and cannot be in the same block.</source>
+      <translation>{before} y {word} son del mismo grupo ({group}) y no pueden estar en el mismo bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
+      <source>{corners} and {corners2} cannot be in the same block.</source>
+      <translation>{corners} y {corners2} no pueden estar en el mismo bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
+      <source>{corners} is in a block without X or Z.</source>
+      <translation>{corners} está en un bloque sin X ni Z.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
+      <source>{key} must be in a separate block that contains only axes.</source>
+      <translation>{key} debe ir en un bloque aparte que contenga sólo ejes.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
+      <source>{word} is not a G function of this control.</source>
+      <translation>{word} no es una función G de este control.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
+      <source>{word} is programmed twice in the block.</source>
+      <translation>{word} está programado dos veces en el bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
+      <source>{word}: the M function must be a number.</source>
+      <translation>{word}: la función M debe ser un número.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
+      <source>{word}: this machine can position only one spindle; spindle 2 is its live tool.</source>
+      <translation>{word}: esta máquina sólo puede posicionar un husillo; el husillo 2 es su herramienta motorizada.</translation>
     </message>
     <message>
       <location filename="core/language/diagnostics.py" />
@@ -26510,6 +26520,16 @@
     </message>
     <message>
       <location filename="core/language/klartext/cycle_blocks.py" />
+      <source>A rotation needs ROT and an angle</source>
+      <translation>Un giro necesita ROT y un ángulo</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_blocks.py" />
+      <source>After PATTERN DEF, write, for example, POS1 (X+0 Y+0 Z+0).</source>
+      <translation>Después de PATTERN DEF, escriba, por ejemplo, POS1 (X+0 Y+0 Z+0).</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_blocks.py" />
       <source>CONTOUR DEF accepts only pockets (P) and islands (I)</source>
       <translation>CONTOUR DEF acepta sólo cajeras (P) e islas (I)</translation>
     </message>
@@ -26522,26 +26542,6 @@
       <location filename="core/language/klartext/cycle_blocks.py" />
       <source>CONTOUR DEF with a separate depth for one contour</source>
       <translation>CONTOUR DEF con una profundidad aparte para un contorno</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_blocks.py" />
-      <source>Expected a contour: LBL n, or a program name in quotes</source>
-      <translation>Se esperaba un contorno: LBL n o un nombre de programa entre comillas</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_blocks.py" />
-      <source>Write, for example, P1 = LBL 1 I2 = LBL 2.</source>
-      <translation>Escriba, por ejemplo, P1 = LBL 1 I2 = LBL 2.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_blocks.py" />
-      <source>Write, for example, P1 = LBL 1.</source>
-      <translation>Escriba, por ejemplo, P1 = LBL 1.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_blocks.py" />
-      <source>A rotation needs ROT and an angle</source>
-      <translation>Un giro necesita ROT y un ángulo</translation>
     </message>
     <message>
       <location filename="core/language/klartext/cycle_blocks.py" />
@@ -26565,8 +26565,18 @@
     </message>
     <message>
       <location filename="core/language/klartext/cycle_blocks.py" />
+      <source>Close the parenthesis after the last word.</source>
+      <translation>Cierre el paréntesis después de la última palabra.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_blocks.py" />
       <source>Expected a Q parameter of the cycle</source>
       <translation>Se esperaba un parámetro Q del ciclo</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_blocks.py" />
+      <source>Expected a contour: LBL n, or a program name in quotes</source>
+      <translation>Se esperaba un contorno: LBL n o un nombre de programa entre comillas</translation>
     </message>
     <message>
       <location filename="core/language/klartext/cycle_blocks.py" />
@@ -26582,6 +26592,16 @@
       <location filename="core/language/klartext/cycle_blocks.py" />
       <source>Mirroring accepts only the axes X, Y and Z</source>
       <translation>La simetría acepta sólo los ejes X, Y y Z</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_blocks.py" />
+      <source>PATTERN DEF accepts only POS1 (…), ROW1, PAT1, FRAME1, CIRC1 or PITCHCIRC1</source>
+      <translation>PATTERN DEF acepta sólo POS1 (…), ROW1, PAT1, FRAME1, CIRC1 o PITCHCIRC1</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_blocks.py" />
+      <source>PATTERN DEF has no points</source>
+      <translation>PATTERN DEF no tiene puntos</translation>
     </message>
     <message>
       <location filename="core/language/klartext/cycle_blocks.py" />
@@ -26620,6 +26640,11 @@
     </message>
     <message>
       <location filename="core/language/klartext/cycle_blocks.py" />
+      <source>Unexpected word in {form}</source>
+      <translation>Palabra inesperada en {form}</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_blocks.py" />
       <source>Write CYCL DEF {number}.0.</source>
       <translation>Escriba CYCL DEF {number}.0.</translation>
     </message>
@@ -26630,13 +26655,48 @@
     </message>
     <message>
       <location filename="core/language/klartext/cycle_blocks.py" />
+      <source>Write, for example, P1 = LBL 1 I2 = LBL 2.</source>
+      <translation>Escriba, por ejemplo, P1 = LBL 1 I2 = LBL 2.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_blocks.py" />
+      <source>Write, for example, P1 = LBL 1.</source>
+      <translation>Escriba, por ejemplo, P1 = LBL 1.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_blocks.py" />
+      <source>{form} needs {missing}</source>
+      <translation>{form} necesita {missing}</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_blocks.py" />
       <source>{total} with a string parameter (QS)</source>
       <translation>{total} con un parámetro de texto (QS)</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_faults.py" />
+      <source>A contour formula (QC, DECLARE CONTOUR, SEL CONTOUR)</source>
+      <translation>Una fórmula de contorno (QC, DECLARE CONTOUR, SEL CONTOUR)</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_faults.py" />
+      <source>A freely definable table (FN 26, FN 27, FN 28)</source>
+      <translation>Una tabla de libre definición (FN 26, FN 27, FN 28)</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_faults.py" />
+      <source>A string (QS, DECLARE STRING, TOCHAR, SUBSTR, SYSSTR, TONUMB, INSTR, STRLEN, STRCOMP)</source>
+      <translation>Una cadena (QS, DECLARE STRING, TOCHAR, SUBSTR, SYSSTR, TONUMB, INSTR, STRLEN, STRCOMP)</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_faults.py" />
       <source>Arithmetical error</source>
       <translation>Error aritmético</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_faults.py" />
+      <source>Assign the values to Q parameters in the program.</source>
+      <translation>Asigne los valores a parámetros Q en el programa.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_faults.py" />
@@ -26710,8 +26770,23 @@
     </message>
     <message>
       <location filename="core/language/klartext/klartext_faults.py" />
+      <source>List the pockets and islands with CONTOUR DEF or cycle 14.</source>
+      <translation>Enumere las cajeras y las islas con CONTOUR DEF o el ciclo 14.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_faults.py" />
       <source>M function not defined</source>
       <translation>Función M no definida</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_faults.py" />
+      <source>Mill the face with L moves, and repeat them with CALL LBL and REP.</source>
+      <translation>Frese la cara con movimientos L y repítalos con CALL LBL y REP.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_faults.py" />
+      <source>Mill the thread along a helix (CP with IPA and IZ), or cut it with a tapping cycle.</source>
+      <translation>Frese la rosca en una hélice (CP con IPA e IZ) o tállela con un ciclo de roscado.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_faults.py" />
@@ -26787,6 +26862,26 @@
       <location filename="core/language/klartext/klartext_faults.py" />
       <source>Use L moves and PLANE instead, or run the program on a control that supports this function.</source>
       <translation>Use en su lugar movimientos L y PLANE, o corra el programa en un control que admita esta función.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_faults.py" />
+      <source>Use cycle 21 with the data of cycle 20.</source>
+      <translation>Use el ciclo 21 con los datos del ciclo 20.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_faults.py" />
+      <source>Use cycle 22 with the data of cycle 20.</source>
+      <translation>Use el ciclo 22 con los datos del ciclo 20.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_faults.py" />
+      <source>Use cycle 24 with the data of cycle 20.</source>
+      <translation>Use el ciclo 24 con los datos del ciclo 20.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_faults.py" />
+      <source>Write names in quotes, and use Q parameters for numbers.</source>
+      <translation>Escriba los nombres entre comillas y use parámetros Q para los números.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_faults.py" />
@@ -27179,36 +27274,6 @@
       <translation>{form} no acepta DR.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/path_block.py" />
-      <source>{form} needs {missing}</source>
-      <translation>{form} necesita {missing}</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_blocks.py" />
-      <source>After PATTERN DEF, write, for example, POS1 (X+0 Y+0 Z+0).</source>
-      <translation>Después de PATTERN DEF, escriba, por ejemplo, POS1 (X+0 Y+0 Z+0).</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_blocks.py" />
-      <source>Close the parenthesis after the last word.</source>
-      <translation>Cierre el paréntesis después de la última palabra.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_blocks.py" />
-      <source>PATTERN DEF accepts only POS1 (…), ROW1, PAT1, FRAME1, CIRC1 or PITCHCIRC1</source>
-      <translation>PATTERN DEF acepta sólo POS1 (…), ROW1, PAT1, FRAME1, CIRC1 o PITCHCIRC1</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_blocks.py" />
-      <source>PATTERN DEF has no points</source>
-      <translation>PATTERN DEF no tiene puntos</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_blocks.py" />
-      <source>Unexpected word in {form}</source>
-      <translation>Palabra inesperada en {form}</translation>
-    </message>
-    <message>
       <location filename="core/language/klartext/plane_block.py" />
       <source>A PLANE block cannot contain both {first} and {second}.</source>
       <translation>Un bloque PLANE no puede contener a la vez {first} y {second}.</translation>
@@ -27427,61 +27492,6 @@
       <location filename="core/language/klartext/q_parameters.py" />
       <source>{kind} parameters go up to {kind2}{highest}.</source>
       <translation>Los parámetros {kind} llegan hasta {kind2}{highest}.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_faults.py" />
-      <source>A contour formula (QC, DECLARE CONTOUR, SEL CONTOUR)</source>
-      <translation>Una fórmula de contorno (QC, DECLARE CONTOUR, SEL CONTOUR)</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_faults.py" />
-      <source>A freely definable table (FN 26, FN 27, FN 28)</source>
-      <translation>Una tabla de libre definición (FN 26, FN 27, FN 28)</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_faults.py" />
-      <source>A string (QS, DECLARE STRING, TOCHAR, SUBSTR, SYSSTR, TONUMB, INSTR, STRLEN, STRCOMP)</source>
-      <translation>Una cadena (QS, DECLARE STRING, TOCHAR, SUBSTR, SYSSTR, TONUMB, INSTR, STRLEN, STRCOMP)</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_faults.py" />
-      <source>Assign the values to Q parameters in the program.</source>
-      <translation>Asigne los valores a parámetros Q en el programa.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_faults.py" />
-      <source>List the pockets and islands with CONTOUR DEF or cycle 14.</source>
-      <translation>Enumere las cajeras y las islas con CONTOUR DEF o el ciclo 14.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_faults.py" />
-      <source>Mill the face with L moves, and repeat them with CALL LBL and REP.</source>
-      <translation>Frese la cara con movimientos L y repítalos con CALL LBL y REP.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_faults.py" />
-      <source>Mill the thread along a helix (CP with IPA and IZ), or cut it with a tapping cycle.</source>
-      <translation>Frese la rosca en una hélice (CP con IPA e IZ) o tállela con un ciclo de roscado.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_faults.py" />
-      <source>Use cycle 21 with the data of cycle 20.</source>
-      <translation>Use el ciclo 21 con los datos del ciclo 20.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_faults.py" />
-      <source>Use cycle 22 with the data of cycle 20.</source>
-      <translation>Use el ciclo 22 con los datos del ciclo 20.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_faults.py" />
-      <source>Use cycle 24 with the data of cycle 20.</source>
-      <translation>Use el ciclo 24 con los datos del ciclo 20.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_faults.py" />
-      <source>Write names in quotes, and use Q parameters for numbers.</source>
-      <translation>Escriba los nombres entre comillas y use parámetros Q para los números.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/structure_blocks.py" />
@@ -27764,14 +27774,39 @@
       <translation>{what} necesita un palpador, pero esta máquina no lo tiene.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/other_controls.py" />
-      <source>Rewrite the program with the codes of this control; each message below names the code to use.</source>
-      <translation>Reescriba el programa con los códigos de este control; cada mensaje siguiente indica el código que debe usar.</translation>
+      <location filename="core/language/line_reading.py" />
+      <source>Type a decimal point.</source>
+      <translation>Escriba un punto decimal.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/other_controls.py" />
-      <source>This program was written for a {control} control. TurnDesk runs OmniTurn programs.</source>
-      <translation>Este programa se escribió para un control {control}. TurnDesk ejecuta programas OmniTurn.</translation>
+      <location filename="core/language/line_reading.py" />
+      <source>a quotation mark, which this control does not allow</source>
+      <translation>unas comillas, que este control no permite</translation>
+    </message>
+    <message>
+      <location filename="core/language/line_reading.py" />
+      <source>a special decimal point, not the one on the keyboard</source>
+      <translation>un punto decimal especial, no el del teclado</translation>
+    </message>
+    <message>
+      <location filename="core/language/line_reading.py" />
+      <source>a special minus sign, not the one on the keyboard</source>
+      <translation>un signo menos especial, no el del teclado</translation>
+    </message>
+    <message>
+      <location filename="core/language/line_reading.py" />
+      <source>a special parenthesis, not the one on the keyboard</source>
+      <translation>un paréntesis especial, no el del teclado</translation>
+    </message>
+    <message>
+      <location filename="core/language/line_reading.py" />
+      <source>a special plus sign, not the one on the keyboard</source>
+      <translation>un signo más especial, no el del teclado</translation>
+    </message>
+    <message>
+      <location filename="core/language/line_reading.py" />
+      <source>an invisible character</source>
+      <translation>un carácter invisible</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/intended_code.py" />
@@ -28075,6 +28110,11 @@
     </message>
     <message>
       <location filename="core/language/omniturn/other_controls.py" />
+      <source>Rewrite the program with the codes of this control; each message below names the code to use.</source>
+      <translation>Reescriba el programa con los códigos de este control; cada mensaje siguiente indica el código que debe usar.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>This control has no boring cycle; boring is programmed as separate moves.</source>
       <translation>Este control no tiene ciclo de mandrinado; se programa con movimientos separados.</translation>
     </message>
@@ -28105,8 +28145,8 @@
     </message>
     <message>
       <location filename="core/language/omniturn/other_controls.py" />
-      <source>Type a decimal point.</source>
-      <translation>Escriba un punto decimal.</translation>
+      <source>This program was written for a {control} control. TurnDesk runs OmniTurn programs.</source>
+      <translation>Este programa se escribió para un control {control}. TurnDesk ejecuta programas OmniTurn.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/other_controls.py" />
@@ -29177,36 +29217,6 @@
       <location filename="core/language/source.py" />
       <source>{name} is stored as UTF-16.</source>
       <translation>{name} está guardado como UTF-16.</translation>
-    </message>
-    <message>
-      <location filename="core/language/line_reading.py" />
-      <source>a quotation mark, which this control does not allow</source>
-      <translation>unas comillas, que este control no permite</translation>
-    </message>
-    <message>
-      <location filename="core/language/line_reading.py" />
-      <source>a special decimal point, not the one on the keyboard</source>
-      <translation>un punto decimal especial, no el del teclado</translation>
-    </message>
-    <message>
-      <location filename="core/language/line_reading.py" />
-      <source>a special minus sign, not the one on the keyboard</source>
-      <translation>un signo menos especial, no el del teclado</translation>
-    </message>
-    <message>
-      <location filename="core/language/line_reading.py" />
-      <source>a special parenthesis, not the one on the keyboard</source>
-      <translation>un paréntesis especial, no el del teclado</translation>
-    </message>
-    <message>
-      <location filename="core/language/line_reading.py" />
-      <source>a special plus sign, not the one on the keyboard</source>
-      <translation>un signo más especial, no el del teclado</translation>
-    </message>
-    <message>
-      <location filename="core/language/line_reading.py" />
-      <source>an invisible character</source>
-      <translation>un carácter invisible</translation>
     </message>
     <message>
       <location filename="core/motion/axis_limits.py" />

@@ -13,12 +13,12 @@ from app.desk.pages.sheet import Key
 from app.desk.translation import tr
 from app.extras.drawings.drawing_plan import ALL, OWN, Asked, Plan, Planner, pictured
 from app.extras.shapes.shape_form import AddedForm, ShapeForm, Show
-from core.extras.drawings.contour_walk import UNITS
 from core.extras.drawings.drawing_file import is_drawing
 from core.extras.drawings.drawing_process import read_in_process
 from core.extras.drawings.drawing_view import Front, Side, Zero
 from core.extras.drawings.part_against_drawing import Comparison
 from core.extras.drawings.profile_job import in_words
+from core.extras.drawings.unit_check import UNITS
 from core.extras.shapes.cutting_data import MATERIALS
 from core.extras.shapes.lines.code_lines import Code
 from core.extras.shapes.shape import Filled, Shape

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.desk.background_work import Watch
-from core.extras.drawings.contour_walk import UNITS, Net
+from core.extras.drawings.contour_walk import Net
 from core.extras.drawings.drawing import Drawing, DrawingError, limited_work
 from core.extras.drawings.drawing_view import (
     Front,
@@ -26,7 +26,7 @@ from core.extras.drawings.drawing_view import (
 )
 from core.extras.drawings.profile_job import proposed_fields
 from core.extras.drawings.profile_program import ProfileProgram, profile_program
-from core.extras.drawings.unit_check import wrong_unit
+from core.extras.drawings.unit_check import UNITS, wrong_unit
 from core.extras.shapes.shape_fields import Setting, Value, Values
 from core.geometry.lines_and_arcs import Arc, Element, Line
 from core.message import Message
