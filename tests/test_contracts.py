@@ -4,6 +4,7 @@ import importlib
 import re
 import subprocess
 import sys
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -150,3 +151,21 @@ def test_pickle_goes_between_our_own_processes_alone() -> None:
         path for path in paths if re.search(r"^\s*(import|from) pickle\b", path.read_text(), re.MULTILINE)
     ]
     assert {path.relative_to(house).as_posix() for path in found} == sender_and_receiver
+
+
+MOST_FILES, MOST_LINES = 20, 500  # a newcomer sees a folder at one glance, and reads a file in one go
+
+
+def test_no_folder_has_too_many_files() -> None:
+    counts = Counter(path.parent for path in sources() if path.name != "__init__.py")
+    assert {str(folder): count for folder, count in counts.items() if count > MOST_FILES} == {}
+
+
+def test_no_file_is_too_long() -> None:
+    lines = {str(path): len(path.read_text("utf-8").splitlines()) for path in sources()}
+    assert {path: count for path, count in lines.items() if count > MOST_LINES} == {}
+
+
+def sources() -> Iterator[Path]:
+    house = Path(__file__).parents[1]
+    return (path for top in OURS for path in (house / top).rglob("*.py"))
