@@ -7,7 +7,7 @@ elsewhere in it has not been positioned by the program, and the line is refused 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import inf, isclose
@@ -263,12 +263,16 @@ def _is_uncut(block: Block, broken: Interruption) -> bool:
     if block.n != broken.block or block.travel is None:
         return block.n > broken.done
     travel = block.travel
-    closed = all(abs(end - start) <= NEAR for start, end in zip(travel.start, travel.end, strict=True))
-    if closed and travel.length > NEAR:
+    if travel.length > NEAR and _is_same_place(travel.start, travel.end):
         return True
-    offs = [end - at for end, at in zip(block.travel.end, broken.at, strict=False)]
-    turned = [(each + 180.0) % 360.0 - 180.0 for each in offs[_SLIDES:]]  # whole turns make no difference
-    return block.n > broken.done or any(abs(each) > NEAR for each in (*offs[:_SLIDES], *turned))
+    return block.n > broken.done or not _is_same_place(broken.at, travel.end)
+
+
+def _is_same_place(one: Sequence[float], other: Sequence[float]) -> bool:
+    """Return whether two machine positions agree; whole turns of the rotary axes make no difference."""
+    offs = [b - a for a, b in zip(one, other, strict=False)]
+    turned = [(each + 180.0) % 360.0 - 180.0 for each in offs[_SLIDES:]]
+    return all(abs(each) <= NEAR for each in (*offs[:_SLIDES], *turned))
 
 
 def _at(point: Checkpoint) -> tuple[float, ...]:

@@ -10,7 +10,7 @@ from app.compose.machine.machine_files import named_machine
 from app.compose.machine.machine_setup import setup_for
 from core.interpreter.dialects import ReadProgram
 from core.interpreter.restart.mill_approach import begin_on_mill
-from core.interpreter.restart.program_search import ProgramSearch, _Stand
+from core.interpreter.restart.program_search import ProgramSearch, _is_uncut, _Stand
 from core.interpreter.restart.restart_approach import Choices, MachineNow, begin_at
 from core.interpreter.restart.restart_point import Interruption, NoRestart, RestartPoint
 from core.interpreter.shared.actions import ProgramStop, SpindleRun, ToolChange
@@ -285,6 +285,17 @@ def test_a_full_circle_that_was_interrupted_counts_as_uncut_wherever_it_stopped(
     found = searched(of, 10, broken=Interruption(circle.n, 5, circle.travel.end, circle.n))
     assert isinstance(found, NoRestart)
     assert found.before == 8
+
+
+@pytest.mark.parametrize("turn", [360.0, 720.0])
+def test_whole_turns_that_were_interrupted_count_as_uncut(turn: float) -> None:
+    block = next(each for each in whole(mill(RING)) if each.line == 8)
+    assert block.travel is not None
+    start = (*block.travel.start[:3], 0.0, 0.0)
+    end = (*block.travel.start[:3], 0.0, turn)
+    travel = replace(block.travel, start=start, end=end, length=turn, way=None)
+    turned = block._replace(travel=travel) if hasattr(block, "_replace") else replace(block, travel=travel)
+    assert _is_uncut(turned, Interruption(block.n, 5, start, block.n))
 
 
 def test_on_a_lathe_what_was_left_out_is_no_matter_of_heights() -> None:
