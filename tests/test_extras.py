@@ -8,10 +8,14 @@ from pathlib import Path
 
 import pytest
 
+import resources
 from app.cli import main
 from app.compose import extra
 from app.compose.extra import NAMES, command_modules, drawing_endings, extras, insert_after
+from app.compose.machine.machine_files import DRIVERS
 from app.special.special_functions import SpecialFunctions
+from core.machine.machine_file import parse_machine
+from core.table_schema import MachineFileError
 from tests.attached import attached
 from tests.screen.desks import desk_on
 from tests.screen.fake import FakeMachine
@@ -94,3 +98,28 @@ def test_without_features_their_commands_are_unknown(capsys: pytest.CaptureFixtu
 @pytest.mark.usefixtures("no_features")
 def test_without_features_no_drawing_is_listed() -> None:
     assert drawing_endings() == ()
+
+
+def test_a_folder_of_a_feature_with_only_caches_counts_as_absent(monkeypatch: pytest.MonkeyPatch) -> None:
+    found = importlib.util.find_spec
+    monkeypatch.setattr(extra, "find_spec", lambda name: None if name.endswith(".extra") else found(name))
+    extras.cache_clear()
+    assert extras() == {}
+    extras.cache_clear()
+
+
+@pytest.mark.parametrize(
+    ("signal", "old", "new"),
+    [
+        ("io.in.estop", 'estop = { at = "IN-1"', 'estop = { at = "pendant.BTN_B"'),
+        ("io.in.hold", 'hold  = { at = "IN-3"', 'hold  = { at = "pendant.BTN_B"'),
+        ("io.analog.handwheel", "[io.in]", '[io.analog]\nhandwheel = { at = "pendant.REL_DIAL" }\n[io.in]'),
+    ],
+)
+def test_a_signal_at_a_device_of_an_absent_feature_is_rejected(signal: str, old: str, new: str) -> None:
+    own = [each for each in DRIVERS if each.prefix != "pendant."]
+    text = resources.machine_file("gt75.toml")
+    assert old in text
+    with pytest.raises(MachineFileError) as caught:
+        parse_machine(text.replace(old, new), "own.toml", own)
+    assert (f"{signal}.at", "absent-device") in [(each.path, each.code) for each in caught.value.errors]

@@ -137,11 +137,16 @@ def extras() -> Mapping[str, Extra]:
     """Return the optional features that are installed, by name."""
     found: dict[str, Extra] = {}
     for name in NAMES:
-        if find_spec(f"app.extras.{name}") is not None:
+        if _is_installed(name):
             extra: Extra = import_module(f"app.extras.{name}.extra").EXTRA
             if found.keys() >= set(extra.needs):
                 found[name] = extra
     return found
+
+
+def _is_installed(name: str) -> bool:
+    """Return whether the feature has its module; a folder in which only caches are left has none."""
+    return find_spec(f"app.extras.{name}") is not None and find_spec(f"app.extras.{name}.extra") is not None
 
 
 def command_modules() -> Mapping[str, str]:

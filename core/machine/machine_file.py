@@ -95,6 +95,7 @@ def parse_machine(text: str, source: str, drivers: Sequence[Driver]) -> Machine:
         *signal_rules.broken(reading),
         *signal_rules.shared(file, drivers),
         *signal_rules.pots(file, drivers),
+        *signal_rules.absent_devices(file),
         *wrong_wheel(file),
         *wrong_jog(file),
         *wrong_palms(file),

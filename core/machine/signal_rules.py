@@ -10,6 +10,9 @@ from core.machine.machine_tables import FIXED_M_CODES, LANGUAGES
 from core.message import Message
 from core.table_schema import Driver, FileReading, Finding, Values, written
 
+DEVICES = ("pendant.",)
+"""What begins the addresses at devices that an optional feature reads."""
+
 # Codes of the language and the outputs they switch.
 NEEDED_OUTPUTS = {
     "coolant": "M08 and M09 need this output to switch the coolant",
@@ -214,6 +217,20 @@ def pots(file: FileReading, drivers: Sequence[Driver]) -> Iterator[Finding]:
                     Message("the range limits are fractions and must be between 0 and {top}", top=f"{top:g}"),
                     "broken-rule",
                 )
+
+
+def absent_devices(file: FileReading) -> Iterator[Finding]:
+    """Yield a finding for each signal at a device that this TurnDesk cannot read.
+
+    Without this rule, a stop button on the pendant would be an input that is never on.
+    """
+    analog = {f"io.analog.{name}": f"io.analog.{name}.at" for name in file.names("io.analog")}
+    pots = {path: file.values.text(at) for path, at in analog.items() if file.values.has(at)}
+    reserved = tuple(each for each in DEVICES if each not in file.prefixes)
+    for path, terminal in {**file.terminals, **pots}.items():
+        if terminal.startswith(reserved):
+            why = "this TurnDesk is installed without support for this device; write another address"
+            yield Finding(f"{path}.at", written(terminal), why, "absent-device")
 
 
 def _backend(values: Values, drivers: Sequence[Driver]) -> Driver | None:
