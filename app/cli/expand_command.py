@@ -39,7 +39,7 @@ def run(args: argparse.Namespace) -> int:
     around = circumstances(args)
     source = read_source(path, args)
     timeline = Timeline.of(source, around.setup, around.machine, ideal=args.ideal)
-    figures = importlib.import_module(f"app.cli.figures.units.{source.dialect}_figures")
+    figures = importlib.import_module(f"app.cli.figures.{source.dialect}_figures")
     if not args.json:
         sys.stdout.write(figures.HEAD)
     with Progress(f"expanding {path.name}", len(source.lines)) as progress:

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from importlib.util import find_spec
 
 import pytest
+
+from app.compose.extra import extras
 
 DESK = """
 import sys
@@ -20,27 +23,18 @@ print(*read)
 desk.close()
 """
 OF_LATER = (
-    *("app.editor", "app.programs.program_list", "app.extras.quality.shift_page", "app.scope", "app.shapes"),
-    *(
-        "app.extras.sharing.sharing_model",
-        "app.special.setup_sheet",
-        "app.transfer",
-        "pyqtgraph",
-    ),
-    *("core.extras.drawings.profile_program", "core.interpreter.klartext", "core.interpreter.sinumerik"),
-    *(
-        "core.interpreter.omniturn.flow.loops_and_subroutines",
-        "drivers.canopen.canopen_machine",
-        "drivers.feeder",
-    ),
-    *(
-        "drivers.hal.hal_machine",
-        "drivers.inverter.inverter_spindle",
-        "app.extras.pendant.driver.pendant_station",
-    ),
-    *("app.extras.mtconnect.shop_floor", "app.extras.office.office_desk", "drivers.transfer"),
-    *("core.part.milled_part", "core.part.solid_picture", "core.proving.part_proof", "core.extras.shapes"),
-    *("ezdxf", "svgelements"),
+    *("app.editor", "app.programs.program_list", "app.scope", "app.special.setup_sheet", "app.transfer"),
+    *("core.interpreter.klartext", "core.interpreter.sinumerik", "core.part.milled_part"),
+    *("core.interpreter.omniturn.flow.loops_and_subroutines", "core.part.solid_picture"),
+    *("core.proving.part_proof", "drivers.canopen.canopen_machine", "drivers.feeder"),
+    *("drivers.hal.hal_machine", "drivers.inverter.inverter_spindle", "drivers.transfer"),
+    *("ezdxf", "pyqtgraph", "svgelements"),
+)
+OF_FEATURES = (
+    *("app.extras.quality.shift_page", "app.extras.shapes.shapes_model", "core.extras.shapes.shape"),
+    *("app.extras.sharing.sharing_model", "app.extras.pendant.driver.pendant_station"),
+    *("app.extras.mtconnect.shop_floor", "app.extras.office.office_desk"),
+    "core.extras.drawings.profile_program",
 )
 
 
@@ -55,10 +49,12 @@ def started(tmp_path_factory: pytest.TempPathFactory) -> tuple[frozenset[str], l
     return frozenset(modules.split()), read.split()
 
 
-@pytest.mark.parametrize("later", OF_LATER)
+@pytest.mark.parametrize("later", [*OF_LATER, *OF_FEATURES])
 def test_what_a_page_or_a_proof_needs_is_loaded_with_it(
     started: tuple[frozenset[str], list[str]], later: str
 ) -> None:
+    if later not in OF_FEATURES or later.split(".")[2] in extras():
+        assert find_spec(later) is not None
     assert not [name for name in started[0] if f"{name}.".startswith(f"{later}.")]
 
 

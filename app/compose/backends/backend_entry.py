@@ -81,7 +81,7 @@ def backend_of(machine: Machine) -> Backend:
 
 
 def _backend(word: str) -> Backend:
-    found = importlib.import_module(f"app.compose.backends.connection.{BACKENDS[word]}").BACKEND
+    found = importlib.import_module(f"app.compose.backends.{BACKENDS[word]}").BACKEND
     assert isinstance(found, Backend)
     return found
 
