@@ -13,14 +13,13 @@ from app.cli.store_command import opened_store
 from app.cli.who_changes import RESET, add_as_option, demand_own_keyboard, who_changes
 from app.desk.command_errors import EXIT_OK, CommandError, as_command_error
 from core.access.access_table import RULES, Act, Level
-from core.extras.access.pins import Hashed, hashed, is_outdated, is_pin, wait_after
 from core.json_key import Output, keys
 from core.message import Message
-from core.store.people import PersonRow, keep_person
-from core.store.store import Store
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
+    from core.store.people import PersonRow
+    from core.store.store import Store
 
 
 ACCESS_LIST = Output(
@@ -203,6 +202,9 @@ _WRONG = "wrong PINs"  # the setting that the desk keeps too
 
 def demand_pin(store: Store, row: PersonRow, remedy: str) -> None:
     """Raises CommandError for a wrong one, which is logged, and lets the next wait."""
+    from core.extras.access.pins import Hashed, hashed, is_outdated, is_pin, wait_after
+    from core.store.people import keep_person
+
     if not row.has_pin:
         raise CommandError(
             Message("no PIN is stored for user {row}; {remedy}", row=row.name, remedy=remedy), "no-pin"
