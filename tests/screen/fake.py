@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -43,9 +44,14 @@ class FakeMachine:
     at: int = 0
     hear: Callable[[Event], None] = lambda _: None
     alive: bool = True  # a dead control goes on showing its last snapshot
+    # A program is loaded from a thread of its own: only ``snapshot`` shows it, or one thread would undo what
+    # the other has just written.
+    loaded: deque[Job] = field(default_factory=deque)
 
     def snapshot(self) -> Snapshot:
         """One step on, then a picture of it."""
+        while self.loaded:
+            self._show_loaded(self.loaded.popleft())
         if self.now.state is State.RUN:
             self._run()
         wanted = self.job is not None and self.proof is None
@@ -59,9 +65,7 @@ class FakeMachine:
         match command:
             case LoadJob(job):
                 self.job, self.proof = job, None
-                self.now = replace(
-                    self.now, program=job.source.name, block_delete=job.setup.block_delete, line=0, block=0
-                )
+                self.loaded.append(job)
             case Prepare(starts):
                 self.now = replace(self.now, starts=starts)
             case GiveProof(proof):
@@ -78,6 +82,10 @@ class FakeMachine:
                 self.now = replace(self.now, feed_override=fraction)
             case CycleStart() | FeedHold() | Reset() | EnableDrives():
                 self._button(command)
+
+    def _show_loaded(self, job: Job) -> None:
+        name, deletes = job.source.name, job.setup.block_delete
+        self.now = replace(self.now, program=name, block_delete=deletes, line=0, block=0)
 
     def _button(self, command: Command) -> None:
         state = self.now.state

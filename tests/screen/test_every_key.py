@@ -193,7 +193,7 @@ def _faults_of_stroke(typist: Typist, name: str, stroke: Stroke) -> Iterator[str
     if left:
         done -= {"JogStop"}
     if done - may:
-        yield f"changes {done - may}"
+        yield f"changes {done - may} {sorted(typist.changed)}"
     if left and has_field and len(stroke.name) == 1 and stroke.modifiers is NONE:
         yield "is no text"
     if must - done:

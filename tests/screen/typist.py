@@ -78,6 +78,7 @@ class Typist:
     recorded: bool = True  # nothing reaches the machine
     done: set[str] = field(default_factory=set)
     workers: list[Latest] = field(default_factory=list)
+    changed: set[str] = field(default_factory=set)  # by the last key, each table and file by its name
     stored: int = 0  # writes of the store
     _dump: dict[str, int] = field(default_factory=dict)
 
@@ -94,6 +95,7 @@ class Typist:
         self._workers_end()
         after = self._all()
         changed = {name for name in before.keys() | after.keys() if before.get(name) != after.get(name)}
+        self.changed = changed
         return self.done | _kinds(changed)
 
     def _workers_end(self) -> None:
