@@ -132,8 +132,8 @@ class Trip(NamedTuple):
 
 
 class Tripping(Protocol):
-    """A feeder that stops spindle and outputs when its control is silent. From then on it takes no setpoint
-    and switches nothing on, with TrippedError, until the control has acknowledged what it did.
+    """A driver host that stops spindle and outputs when its control is silent. From then on it takes no
+    setpoint and switches nothing on, with TrippedError, until the control has acknowledged what it did.
     """
 
     def tripped(self) -> Trip | None:

@@ -143,7 +143,7 @@ def test_pickle_goes_between_our_own_processes_alone() -> None:
     sender_and_receiver = {
         "app/cli/proofs/proof_job.py",
         "app/cli/proofs/proof_work.py",
-        "app/compose/backends/feeder_process.py",
+        "app/compose/backends/driver_host_process.py",
     }
     house = Path(__file__).parents[1]
     paths = [path for top in OURS for path in (house / top).rglob("*.py")]

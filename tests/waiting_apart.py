@@ -26,7 +26,7 @@ WAIT = (
     "tests/shopfloor/",
     "tests/extras/mtconnect/",
     "tests/extras/office/",
-    "tests/drivers/feeder/",
+    "tests/drivers/driver_host/",
     "tests/drivers/grblhal/",
     "tests/drivers/hal/",
     "tests/drivers/transfer/",

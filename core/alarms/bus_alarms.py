@@ -1,4 +1,4 @@
-"""Alarms of what the control hangs on: bus, I/O modules, feeder process, controller, LinuxCNC's HAL."""
+"""Alarms of what the control hangs on: bus, I/O modules, driver host process, controller, LinuxCNC's HAL."""
 
 from __future__ import annotations
 

@@ -47,9 +47,7 @@ from core.ports import DriverError, MachinePorts, Unknown
 _RESTING = frozenset({State.ESTOP, State.DISABLED, State.IDLE, State.FAULT})
 _SETTLED = 100  # ticks in which nothing has happened
 _SHOWN = 0.045  # s between two snapshots then: five ticks, whose length is never quite the same
-RESTS = (
-    0.095  # s between two ticks of a machine at rest: a feeder sends its SYNC, ten a second, with the look
-)
+RESTS = 0.095  # s between two ticks of a machine at rest: a host sends its SYNC, ten a second, with the look
 _log = logging.getLogger(__name__)
 TICK = 0.01  # s from the end of one to the beginning of the next
 _OFF_BY_ESTOP = frozenset({"power-lost", "spindle-off"})  # of what its chain switches off by itself
@@ -421,7 +419,7 @@ class Executor:
             except MotionError as error:
                 self._control.alarm(AlarmError("program", str(error)))
             except TrippedError:
-                pass  # refused, since the feeder has stopped something: the next look tells what
+                pass  # refused, since the driver host has stopped something: the next look tells what
             except DriverError as error:
                 self._alarm(AlarmError(error.code, str(error)))
 

@@ -35,7 +35,7 @@ ARRIVES, SETTLES, RESTS, PEER = 20.0, 6.0, 3.5, 3.0  # s
 ROLLS = 12.0  # s; the window of the scope, until nothing of what was before rolls in it
 PRESSES = 30
 LEAST = 0.0001  # of a core
-FEEDER = "[machine]\nfeeder = true\n"
+HAS_DRIVER_HOST = "[machine]\nfeeder = true\n"
 PICTURES = os.environ.get("BENCH_PICTURES", "")
 _TICKS = os.sysconf("SC_CLK_TCK")
 
@@ -90,7 +90,7 @@ def time_of(pid: int) -> float:
 
 
 def children(pid: int) -> list[int]:
-    """Processes that it has started: the feeder."""
+    """Processes that it has started: the driver host."""
     return [
         int(child)
         for task in Path(f"/proc/{pid}/task").iterdir()
@@ -223,11 +223,11 @@ def latency(bench: Bench) -> None:
     say(f"{'key down to setpoint queued, ms':34s}{statistics.median(took):7.1f}{max(took):9.1f} at most\n")
 
 
-def in_feeder(stage: Server, folder: Path, shipped: str, seconds: float, name: str) -> dict[str, float]:
+def in_host(stage: Server, folder: Path, shipped: str, seconds: float, name: str) -> dict[str, float]:
     """A shipped machine whose drivers are a process of their own; its far end is played beside it."""
     machine = folder / shipped
     text = resources.machine_file(shipped)
-    machine.write_text(text if "\nfeeder = true" in text else text.replace("[machine]\n", FEEDER, 1))
+    machine.write_text(text if "\nfeeder = true" in text else text.replace("[machine]\n", HAS_DRIVER_HOST, 1))
     peer = None
     if name == "canopen":
         words = [sys.executable, "-m", "app.cli.main", "machine", "peer", str(machine)]
@@ -257,7 +257,7 @@ def main() -> None:
             shares["simulated lathe"] = simulated(stage, Path(folder) / "sim", names, wanted.seconds)
         for name, shipped in (("feeder", "gt75.toml"), ("canopen", "gt75-bench.toml")):
             if name in names:
-                within = in_feeder(stage, Path(folder) / name, shipped, wanted.seconds, name)
+                within = in_host(stage, Path(folder) / name, shipped, wanted.seconds, name)
                 shares[f"{shipped} through the feeder"] = within
     say(f"{keep_result('idle', {'seconds': wanted.seconds, 'rows': shares})}\n")
 

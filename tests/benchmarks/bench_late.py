@@ -1,8 +1,8 @@
 """Lateness: whatever can be late, frozen, killed or starved; what then moves, how far, and what is said.
 
 Run with ``python -m tests.benchmarks.bench_late [WORD …]``: every row, or those with one of the words in
-their name. It starts the desk without its window (executor, watchdog, store, with and without the feeder) as
-processes of its own, stops and kills them, and prints a table. Nothing is asserted.
+their name. It starts the desk without its window (executor, watchdog, store, with and without the driver
+host) as processes of its own, stops and kills them, and prints a table. Nothing is asserted.
 """
 
 from __future__ import annotations
@@ -169,11 +169,11 @@ def _spin(seconds: float) -> None:
 class Desk:
     """The process, and the last it has said."""
 
-    def __init__(self, *, feeder: bool) -> None:
+    def __init__(self, *, host: bool) -> None:
         self._folder = tempfile.TemporaryDirectory()
         self.home = Path(self._folder.name)
         text = resources.machine_file("gt75.toml")
-        if feeder:
+        if host:
             text = text.replace("[machine]\n", "[machine]\nfeeder = true\n", 1)
         (self.home / "m.toml").write_text(text)
         self.popen = subprocess.Popen(
@@ -207,7 +207,7 @@ class Desk:
             time.sleep(0.005)
         return true()
 
-    def feeder(self) -> int:
+    def host(self) -> int:
         """Its process."""
         path = Path(f"/proc/{self.popen.pid}/task")
         children = [int(pid) for task in path.iterdir() for pid in (task / "children").read_text().split()]
@@ -340,51 +340,51 @@ Case = tuple[str, str, bool, Callable[[Desk], None]]
 
 
 def cases() -> list[Case]:
-    """Name, situation, with the feeder, what is done."""
+    """Name, situation, with the driver host, what is done."""
     found: list[Case] = []
-    for feeder in (False, True):
-        name = "with feeder" if feeder else "no feeder"
+    for host in (False, True):
+        name = "with driver host" if host else "no driver host"
         for place in ("cut", "rapid", "dwell", "M00", "jog", "thread", "hold", "at rest"):
             for seconds in STALLS:
 
                 def stall(desk: Desk, seconds: float = seconds) -> None:
                     stopped(desk.popen.pid, seconds)
 
-                found.append((f"{name}: control stopped {seconds:g} s", place, feeder, stall))
+                found.append((f"{name}: control stopped {seconds:g} s", place, host, stall))
         for place in ("cut", "dwell"):
             found += [
-                (f"{name}: control starved 3 s", place, feeder, lambda d: starved(d.popen.pid, 3.0)),
+                (f"{name}: control starved 3 s", place, host, lambda d: starved(d.popen.pid, 3.0)),
                 (
                     f"{name}: executor blocked .5 s",
                     place,
-                    feeder,
+                    host,
                     lambda d: d.do("block executor", 0.5),
                 ),
                 (
                     f"{name}: executor blocked 3 s",
                     place,
-                    feeder,
+                    host,
                     lambda d: d.do("block executor", 3.0),
                 ),
-                (f"{name}: executor killed", place, feeder, lambda d: d.do("kill executor")),
-                (f"{name}: Python's lock held 2 s", place, feeder, lambda d: d.do("lock held", 2.0)),
-                (f"{name}: two busy workers 3 s", place, feeder, lambda d: d.do("busy", 3.0)),
-                (f"{name}: wall clock + 1 h", place, feeder, lambda d: d.do("clock", 3600.0)),
-                (f"{name}: wall clock − 1 h", place, feeder, lambda d: d.do("clock", -3600.0)),
-                (f"{name}: store held 3 s", place, feeder, lambda d: disk_blocked(d.home, 3.0)),
+                (f"{name}: executor killed", place, host, lambda d: d.do("kill executor")),
+                (f"{name}: Python's lock held 2 s", place, host, lambda d: d.do("lock held", 2.0)),
+                (f"{name}: two busy workers 3 s", place, host, lambda d: d.do("busy", 3.0)),
+                (f"{name}: wall clock + 1 h", place, host, lambda d: d.do("clock", 3600.0)),
+                (f"{name}: wall clock − 1 h", place, host, lambda d: d.do("clock", -3600.0)),
+                (f"{name}: store held 3 s", place, host, lambda d: disk_blocked(d.home, 3.0)),
             ]
     for place in ("cut", "dwell", "hold"):
         for seconds in (0.1, 0.3, 1.0):
 
-            def feeder_stall(desk: Desk, seconds: float = seconds) -> None:
-                stopped(desk.feeder(), seconds)
+            def host_stall(desk: Desk, seconds: float = seconds) -> None:
+                stopped(desk.host(), seconds)
 
-            found.append((f"feeder stopped {seconds:g} s", place, True, feeder_stall))
-        found.append(("feeder killed", place, True, lambda d: os.kill(d.feeder(), signal.SIGKILL)))
+            found.append((f"driver host stopped {seconds:g} s", place, True, host_stall))
+        found.append(("driver host killed", place, True, lambda d: os.kill(d.host(), signal.SIGKILL)))
     return found
 
 
-FINAL = ("killed", "blocked 3 s", "feeder stopped 1")  # behind these the desk is started anew
+FINAL = ("killed", "blocked 3 s", "driver host stopped 1")  # behind these the desk is started anew
 
 
 def main(words: list[str]) -> None:
@@ -393,17 +393,17 @@ def main(words: list[str]) -> None:
     sys.stdout.write(
         "| what | in | way, mm: at its return → at rest | then | goes on |\n|---|---|---|---|---|\n"
     )
-    for what, place, feeder, act in cases():
+    for what, place, host, act in cases():
         if words and not any(word in f"{what} {place}" for word in words):
             continue
-        desk = desks.get(feeder) or Desk(feeder=feeder)
-        desks[feeder] = desk
+        desk = desks.get(host) or Desk(host=host)
+        desks[host] = desk
         settle = 4.0 if "3 s" in what or "killed" in what or place == "rapid" else 2.5
         row = measured(desk, what, place, partial(act, desk), settle)
         sys.stdout.write(f"| {' | '.join(row)} |\n")
         sys.stdout.flush()
         if any(word in what for word in FINAL) or row.way == "?":
-            desks.pop(feeder).close()
+            desks.pop(host).close()
     for desk in desks.values():
         desk.close()
 

@@ -1,4 +1,5 @@
-"""B5: a program streamed through the feeder's process for minutes, while other processes want the processors.
+"""B5: a program streamed through the driver host's process for minutes, while other processes want the
+processors.
 
 Run with ``python -m tests.benchmarks.bench_stream [MINUTES [HOGS]]``: 10 minutes beside 4 busy processes.
 """

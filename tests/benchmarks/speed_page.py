@@ -2,7 +2,7 @@
 
 All figures are processor time, taken by turns with what they are compared with. Peers run beside where they
 are installed: LinuxCNC's ``rs274``, which only interprets, and shapely. Takes some minutes. What the screen
-and the feeder do was measured by benchmarks of their own, which keep their figures in
+and the driver host do was measured by benchmarks of their own, which keep their figures in
 ``tests/benchmarks/results``; ``--kept FILE`` writes those parts of a page and leaves the others.
 """
 
@@ -32,7 +32,7 @@ from core.motion.axis_limits import MotionLimits
 from core.motion.motion_plan import plan
 from core.page_contents import contents
 from core.proving.prove_program import prove
-from tests.benchmarks import bench_feeder, bench_removal, bench_start
+from tests.benchmarks import bench_driver_host, bench_removal, bench_start
 from tests.benchmarks.bench_prove import feeds, program
 from tests.benchmarks.footprint import RESULTS
 from tests.benchmarks.installed import installed
@@ -83,7 +83,7 @@ def kept(folder: Path = RESULTS) -> str:
     for name, title, write in (
         ("frames", FIRST_KEPT, _frames),
         ("idle", REST, _idle),
-        ("feeder", SYNC, _feeder),
+        ("feeder", SYNC, _host),
     ):
         file = folder / f"{name}.json"
         if not file.exists():
@@ -324,7 +324,7 @@ def _idle(title: str, result: Result) -> str:
     return _table(title, ("machine", "state of TurnDesk", "% of a core"), rows, below)
 
 
-def _feeder(title: str, result: Result) -> str:
+def _host(title: str, result: Result) -> str:
     """How late SYNC was, run by run."""
     below = (
         "Delays are in ms. On each core, a witness process with a higher priority than the driver host "
@@ -336,7 +336,7 @@ def _feeder(title: str, result: Result) -> str:
         [re.sub(r"setpoints came (.* late): .*", lambda late: _LATE.format(late[1]), cell) for cell in row]
         for row in result["rows"]
     ]
-    return _table(title, bench_feeder.HEAD, rows, _filled(below))
+    return _table(title, bench_driver_host.HEAD, rows, _filled(below))
 
 
 def main() -> None:

@@ -47,11 +47,11 @@ class Process:
         self.popen.wait()
 
     def family(self) -> set[int]:
-        """Every live process that was started with this folder: the command and its feeder."""
+        """Every live process that was started with this folder: the command and its driver host."""
         mark = f"TURNDESK_HOME={self.home}".encode()
         return {pid for pid in _alive() if mark in _environment(pid)}
 
-    def feeder(self) -> int:
+    def host(self) -> int:
         """The one process that it has started; what is just being begun looks like who begins it."""
         until(lambda: len(self.family()) == 2, self.family)
         (pid,) = self.family() - {self.popen.pid}
@@ -66,7 +66,7 @@ def process(home: Path, module: str, *arguments: str) -> Iterator[Process]:
         yield made
     finally:
         for pid in made.family():
-            with suppress(ProcessLookupError):  # a feeder without a control ends by itself
+            with suppress(ProcessLookupError):  # a driver host without a control ends by itself
                 os.kill(pid, signal.SIGKILL)
         made.popen.wait()
         assert made.popen.stdout is not None

@@ -12,7 +12,7 @@ import pytest
 from core.store.store import Store
 from drivers.simulators.canopen_devices import CanopenDevices
 from drivers.waiting import RealClock
-from tests.drivers.feeder.bus import SteadyClock, bus_file, peers_on
+from tests.drivers.driver_host.bus import SteadyClock, bus_file, peers_on
 from tests.killed.bench import Process, process
 
 pytestmark = [

@@ -31,7 +31,7 @@ _LATE = opening("executor.control-trip"), CATALOGUE["low-queue"].text.upper()
 
 @pytest.fixture
 def files(tmp_path: Path) -> tuple[str, str]:
-    """The simulated lathe with its drivers in the feeder, and a program of which many parts are made."""
+    """The simulated lathe with its drivers in the driver host, and a program of which many parts are made."""
     machine, program = tmp_path / "lathe.toml", tmp_path / "part.nc"
     text = resources.machine_file("gt75.toml")
     machine.write_text(text.replace("[machine]\n", "[machine]\nfeeder = true\n", 1))
@@ -80,11 +80,11 @@ def test_a_killed_screen_keeps_what_was_entered_and_leaves_nobody(
     home = tmp_path / "home"
     with process(home, OPERATOR, *files) as desk:
         cutting(desk, 1)
-        assert desk.feeder()
+        assert desk.host()
         until(lambda: between_start_and_end(home), lambda: desk.lines[-3:])  # written behind the screen
         made = kept_parts(home)
         desk.kill()
-        until(lambda: not desk.family(), lambda: "the feeder has not ended")
+        until(lambda: not desk.family(), lambda: "the driver host has not ended")
     assert parts_in(read_ring(home / "records" / NOW)) >= made
     with Store.open(home) as store:
         assert store.tools()[9].offset == (-0.5 * 25.4, -3.25 * 25.4)
@@ -99,7 +99,7 @@ def test_a_killed_screen_keeps_what_was_entered_and_leaves_nobody(
         assert again.lines[-1]["alarms"] == []
         again.kill()
         assert parts_in(read_ring(home / "records" / LAST)) >= made  # of the control before
-        until(lambda: not again.family(), lambda: "the feeder has not ended")
+        until(lambda: not again.family(), lambda: "the driver host has not ended")
     with Store.open(home, read_only=True) as store:
         assert store.parts("part.nc") > counted
         told = [event.text for event in store.events() if event.kind == "warning"]
@@ -118,10 +118,10 @@ def test_a_run_without_an_end_is_told_at_the_next_start(tmp_path: Path) -> None:
     assert ended == {"cut.nc": "CUT OFF", "whole.nc": "COMPLETE", "counted.nc": ""}
 
 
-def test_a_killed_feeder_stops_the_program_and_says_so(files: tuple[str, str], tmp_path: Path) -> None:
+def test_a_killed_driver_host_stops_the_program_and_says_so(files: tuple[str, str], tmp_path: Path) -> None:
     with process(tmp_path / "home", OPERATOR, *files) as desk:
         cutting(desk, 0)
-        os.kill(desk.feeder(), signal.SIGKILL)
+        os.kill(desk.host(), signal.SIGKILL)
         until(lambda: desk.says("state", "ALARM"), lambda: desk.lines[-3:])
         assert CATALOGUE["feeder-gone"].text.upper() in str(desk.lines[-1]["alarms"])
         # The screen goes on: offsets and editor stay at hand.

@@ -26,7 +26,7 @@ OF_LATER = (
     *("app.editor", "app.programs.program_list", "app.scope", "app.special.setup_sheet", "app.transfer"),
     *("core.interpreter.klartext", "core.interpreter.sinumerik", "core.part.milled_part"),
     *("core.interpreter.omniturn.flow.loops_and_subroutines", "core.part.solid_picture"),
-    *("core.proving.part_proof", "drivers.canopen.canopen_machine", "drivers.feeder"),
+    *("core.proving.part_proof", "drivers.canopen.canopen_machine", "drivers.driver_host"),
     *("drivers.hal.hal_machine", "drivers.inverter.inverter_spindle", "drivers.transfer"),
     *("ezdxf", "pyqtgraph", "svgelements"),
 )

@@ -15,7 +15,7 @@ from core.ports import Clock, DriverError, MachinePorts
 
 if TYPE_CHECKING:
     from app.desk.station_hands import StationPanel
-    from drivers.feeder.feeder_server import Driven
+    from drivers.driver_host.host_server import Driven
 
 BACKENDS = {
     "sim": "simulated_backend",
@@ -52,12 +52,13 @@ class Connected:
 class Backend:
     """How a machine of this backend is driven.
 
-    ``word`` is what could not be reached where nothing answers. ``driven`` makes what the feeder owns, and
-    ``connect`` what lives in the control's own process, with its inverter; a backend that has both is asked
-    for the feeder by its machine file. ``played``: machine and other end are simulated here. ``play`` is the
-    other end alone, for trying a machine file without hardware. ``survey`` asks every node by itself, or
-    looks at every pin: its name, where it is, what is wrong with it and what it says. ``measured`` lists the
-    rows of ``turndesk machine check`` whose values hardware reports; without it no row counts as checked.
+    ``word`` is what could not be reached where nothing answers. ``driven`` makes what the driver host owns,
+    and ``connect`` what lives in the control's own process, with its inverter; a backend that has both is
+    asked for the driver host by its machine file. ``played``: machine and other end are simulated here.
+    ``play`` is the other end alone, for trying a machine file without hardware. ``survey`` asks every node by
+    itself, or looks at every pin: its name, where it is, what is wrong with it and what it says. ``measured``
+    lists the rows of ``turndesk machine check`` whose values hardware reports; without it no row counts as
+    checked.
     """
 
     word: str

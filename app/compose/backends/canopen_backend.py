@@ -23,7 +23,7 @@ from drivers.canopen.canopen_config import (
 from drivers.canopen.canopen_nodes import PLAIN_MODULE, CanNode, CanTerminal, Objects, can_terminal
 from drivers.canopen.canopen_table import CanopenTable, EncoderTable
 from drivers.canopen.drive_profiles import CIA402, PROFILES
-from drivers.feeder.feeder_server import Driven
+from drivers.driver_host.host_server import Driven
 from drivers.operator_station import PanelStation
 
 if TYPE_CHECKING:
@@ -149,7 +149,7 @@ def _played(machine: Machine) -> bool:
 
 
 def can_driven(machine: Machine, clock: Clock) -> Driven:
-    """The machine on its bus, for the feeder. Raises DriverError."""
+    """The machine on its bus, for the driver host. Raises DriverError."""
     peers = canopen_peers(machine, clock) if _played(machine) else None
     try:
         # A clock that stands waits for nobody: the peers are looked after in between.

@@ -1,6 +1,6 @@
-"""From a machine file to ports: in this process, or through the feeder's.
+"""From a machine file to ports: in this process, or through the driver host's.
 
-The feeder is loaded by the machines that have it: everybody waits for what a start loads.
+The driver host is loaded by the machines that have it: everybody waits for what a start loads.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from app.compose.extra import extras
 from core.machine.machine_model import Machine
 from core.ports import Clock
 
-FEEDER = sys.platform != "win32"  # elsewhere a simulated machine lives in the control's own process
+HAS_DRIVER_HOST = sys.platform != "win32"  # elsewhere a simulated machine lives in the control's own process
 
 
 def connect(machine: Machine, clock: Clock) -> Connected:
@@ -32,12 +32,12 @@ def wired(machine: Machine) -> Machine:
 
 def _connected(machine: Machine, clock: Clock) -> Connected:
     backend = backend_of(machine)
-    apart = backend.driven is not None and machine.hardware.feeder and FEEDER
+    apart = backend.driven is not None and machine.hardware.feeder and HAS_DRIVER_HOST
     if backend.connect is not None and not apart:
         return backend.connect(machine, clock)
-    from app.compose.backends.feeder_backend import connect_feeder
+    from app.compose.backends.driver_host_backend import connect_driver_host
 
-    return connect_feeder(machine, clock)
+    return connect_driver_host(machine, clock)
 
 
 def real_time(machine: Machine) -> bool:

@@ -11,7 +11,7 @@ from app.compose.backends.backend_entry import Backend, axis_figures, has_statio
 from core.machine.hardware_model import HomeModel
 from core.machine.machine_model import Axis, Machine
 from core.ports import Clock, DriverError
-from drivers.feeder.feeder_server import Driven
+from drivers.driver_host.host_server import Driven
 from drivers.hal.boards.board_table import ETHERCAT, MESA_SERVO, SIM, BoardTable
 from drivers.hal.hal_config import HalAxis, HalConfig, HalInput, HalOutput, HalPot, HalSpindle
 from drivers.hal.hal_machine import HalMachine
@@ -76,7 +76,7 @@ def _is_spindle(axis: Axis, machine: Machine, hal: HalTable) -> bool:
 
 
 def hal_driven(machine: Machine, clock: Clock) -> Driven:
-    """The machine behind HAL, for the feeder. Raises DriverError."""
+    """The machine behind HAL, for the driver host. Raises DriverError."""
     config = hal_config(machine)
     zero = clock.zero if isinstance(clock, RealClock) else 0.0
     owned = HalMachine(config, clock, lambda: HalSession(config, zero))

@@ -14,7 +14,7 @@ from core.machine.machine_model import Machine
 from core.message import Message
 from core.ports import Clock, DriverError
 from drivers.canopen.canopen_table import CanopenTable
-from drivers.feeder.feeder_loop import PRIORITY, keep_memory, real_time
+from drivers.driver_host.host_loop import PRIORITY, keep_memory, real_time
 from drivers.waiting import StepClock
 
 if TYPE_CHECKING:
@@ -133,7 +133,7 @@ def play_peers(
     clock, zero, epoch = StepClock(), time.monotonic(), time.time()
     peers = make(machine, clock)
     keep_memory()
-    real_time(PRIORITY - 10)  # drives are punctual; where this is refused the feeder has said so already
+    real_time(PRIORITY - 10)  # drives are punctual; where this is refused the driver host has said so already
     peers.arrival = lambda stamp: stamp - epoch
     say(
         Message(

@@ -20,7 +20,7 @@ from drivers.simulators.plant_config import (
 )
 
 if TYPE_CHECKING:
-    from drivers.feeder.feeder_server import Driven
+    from drivers.driver_host.host_server import Driven
 
 
 def simulated(machine: Machine, clock: Clock) -> Simulation:
@@ -66,8 +66,8 @@ def _axis(axis: Axis, machine: Machine) -> SimAxis:
 
 
 def _driven(machine: Machine, clock: Clock) -> Driven:
-    """For the feeder; the plant goes on also when nobody looks."""
-    from drivers.feeder.feeder_server import RESTS, Driven
+    """For the driver host; the plant goes on also when nobody looks."""
+    from drivers.driver_host.host_server import RESTS, Driven
 
     ports, hands = simulated(machine, clock)
     wakeup = ports.wakeup

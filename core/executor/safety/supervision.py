@@ -1,6 +1,6 @@
-"""What is watched every tick: following error, standstill, drives, collet, outputs, the feeder.
+"""What is watched every tick: following error, standstill, drives, collet, outputs, the driver host.
 
-A feeder that heard nothing stops spindle and outputs; a terminal, a module or a controller may do so by
+A driver host that heard nothing stops spindle and outputs; a terminal, a module or a controller may do so by
 itself. What was switched behind the back of the program holds the cycle, and its part is not counted: nothing
 is fed while an output is not what the program commanded, and what a start switches on again is announced.
 
@@ -254,11 +254,11 @@ class Supervisor:
     _unheard_since: float | None = None
 
 
-# --- outputs and the feeder -----------------------------------------------------------------------------
+# --- outputs and the driver host ----------------------------------------------------------------------
 
 
 class OutputsWatch:
-    """Watches outputs and the feeder, once a tick. On the executor's thread alone."""
+    """Watches outputs and the driver host, once a tick. On the executor's thread alone."""
 
     def __init__(self, context: MachineContext, program_run: ProgramRun) -> None:
         self._context = context

@@ -27,7 +27,7 @@ from drivers.hal.bridge.packets import BridgeAxis, BridgeConfig, Head, pack, unp
 
 _PERIOD = 0.002  # s between two rounds
 _REPORTS = 2  # rounds between two reports
-_PRIORITY = 45  # below the feeder's
+_PRIORITY = 45  # below the driver host's
 _LARGEST = 1 << 17
 _KINDS = {"float": "HAL_FLOAT", "bit": "HAL_BIT", "s32": "HAL_S32"}
 _WAYS = {"in": "HAL_IN", "out": "HAL_OUT", "io": "HAL_IO"}

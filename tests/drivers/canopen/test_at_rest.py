@@ -13,7 +13,7 @@ STEP = 0.005
 
 
 class Sleeping:
-    """What the feeder's loop does with the bus while its control sleeps."""
+    """What the driver host's loop does with the bus while its control sleeps."""
 
     def __init__(self, bench: CanBench, monkeypatch: pytest.MonkeyPatch) -> None:
         self.bench = bench

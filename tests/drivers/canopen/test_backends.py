@@ -68,7 +68,7 @@ def test_a_machine_with_buttons_has_none_on_the_screen() -> None:
     owned.close()
 
 
-def test_the_simulated_machine_through_the_feeder_has_all_ports() -> None:
+def test_the_simulated_machine_through_the_driver_host_has_all_ports() -> None:
     text = resources.machine_file("gt75.toml").replace('backend = "sim"', 'backend = "sim"\nfeeder = true')
     connected = connect(parse_machine(text, "fed.toml"), StepClock())
     assert connected.ports.gear is not None

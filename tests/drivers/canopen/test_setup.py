@@ -251,7 +251,7 @@ def test_a_fault_that_stays_is_told_again(bench: CanBench, monkeypatch: pytest.M
         axes.clear_fault()
 
 
-def test_a_feeder_that_is_late_runs_the_drives_dry_and_all_stop(bench: CanBench) -> None:
+def test_a_driver_host_that_is_late_runs_the_drives_dry_and_all_stop(bench: CanBench) -> None:
     axes = bench.machine.axes
     axes.enable(True)
     axes.splice(ramp(bench.clock.now() + 0.15, (0.0, 0.0, 0.0), 60.0, 1.0))

@@ -326,7 +326,7 @@ def test_m89_locks_where_it_stands(rig: BusRig) -> None:
     assert (seen[-1] - seen[-250]) % 360.0 == pytest.approx(90.0, abs=0.2)
 
 
-def test_through_the_feeder_too() -> None:
+def test_through_the_driver_host_too() -> None:
     clock = StepClock()
     machine = c_machine()
     connected = connect(machine, clock)

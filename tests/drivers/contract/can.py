@@ -1,4 +1,4 @@
-"""CiA 402 and 401 peers on a virtual bus: as one loop owns them, and through the feeder's messages."""
+"""CiA 402 and 401 peers on a virtual bus: as one loop owns them, and through the driver host's messages."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from app.compose.backends.canopen_backend import canopen_machine
 from core.machine.machine_model import Machine
 from core.ports import ALL_UNKNOWN, DriverError, Unknown
 from drivers.canopen.canopen_machine import CanopenMachine
-from drivers.feeder.feeder_line import Line, Link, cleared
-from drivers.feeder.feeder_ports import feeder_ports
-from drivers.feeder.feeder_server import Driven, Feeder
+from drivers.driver_host.host_line import Line, Link, cleared
+from drivers.driver_host.host_ports import host_ports
+from drivers.driver_host.host_server import Driven, DriverHost
 from drivers.simulators.plant_hands import PlantHands
 from drivers.waiting import Opening
 from tests.drivers.canopen.bench import CanBench, can_machine, cyclic
 from tests.drivers.contract.rig import Fault, Rig
-from tests.drivers.contract.simulated import FEEDER_FAULTS, FEEDER_WORDS, BrokenLink
+from tests.drivers.contract.simulated import HOST_FAULTS, HOST_WORDS, BrokenLink
 from tests.drivers.contract.world import SimWorld
 
 # Three heartbeats of 100 ms, a round of the bus, and v/a from 120 mm/s.
@@ -160,22 +160,22 @@ class Interpolated(Csp):
 
 
 def bus_driven(machine: CanopenMachine) -> Driven:
-    """The bus as the feeder owns it; the bench closes it."""
+    """The bus as the driver host owns it; the bench closes it."""
     return Driven(machine.ports, machine.tick, close=lambda: None, wake=machine.wake, notes=machine.notes)
 
 
 class FedCanopen(Canopen):
-    """As it is shipped: the control here, bus and queue in the feeder."""
+    """As it is shipped: the control here, bus and queue in the driver host."""
 
     faults: ClassVar[Mapping[str, Fault]] = {
         "cable out": Canopen.faults["cable out"],
-        **FEEDER_FAULTS,
+        **HOST_FAULTS,
     }
     missing: ClassVar[Mapping[str, str]] = {
         **Canopen.missing,
         **dict.fromkeys(
             ("late answers", "node reboot", "bus-off", "two masters"),
-            "the bus below the feeder is that of canopen: tried there",
+            "the bus below the driver host is that of canopen: tried there",
         ),
     }
     harmless: ClassVar[tuple[str, ...]] = ()
@@ -184,14 +184,14 @@ class FedCanopen(Canopen):
     def __init__(self, *, homing: bool = False, turns: bool = False) -> None:
         super().__init__(homing=homing, turns=turns)
         self._mended = False
-        self.feeder = Feeder(bus_driven(self.bench.machine))
-        self.link = BrokenLink(self.feeder)
-        self.ports = feeder_ports(Line(self.link, self.clock, self._again))
+        self.host = DriverHost(bus_driven(self.bench.machine))
+        self.link = BrokenLink(self.host)
+        self.ports = host_ports(Line(self.link, self.clock, self._again))
 
     def acts(self) -> Mapping[str, Callable[[], None]]:
-        """What becomes of the feeder itself, and some of its bus."""
+        """What becomes of the driver host itself, and some of its bus."""
         own: dict[str, Callable[[], None]] = {
-            fault: partial(self._gone, why) for fault, why in FEEDER_WORDS.items()
+            fault: partial(self._gone, why) for fault, why in HOST_WORDS.items()
         }
         below = super().acts()
         return {fault: own.get(fault, below[fault]) for fault in self.faults}
@@ -204,36 +204,36 @@ class FedCanopen(Canopen):
                 raise DriverError("the driver host does not start", "feeder-gone")
             self.bench.machine.bus.close()
             self.bench.machine = canopen_machine(self.machine, self.clock, self.peers.pump)
-            self.feeder = Feeder(bus_driven(self.bench.machine))
-            self.link = BrokenLink(self.feeder)
+            self.host = DriverHost(bus_driven(self.bench.machine))
+            self.link = BrokenLink(self.host)
             return cleared(self.link)
 
         return Opening(begun, at_once=True)
 
     def mend(self) -> None:
-        """Another feeder can be started."""
+        """Another driver host can be started."""
         super().mend()
         self._mended = True
 
-    def feeder_stands(self, seconds: float) -> None:
+    def host_stands(self, seconds: float) -> None:
         """Its process is stopped for so long; drives and modules go on."""
         for _ in range(round(seconds / 0.002)):
             self.clock.advance(0.002)
             self.peers.pump()
-        self.feeder.late(seconds)
+        self.host.late(seconds)
 
     def round(self) -> None:
-        """By the feeder; one that has ended does none."""
-        if self.link.why != FEEDER_WORDS["dead reader"]:
-            self.feeder.tick()
+        """By the driver host; one that has ended does none."""
+        if self.link.why != HOST_WORDS["dead reader"]:
+            self.host.tick()
 
     def _gone(self, why: str) -> None:
         self.link.why = why
-        self.feeder.orphaned = True
+        self.host.orphaned = True
 
 
 class FedCsp(FedCanopen):
-    """Through the feeder, a setpoint each SYNC to EPOS4 drives, by their own objects."""
+    """Through the driver host, a setpoint each SYNC to EPOS4 drives, by their own objects."""
 
     hold, runs_on, rounds = Csp.hold, Csp.runs_on, Csp.rounds
 

@@ -11,7 +11,7 @@ from tests.drivers.contract.rig import Rig
 from tests.drivers.contract.rigs import RIGS, make
 
 Broken = tuple[Rig, str]
-# The bus: its ports are tried by the loop that owns it, a machine under the executor by the feeder.
+# The bus: its ports are tried by the loop that owns it, a machine under the executor by the driver host.
 AT_PORTS = [name for name in RIGS if name != "fed canopen"]
 SHIPPED = [name for name in RIGS if name != "canopen"]
 _FAULTS = [(name, fault) for name, kind in RIGS.items() for fault in kind.faults]
@@ -51,7 +51,7 @@ def lost(request: pytest.FixtureRequest) -> Iterator[Rig]:
 
 @pytest.fixture(params=SHIPPED)
 def shipped(request: pytest.FixtureRequest) -> Iterator[Rig]:
-    """As an executor gets it: a bus always by the feeder."""
+    """As an executor gets it: a bus always by the driver host."""
     made = make(request.param)
     yield made
     made.close()

@@ -1,4 +1,4 @@
-"""The simulated lathe in process, and the same through the feeder's messages."""
+"""The simulated lathe in process, and the same through the driver host's messages."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from app.compose.backends.simulated_backend import simulated
 from app.compose.machine.machine_files import load_machine
 from core.machine.machine_model import InputModel, Machine
 from core.ports import ALL_UNKNOWN, DriverError, MachinePorts
-from drivers.feeder.feeder_line import Line, Link, LoopLink, cleared
-from drivers.feeder.feeder_messages import Message
-from drivers.feeder.feeder_ports import feeder_ports
-from drivers.feeder.feeder_server import Driven, Feeder
+from drivers.driver_host.host_line import Line, Link, LoopLink, cleared
+from drivers.driver_host.host_messages import Message
+from drivers.driver_host.host_ports import host_ports
+from drivers.driver_host.host_server import Driven, DriverHost
 from drivers.simulators.plant_hands import PlantHands
 from drivers.waiting import Opening, StepClock
 from tests.drivers.contract.rig import Fault, Rig
@@ -105,7 +105,7 @@ class BrokenLink(LoopLink):
 
     def ask(self, message: Message) -> Message:
         if self.why:
-            gone = self.why == FEEDER_WORDS["dead reader"]
+            gone = self.why == HOST_WORDS["dead reader"]
             raise DriverError(self.why, "feeder-gone" if gone else "feeder-silent")
         answer = super().ask(message)
         if self.late is not None:
@@ -114,17 +114,17 @@ class BrokenLink(LoopLink):
 
 
 def simulation_driven(ports: MachinePorts, hands: object | None) -> Driven:
-    """The simulation as the feeder owns it."""
+    """The simulation as the driver host owns it."""
     return Driven(ports, tick=ports.axes.sample, close=lambda: None, hands=hands)
 
 
-# The feeder ends the queue of a control that it no longer hears, and then takes the power: 1.0 s of way here.
-FEEDER_WORDS = {
+# A driver host that no longer hears its control ends the queue (1.0 s here), then takes the power.
+HOST_WORDS = {
     "dead reader": "the driver host has ended",
-    "silence": "the feeder has not answered",
+    "silence": "the driver host has not answered",
     "garbage": "the driver host's socket received an invalid message",
 }
-FEEDER_FAULTS = {
+HOST_FAULTS = {
     fault: Fault(
         told=0.02,
         rests=1.5,
@@ -132,23 +132,23 @@ FEEDER_FAULTS = {
         names=words,
         unknown=ALL_UNKNOWN,
     )
-    for fault, words in FEEDER_WORDS.items()
+    for fault, words in HOST_WORDS.items()
 }
-FEEDER_MISSING = {
-    "cable out": "the feeder hangs on a socket pair inside one computer",
-    "node reboot": "a feeder is not started again: its end is a dead reader",
-    "two masters": "the feeder's socket pair belongs to the control that made it; nobody else can open it",
+HOST_MISSING = {
+    "cable out": "the driver host hangs on a socket pair inside one computer",
+    "node reboot": "a driver host is not started again: its end is a dead reader",
+    "two masters": "the driver host's socket pair belongs to the control that made it; nobody else opens it",
 }
 
 
 class Fed(Simulated):
-    """Through the feeder."""
+    """Through the driver host."""
 
-    faults: ClassVar[Mapping[str, Fault]] = {**Simulated.faults, **FEEDER_FAULTS}
+    faults: ClassVar[Mapping[str, Fault]] = {**Simulated.faults, **HOST_FAULTS}
     harmless: ClassVar[tuple[str, ...]] = ("late answers",)
     watched = True
     missing: ClassVar[Mapping[str, str]] = {
-        **FEEDER_MISSING,
+        **HOST_MISSING,
         "bus-off": "a socket pair has no such state",
         "blocks": Simulated.missing["blocks"],
     }
@@ -156,14 +156,14 @@ class Fed(Simulated):
     def __init__(self, machine: Machine | None = None, *, homing: bool = False) -> None:
         super().__init__(machine, homing=homing)
         self.inner, self._mended = self.ports, False
-        self.feeder = Feeder(simulation_driven(self.ports, self.hands))
-        self.link = BrokenLink(self.feeder)
-        self.ports = feeder_ports(Line(self.link, self.clock, self._again))
+        self.host = DriverHost(simulation_driven(self.ports, self.hands))
+        self.link = BrokenLink(self.host)
+        self.ports = host_ports(Line(self.link, self.clock, self._again))
 
     def alone(self, dt: float) -> None:
-        """The feeder's loop goes on."""
+        """The driver host's loop goes on."""
         self.clock.advance(dt)
-        self.feeder.tick()
+        self.host.tick()
 
     def _again(self) -> Opening[Link]:
         """Another one on the same machine; as long as nothing is mended it does not come up."""
@@ -171,34 +171,34 @@ class Fed(Simulated):
         def begun() -> Link:
             if not self._mended:
                 raise DriverError("the driver host does not start", "feeder-gone")
-            self.feeder = Feeder(simulation_driven(self.inner, self.hands))
-            self.link = BrokenLink(self.feeder)
+            self.host = DriverHost(simulation_driven(self.inner, self.hands))
+            self.link = BrokenLink(self.host)
             return cleared(self.link)
 
         return Opening(begun, at_once=True)
 
     def mend(self) -> None:
-        """Another feeder can be started."""
+        """Another driver host can be started."""
         super().mend()
         self._mended = True
 
-    def feeder_stands(self, seconds: float) -> None:
+    def host_stands(self, seconds: float) -> None:
         """Its process is stopped for so long, and the control waits for its answer."""
         self.clock.advance(seconds)
-        self.feeder.late(seconds)
+        self.host.late(seconds)
 
     def acts(self) -> Mapping[str, Callable[[], None]]:
         """What the socket can do."""
         return {
             **super().acts(),
-            **{fault: self._gone(why) for fault, why in FEEDER_WORDS.items()},
+            **{fault: self._gone(why) for fault, why in HOST_WORDS.items()},
             "late answers": self._late,
         }
 
     def _gone(self, why: str) -> Callable[[], None]:
         def break_it() -> None:
             self.link.why = why
-            self.feeder.orphaned = True
+            self.host.orphaned = True
 
         return break_it
 

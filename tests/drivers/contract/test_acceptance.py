@@ -45,7 +45,7 @@ def test_a_host_that_is_away_leaves_the_slides_on_their_path(control: Control, s
         control.press()
     control.until(State.IDLE)
     assert control.shot.alarms == ()
-    # Where a feeder has made the machine safe meanwhile, somebody has to look at the part.
+    # Where a driver host has made the machine safe meanwhile, somebody has to look at the part.
     disturbed = any(re.match(pattern("executor.cycle-disturbed"), said) for said in control.said("uncounted"))
     assert (control.shot.ends, control.shot.parts) == (1, 0 if disturbed else 1)
     assert not disturbed or stall > 1.0

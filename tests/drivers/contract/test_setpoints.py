@@ -61,7 +61,7 @@ def test_bad_setpoints_are_refused_and_the_old_ones_stay(rig: Rig) -> None:
     for reason, segments in bad.items():
         with pytest.raises(DriverError) as told:
             axes.splice(segments)
-        # A feeder refuses values that are not numbers before its driver sees them.
+        # A driver host refuses values that are not numbers before its driver sees them.
         assert told.value.reason.replace("damaged", "no-number") == reason
         assert axes.horizon() == horizon
     rig.until(lambda: not axes.sample().moving)

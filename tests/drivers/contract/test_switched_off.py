@@ -155,7 +155,7 @@ def test_a_stall_that_outlasts_the_queue_in_a_cut_goes_on_with_a_start(control: 
 @pytest.mark.parametrize("program", [DWELL, CUT], ids=["dwell", "cut"])
 @pytest.mark.parametrize("kind", [Fed, FedCanopen])
 @pytest.mark.parametrize("seconds", [0.3, 1.0])
-def test_outputs_that_fell_with_a_feeder_that_stood_still_do_not_come_back(
+def test_outputs_that_fell_with_a_driver_host_that_stood_still_do_not_come_back(
     kind: type[Fed | FedCanopen], program: str, seconds: float
 ) -> None:
     rig = kind()
@@ -163,7 +163,7 @@ def test_outputs_that_fell_with_a_feeder_that_stood_still_do_not_come_back(
     control.start(program)
     control.until_true(lambda shot: shot.waiting_for == "DWELL" or control.world.place()[1] < -8.0)
     control.until_true(lambda _: control.world.rpm() > 590.0)
-    rig.feeder_stands(seconds)
+    rig.host_stands(seconds)
     for _ in range(200):
         control.tick()
         assert on(control) == {"collet"}  # not even for a moment
@@ -183,7 +183,7 @@ def test_outputs_that_fell_with_a_feeder_that_stood_still_do_not_come_back(
 def test_what_happens_in_the_very_tick_of_the_stall_moves_nothing_either(
     control: Control, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Frozen between the look and the setpoints: the feeder refuses them until the control knows."""
+    """Frozen between the look and the setpoints: the driver host refuses them until the control knows."""
     if not control.rig.watched:
         pytest.skip("nothing switches off by itself")
     control.start("G90G94F300\nM03S600\nM08\nX.1\nG04F1\nG01F60X.5\nM30\n")

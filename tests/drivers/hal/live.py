@@ -1,4 +1,4 @@
-"""A lathe behind a real halrun: feeder and bridge in processes of their own, the executor here."""
+"""A lathe behind a real halrun: driver host and bridge in processes of their own, the executor here."""
 
 from __future__ import annotations
 

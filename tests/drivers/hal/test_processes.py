@@ -25,7 +25,7 @@ PROGRAM = f"G90G94\nM03S1000\nM08\nG01X{{}}Z0F{SPEED / 25.4 * 60:.0f}\nM30\n"
 FAR = 3.9  # in of X, to which it goes from the other side
 AHEAD = 0.1  # s that HAL holds
 RAMP = SPEED**2 / (2 * 3048.0)  # mm
-BRIDGE, FEEDER, THREAD = "bridge_process.py", "app.compose.backends.feeder_process", "rtapi_app"
+BRIDGE, HAS_DRIVER_HOST, THREAD = "bridge_process.py", "app.compose.backends.driver_host_process", "rtapi_app"
 
 
 @pytest.fixture(scope="module")
@@ -119,8 +119,8 @@ def test_a_control_that_is_silent_ends_on_its_path_with_spindle_and_outputs_off(
     running.post(Reset())
 
 
-def test_a_killed_feeder_ends_on_its_path_with_everything_off(running: LiveLathe) -> None:
-    running.kill(FEEDER)
+def test_a_killed_driver_host_ends_on_its_path_with_everything_off(running: LiveLathe) -> None:
+    running.kill(HAS_DRIVER_HOST)
     while not off(running) or running.pin("x-motor.sel"):  # the bridge alone
         pass
     told(running, "feeder-gone")

@@ -10,9 +10,9 @@ import pytest
 
 from core.faults import code_of
 from core.ports import DriverError
-from drivers.feeder import feeder_line
-from drivers.feeder.feeder_line import SocketLink
-from drivers.feeder.feeder_messages import NOTHING, Message
+from drivers.driver_host import host_line
+from drivers.driver_host.host_line import SocketLink
+from drivers.driver_host.host_messages import NOTHING, Message
 from drivers.hal.bridge.packets import BridgeConfig, Head
 from drivers.hal.hal_link import HalLink
 from drivers.waiting import StepClock
@@ -95,12 +95,12 @@ def looks(monkeypatch: pytest.MonkeyPatch) -> list[float]:
         now[0] += took.pop(0) if len(took) > 1 else took[0]
         return [], [], []
 
-    monkeypatch.setattr(feeder_line, "select", SimpleNamespace(select=nothing))
-    monkeypatch.setattr(feeder_line, "time", SimpleNamespace(monotonic=lambda: now[0]))
+    monkeypatch.setattr(host_line, "select", SimpleNamespace(select=nothing))
+    monkeypatch.setattr(host_line, "time", SimpleNamespace(monotonic=lambda: now[0]))
     return took
 
 
-def test_a_feeder_is_silent_after_so_many_looks_not_after_one_long_one(looks: list[float]) -> None:
+def test_a_driver_host_is_silent_after_so_many_looks_not_after_one_long_one(looks: list[float]) -> None:
     ours, theirs = socket.socketpair()
     with ours, theirs:
         looks[:] = [0.6, 0.6, 0.6, *[0.05] * 7, 1e9]

@@ -149,7 +149,7 @@ def test_machine_check_reads_it(wired: Wired, capsys: pytest.CaptureFixture[str]
     assert not wired.inverter.running
 
 
-def test_through_the_feeder(wired: Wired) -> None:
+def test_through_the_driver_host(wired: Wired) -> None:
     """The process that owns the drivers owns the inverter too: it stops it when the control is gone."""
     path = wired.path
     path.write_text(path.read_text().replace('backend = "sim"', 'backend = "sim"\nfeeder = true'))
@@ -160,7 +160,7 @@ def test_through_the_feeder(wired: Wired) -> None:
         until(lambda: abs(spindle.speed() - 500.0) < 2.0, "500 rpm")
     finally:
         made.close()
-    until(lambda: not wired.inverter.running, "stopped by the feeder")
+    until(lambda: not wired.inverter.running, "stopped by the driver host")
 
 
 def test_a_port_that_is_not_there_is_one_sentence(tmp_path: Path) -> None:

@@ -1,5 +1,5 @@
-"""What a feeder has switched off while its control was silent: told, held, not counted; and outputs moved by
-somebody else.
+"""What a driver host has switched off while its control was silent: told, held, not counted; and outputs
+moved by somebody else.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ PART = "G90G94F300\nM03S1000\nM08\nG01F20Z-1\nM30\n"
 
 
 @dataclass
-class PlayedFeeder:
+class PlayedDriverHost:
     """Tells of one trip until it is acknowledged."""
 
     trip: Trip | None = None
@@ -36,12 +36,12 @@ class PlayedFeeder:
 
 
 class FedRig(Rig):
-    """The executor behind a feeder."""
+    """The executor behind a driver host."""
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        self.feeder = PlayedFeeder()
-        ports = dataclasses.replace(self.sim.ports, trips=self.feeder)
+        self.host = PlayedDriverHost()
+        ports = dataclasses.replace(self.sim.ports, trips=self.host)
         self.executor = Executor(self.machine, ports, self.events.append, self._passes)
         self.executor.tick()
 
@@ -49,9 +49,9 @@ class FedRig(Rig):
         """It has heard nothing for a second and a half; the outputs are off at the machine."""
         for name in outputs:
             self.sim.ports.io.write(name, False)
-        self.feeder.trip = Trip(7, 1.5, spindle, outputs, found)
+        self.host.trip = Trip(7, 1.5, spindle, outputs, found)
         self.tick()
-        assert self.feeder.acknowledged == [7]
+        assert self.host.acknowledged == [7]
 
 
 def tripped(by: str, names: str) -> str:

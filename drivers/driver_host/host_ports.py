@@ -1,4 +1,4 @@
-"""The control's side of the feeder: ``core.ports`` and the station's hands as messages to it."""
+"""The control's side of the driver host: ``core.ports`` and the station's hands as messages to it."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from core.ports import (
     StationState,
     Stop,
 )
-from drivers.feeder.feeder_line import Line
-from drivers.feeder.feeder_messages import (
+from drivers.driver_host.host_line import Line
+from drivers.driver_host.host_messages import (
     NOTHING,
     Message,
     cam_message,
@@ -35,13 +35,13 @@ from drivers.waiting import Bell
 
 
 class _OnLine:
-    """What asks the feeder."""
+    """What asks the driver host."""
 
     def __init__(self, line: Line) -> None:
         self._line = line
 
 
-class FeederAxes(_OnLine):
+class HostAxes(_OnLine):
     """``core.ports.AxisSink``."""
 
     def __init__(self, line: Line, hello: Mapping[str, object]) -> None:
@@ -68,7 +68,7 @@ class FeederAxes(_OnLine):
         return tuple(numbers[:half]), tuple(numbers[half:])
 
     def sample(self) -> AxisSample:
-        """The axes now. A feeder that is gone is a fault of all of them."""
+        """The axes now. A driver host that is gone is a fault of all of them."""
         raw = self._line.look(anew=True).get("sample")
         shown = raw if isinstance(raw, dict) else {}
         none = (0.0,) * len(self.axes)
@@ -96,14 +96,14 @@ class FeederAxes(_OnLine):
         self._line.order("home", name=axis)
 
     def clear_fault(self) -> None:
-        """Forget the fault; a feeder that is gone is started again. Raises DriverError."""
+        """Forget the fault; a driver host that is gone is started again. Raises DriverError."""
         if self._line.fault:
             self._line.restart()
         else:
             self._line.order("clear_fault")
 
 
-class FeederGear(_OnLine):
+class HostGear(_OnLine):
     """``core.ports.Gear``."""
 
     def mesh(self, cam: Cam) -> None:
@@ -111,12 +111,12 @@ class FeederGear(_OnLine):
         self._line.ask(cam_message(cam))
 
     def geared(self) -> Geared | None:
-        """Where on its cam the feeder's driver is."""
+        """Where on its cam the driver host's driver is."""
         shown = self._line.look(anew=True).get("geared")
         return None if shown is None or self._line.lost else Geared(*floats(shown))
 
 
-class FeederSpindle(_OnLine):
+class HostSpindle(_OnLine):
     """``core.ports.Spindle``."""
 
     def run(self, rpm: float) -> None:
@@ -150,8 +150,8 @@ class FeederSpindle(_OnLine):
         return self._line.fault or fault_of(self._line.look(), "spindle", "spindle")
 
 
-class FeederWakeup(_OnLine):
-    """``core.ports.Wakeup``: the feeder goes on looking, and rings."""
+class HostWakeup(_OnLine):
+    """``core.ports.Wakeup``: the driver host goes on looking, and rings."""
 
     def __init__(self, line: Line, bell: Bell) -> None:
         super().__init__(line)
@@ -163,7 +163,7 @@ class FeederWakeup(_OnLine):
         return not self._line.lost
 
     def wait(self, seconds: float) -> bool:
-        """Until it rings, so long at most; whether it has. A feeder that ends rings too."""
+        """Until it rings, so long at most; whether it has. A driver host that ends rings too."""
         try:
             self._line.sleep()
         except DriverError:
@@ -174,7 +174,7 @@ class FeederWakeup(_OnLine):
         return rung
 
 
-class FeederSamples(_OnLine):
+class HostSamples(_OnLine):
     """``core.ports.SampleSource``: they have come with the looks."""
 
     def __init__(self, line: Line, hello: Mapping[str, object]) -> None:
@@ -190,7 +190,7 @@ class FeederSamples(_OnLine):
         return np.concatenate(whole) if whole else np.empty((0, self._width))
 
 
-class FeederLock(_OnLine):
+class HostLock(_OnLine):
     """``core.ports.SpindleHold``."""
 
     def hold(self, on: bool, orient: bool = False) -> None:
@@ -202,7 +202,7 @@ class FeederLock(_OnLine):
         return self._line.look().get("held") is True and not self._line.lost
 
 
-class FeederOrientation(_OnLine):
+class HostOrientation(_OnLine):
     """``core.ports.SpindleOrientation``."""
 
     def orient(self, angle: float, sense: int = 0) -> None:
@@ -214,11 +214,11 @@ class FeederOrientation(_OnLine):
         self._line.order("release")
 
     def oriented(self) -> bool:
-        """Whether it is held at its angle; of a feeder that is gone, as it last was."""
+        """Whether it is held at its angle; of a driver host that is gone, as it last was."""
         return self._line.look().get("oriented") is True
 
 
-class FeederIO(_OnLine):
+class HostIO(_OnLine):
     """``core.ports.DigitalIO``."""
 
     def inputs(self) -> Mapping[str, bool]:
@@ -238,18 +238,18 @@ class FeederIO(_OnLine):
         self._line.order("safe")
 
 
-class FeederStation(_OnLine):
+class HostStation(_OnLine):
     """``core.ports.Station``."""
 
     def snapshot(self) -> StationState:
-        """The station now; without the feeder nothing is pressed, and it has been silent for ever."""
+        """The station now; without the driver host nothing is pressed, and it has been silent for ever."""
         shown = self._line.look().get("station")
         if self._line.lost or not isinstance(shown, dict):
             return StationState(age=float("inf"))
         return StationState(**shown)
 
 
-class FeederTouch(_OnLine):
+class HostTouch(_OnLine):
     """``core.ports.TouchInput``."""
 
     def arm(self) -> None:
@@ -266,11 +266,11 @@ class FeederTouch(_OnLine):
         return Latch(t_s, floats(place), late_s)
 
 
-class FeederTrips(_OnLine):
+class HostTrips(_OnLine):
     """``core.faults.Tripping``."""
 
     def tripped(self) -> Trip | None:
-        """What the feeder has switched off since it was last acknowledged."""
+        """What the driver host has switched off since it was last acknowledged."""
         shown = self._line.look().get("trip")
         if shown is None:
             return None
@@ -284,27 +284,27 @@ class FeederTrips(_OnLine):
         self._line.order("acknowledge", number=trip.number)
 
 
-def feeder_ports(line: Line) -> MachinePorts:
-    """The ports of whatever the feeder drives. Raises DriverError when it does not answer."""
-    hello, spindle = line.greet(), FeederSpindle(line)
+def host_ports(line: Line) -> MachinePorts:
+    """The ports of whatever the driver host drives. Raises DriverError when it does not answer."""
+    hello, spindle = line.greet(), HostSpindle(line)
     return MachinePorts(
         clock=line.clock,
-        axes=FeederAxes(line, hello),
+        axes=HostAxes(line, hello),
         spindle=spindle,
         spindle_lag=spindle.lag,
-        io=FeederIO(line),
-        station=FeederStation(line),
+        io=HostIO(line),
+        station=HostStation(line),
         warnings=tuple(texts(hello.get("warnings"))),
-        gear=FeederGear(line) if hello.get("gear") is True else None,
-        lock=FeederLock(line) if hello.get("lock") is True else None,
-        orientation=FeederOrientation(line) if hello.get("orientation") is True else None,
-        trips=FeederTrips(line),
+        gear=HostGear(line) if hello.get("gear") is True else None,
+        lock=HostLock(line) if hello.get("lock") is True else None,
+        orientation=HostOrientation(line) if hello.get("orientation") is True else None,
+        trips=HostTrips(line),
         halt=line.hang_up,
         untraced=str(hello.get("untraced") or ""),
-        samples=FeederSamples(line, hello) if hello.get("samples") else None,
-        wakeup=FeederWakeup(line, line.bell) if line.bell is not None else None,
+        samples=HostSamples(line, hello) if hello.get("samples") else None,
+        wakeup=HostWakeup(line, line.bell) if line.bell is not None else None,
         unknown=line.unknown,
-        touch=FeederTouch(line) if hello.get("touch") is True else None,
+        touch=HostTouch(line) if hello.get("touch") is True else None,
     )
 
 
@@ -312,19 +312,19 @@ def _flags(value: object) -> dict[str, bool]:
     return {name: on is True for name, on in value.items()} if isinstance(value, dict) else {}
 
 
-# --- The hands at a station that lives in the feeder: the simulated one, or the one on the screen.
+# --- The hands at a station that lives in the driver host: the simulated one, or the one on the screen.
 
 
 def _hand(name: str) -> Callable[..., None]:
     """The method of this name at that station: it goes out with the executor's next look, nobody waits."""
 
-    def use(self: FeederHands, *values: object) -> None:
+    def use(self: HostHands, *values: object) -> None:
         self.post(name, *values)
 
     return use
 
 
-class FeederHands:
+class HostHands:
     """Any thread may act; what an act means stands at ``app.desk.station_hands.StationPanel``."""
 
     def __init__(self, line: Line) -> None:

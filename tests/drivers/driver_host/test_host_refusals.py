@@ -1,4 +1,4 @@
-"""What a feeder and its control refuse of each other, and what a driver that refuses makes of a stop."""
+"""What a driver host and its control refuse of each other, and what a driver that refuses makes of a stop."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from collections.abc import Callable
 import pytest
 
 from core.ports import DriverError
-from drivers.feeder import feeder_line, feeder_loop
-from drivers.feeder.feeder_line import Line, LoopLink, SocketLink, cleared
-from drivers.feeder.feeder_messages import NOTHING, Message, floats, packed
-from drivers.feeder.feeder_ports import feeder_ports
-from drivers.feeder.feeder_server import Driven, Feeder
+from drivers.driver_host import host_line, host_loop
+from drivers.driver_host.host_line import Line, LoopLink, SocketLink, cleared
+from drivers.driver_host.host_messages import NOTHING, Message, floats, packed
+from drivers.driver_host.host_ports import host_ports
+from drivers.driver_host.host_server import Driven, DriverHost
 from drivers.simulated.simulated_machine import Simulation, build_simulation
 from drivers.waiting import StepClock
 from tests.coded import raises_code
@@ -43,14 +43,14 @@ def test_what_are_no_numbers_is_no_place(told: object) -> None:
     assert refused.value.reason == "no-numbers"
 
 
-def test_a_driver_that_cannot_follow_the_spindle_says_so_through_its_feeder() -> None:
+def test_a_driver_that_cannot_follow_the_spindle_says_so_through_its_driver_host() -> None:
     sim, clock = simulation()
     plain = dataclasses.replace(sim.ports, gear=None)
-    line = Line(LoopLink(Feeder(Driven(plain, plain.axes.sample, lambda: None))), clock)
-    asked = Line(LoopLink(Feeder(simulation_driven(sim.ports, sim.machine))), clock)
-    ports = feeder_ports(asked)
+    line = Line(LoopLink(DriverHost(Driven(plain, plain.axes.sample, lambda: None))), clock)
+    asked = Line(LoopLink(DriverHost(simulation_driven(sim.ports, sim.machine))), clock)
+    ports = host_ports(asked)
     assert ports.gear is not None
-    asked._link = line._link  # behind the other feeder there is none
+    asked._link = line._link  # behind the other driver host there is none
     with raises_code(DriverError, "driver") as told:
         ports.gear.mesh(cam(sim, turns=3.0))
     assert told.value.reason == "no-gear"
@@ -59,36 +59,34 @@ def test_a_driver_that_cannot_follow_the_spindle_says_so_through_its_feeder() ->
 def test_a_spindle_that_refuses_its_stop_keeps_no_output_on(monkeypatch: pytest.MonkeyPatch) -> None:
     """A control that has ended: all is tried, and what did not work is told to the next one."""
     sim, clock = simulation()
-    feeder = Feeder(simulation_driven(sim.ports, sim.machine))
-    ports = feeder_ports(Line(LoopLink(feeder), clock))
+    host = DriverHost(simulation_driven(sim.ports, sim.machine))
+    ports = host_ports(Line(LoopLink(host), clock))
     ports.axes.enable(True)
     ports.io.write("coolant", True)
     monkeypatch.setattr(sim.ports.spindle, "run", refuse("the inverter does not answer"))
     for _ in range(300):
         clock.advance(0.01)
-        feeder.tick()
+        host.tick()
     assert not sim.ports.io.outputs()["coolant"]
-    assert [
-        note for note in feeder._notes if "was stopping the machine: the inverter does not answer" in note
-    ]
+    assert [note for note in host._notes if "was stopping the machine: the inverter does not answer" in note]
 
 
 def test_outputs_that_refuse_keep_no_spindle_turning(monkeypatch: pytest.MonkeyPatch) -> None:
     sim, clock = simulation()
-    feeder = Feeder(simulation_driven(sim.ports, sim.machine))
-    ports = feeder_ports(Line(LoopLink(feeder), clock))
+    host = DriverHost(simulation_driven(sim.ports, sim.machine))
+    ports = host_ports(Line(LoopLink(host), clock))
     ports.spindle.run(600.0)
     for _ in range(10):
         clock.advance(0.1)
         ports.axes.sample()
-        feeder.tick()
+        host.tick()
     assert sim.machine.spindle_rpm() > 500.0
     monkeypatch.setattr(sim.ports.io, "safe", refuse("terminal 2 does not answer"))
     for _ in range(500):
         clock.advance(0.01)
-        feeder.tick()
+        host.tick()
     assert sim.machine.spindle_rpm() == 0.0
-    assert [note for note in feeder._notes if "was stopping the machine: terminal 2 does not answer" in note]
+    assert [note for note in host._notes if "was stopping the machine: terminal 2 does not answer" in note]
 
 
 def test_a_driver_that_cannot_be_asked_wakes_a_control_that_sleeps(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -96,22 +94,22 @@ def test_a_driver_that_cannot_be_asked_wakes_a_control_that_sleeps(monkeypatch: 
     sim, clock = simulation()
     rung: list[bool] = []
     driven = Driven(sim.ports, sim.ports.axes.sample, lambda: None, sim.machine)
-    feeder = Feeder(driven, ring=lambda: rung.append(True))
-    LoopLink(feeder).ask(Message({"do": "look", "rests": True}, NOTHING))
-    feeder.tick()
-    assert (feeder.asleep, rung) == (True, [])
+    host = DriverHost(driven, ring=lambda: rung.append(True))
+    LoopLink(host).ask(Message({"do": "look", "rests": True}, NOTHING))
+    host.tick()
+    assert (host.asleep, rung) == (True, [])
     monkeypatch.setattr(sim.ports.axes, "sample", refuse("X does not answer"))
     clock.advance(0.005)
-    feeder.tick()
+    host.tick()
     assert rung == [True]
 
 
 # --- the line ---------------------------------------------------------------------------------------------
 
 
-def test_a_feeder_that_nobody_can_start_again_asks_for_another_control() -> None:
+def test_a_driver_host_that_nobody_can_start_again_asks_for_another_control() -> None:
     sim, clock = simulation()
-    line = Line(LoopLink(Feeder(simulation_driven(sim.ports, sim.machine))), clock)
+    line = Line(LoopLink(DriverHost(simulation_driven(sim.ports, sim.machine))), clock)
     line.fault = "the driver host has ended"
     with raises_code(DriverError, "feeder-gone"):
         line.restart()
@@ -119,9 +117,9 @@ def test_a_feeder_that_nobody_can_start_again_asks_for_another_control() -> None
         line.ask(Message({"do": "hello"}, NOTHING))
 
 
-def test_a_reset_that_the_drives_refuse_starts_no_feeder(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_reset_that_the_drives_refuse_starts_no_driver_host(monkeypatch: pytest.MonkeyPatch) -> None:
     sim, _ = simulation()
-    link = LoopLink(Feeder(simulation_driven(sim.ports, sim.machine)))
+    link = LoopLink(DriverHost(simulation_driven(sim.ports, sim.machine)))
     assert cleared(link) is link
     monkeypatch.setattr(sim.ports.axes, "clear_fault", refuse("Z: overcurrent"))
     with raises_code(DriverError, "driver", "Z: overcurrent"):
@@ -129,8 +127,8 @@ def test_a_reset_that_the_drives_refuse_starts_no_feeder(monkeypatch: pytest.Mon
 
 
 def test_an_answer_in_parts_is_one(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A socket gives what has come: half a message is none yet, and no end of the feeder."""
-    monkeypatch.setattr(feeder_line, "_CHUNK", 5)  # bytes
+    """A socket gives what has come: half a message is none yet, and no end of the driver host."""
+    monkeypatch.setattr(host_line, "_CHUNK", 5)  # bytes
     ours, theirs = socket.socketpair()
     theirs.sendall(packed(Message({"value": 7.0}, NOTHING)))
     link = SocketLink(ours)
@@ -148,7 +146,7 @@ def test_a_system_without_locked_memory_is_told_of(monkeypatch: pytest.MonkeyPat
 
     monkeypatch.setattr(gc, "freeze", lambda: None)
     monkeypatch.setattr(ctypes, "CDLL", missing)
-    assert feeder_loop.keep_memory() == ["the driver host's memory is not locked (no C library)"]
+    assert host_loop.keep_memory() == ["the driver host's memory is not locked (no C library)"]
 
     class Refusing:
         def mlockall(self, _how: int) -> int:
@@ -156,4 +154,4 @@ def test_a_system_without_locked_memory_is_told_of(monkeypatch: pytest.MonkeyPat
             return -1
 
     monkeypatch.setattr(ctypes, "CDLL", lambda *_a, **_k: Refusing())
-    assert feeder_loop.keep_memory() == ["the driver host's memory is not locked (Cannot allocate memory)"]
+    assert host_loop.keep_memory() == ["the driver host's memory is not locked (Cannot allocate memory)"]

@@ -17,7 +17,7 @@ from pathlib import Path
 import pytest
 
 from drivers.simulators.canopen_devices import CanopenDevices
-from tests.drivers.feeder.bus import SteadyClock, bus_file, peers_on
+from tests.drivers.driver_host.bus import SteadyClock, bus_file, peers_on
 
 pytestmark = pytest.mark.real_time
 END = 20.0 * 1.42  # mm at which the path ends
@@ -25,12 +25,12 @@ END = 20.0 * 1.42  # mm at which the path ends
 
 @dataclass
 class Shop:
-    """The drives here, the control and its feeder in processes of their own."""
+    """The drives here, the control and its driver host in processes of their own."""
 
     peers: CanopenDevices
     clock: SteadyClock
     control: subprocess.Popen[bytes]
-    feeder: int = 0
+    host: int = 0
     lines: list[dict[str, object]] = field(default_factory=list)
 
     def until(self, ready: Callable[[], bool]) -> None:
@@ -69,18 +69,18 @@ def shop(tmp_path: Path) -> Iterator[Shop]:
     path = bus_file(tmp_path)
     clock = SteadyClock()
     peers = peers_on(path, clock)
-    words = [sys.executable, "-m", "tests.drivers.feeder.control", str(path)]
+    words = [sys.executable, "-m", "tests.drivers.driver_host.control", str(path)]
     control = subprocess.Popen(words, stdout=subprocess.PIPE)
     made = Shop(peers, clock, control)
     try:
         made.until(lambda: bool(made.lines))
-        made.feeder = int(str(made.lines[0]["feeder"]))
+        made.host = int(str(made.lines[0]["feeder"]))
         made.until(lambda: made.x > 5.0)
         yield made
     finally:
-        for pid in (control.pid, made.feeder):
+        for pid in (control.pid, made.host):
             if pid and _alive(pid):
-                with suppress(ProcessLookupError):  # a feeder without a control ends by itself
+                with suppress(ProcessLookupError):  # a driver host without a control ends by itself
                     os.kill(pid, signal.SIGKILL)
         control.wait()
         assert control.stdout is not None
@@ -100,7 +100,7 @@ def test_a_killed_control_leaves_slides_that_stop_on_their_path(shop: Shop) -> N
     drives, board = shop.peers.plant.drives, shop.peers.plant.terminals
     off: list[float] = []
     os.kill(shop.control.pid, signal.SIGKILL)
-    while _alive(shop.feeder):
+    while _alive(shop.host):
         shop.play(0.02)
         off.append(abs(drives["X"].p - drives["Z"].p))
     assert max(off) < 0.01  # on the diagonal all the way: both drives together
@@ -112,10 +112,10 @@ def test_a_killed_control_leaves_slides_that_stop_on_their_path(shop: Shop) -> N
     shop.until(lambda: abs(shop.peers.machine.spindle_rpm()) < 1.0)
 
 
-def test_a_killed_feeder_leaves_it_to_the_drives(shop: Shop) -> None:
+def test_a_killed_driver_host_leaves_it_to_the_drives(shop: Shop) -> None:
     drives, board = shop.peers.plant.drives, shop.peers.plant.terminals
     before = shop.x
-    os.kill(shop.feeder, signal.SIGKILL)
+    os.kill(shop.host, signal.SIGKILL)
     shop.until(lambda: not drives["X"].power.powered and not drives["Z"].power.powered)
     # 160 ms in the drives' queues, then v²/2a: less than 5 mm
     assert shop.x - before < 6.0
@@ -127,10 +127,10 @@ def test_a_killed_feeder_leaves_it_to_the_drives(shop: Shop) -> None:
     assert shop.lines[1]["code"] == "feeder-gone"
 
 
-def test_a_stopped_feeder_is_no_life_sign(shop: Shop) -> None:
+def test_a_stopped_driver_host_is_no_life_sign(shop: Shop) -> None:
     """SIGSTOP: the process is there and does nothing. Its heartbeat must not go on."""
     drives, board = shop.peers.plant.drives, shop.peers.plant.terminals
-    os.kill(shop.feeder, signal.SIGSTOP)
+    os.kill(shop.host, signal.SIGSTOP)
     shop.until(lambda: not drives["X"].power.powered and not drives["Z"].power.powered)
     shop.until(lambda: not board.outputs["coolant"])
     shop.until(lambda: len(shop.lines) > 1)

@@ -1,4 +1,4 @@
-"""The loop of the feeder's process, in a thread: how it ends, and what the system grants it."""
+"""The loop of the driver host's process, in a thread: how it ends, and what the system grants it."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ import pytest
 
 import resources
 from app.compose.backends.backend_entry import NO_PRIORITY
-from app.compose.backends.feeder_process import FeederProcess, beat, without_priority
+from app.compose.backends.driver_host_process import DriverHostProcess, beat, without_priority
 from app.compose.machine.machine_files import parse_machine
 from core.faults import code_of
 from core.ports import DriverError, MachinePorts
-from drivers.feeder import feeder_line, feeder_loop
-from drivers.feeder.feeder_line import Line, SocketLink
-from drivers.feeder.feeder_loop import Ear, serve
-from drivers.feeder.feeder_messages import NOTHING, Message, packed
-from drivers.feeder.feeder_ports import feeder_ports
-from drivers.feeder.feeder_server import Driven, Feeder
+from drivers.driver_host import host_line, host_loop
+from drivers.driver_host.host_line import Line, SocketLink
+from drivers.driver_host.host_loop import Ear, serve
+from drivers.driver_host.host_messages import NOTHING, Message, packed
+from drivers.driver_host.host_ports import host_ports
+from drivers.driver_host.host_server import Driven, DriverHost
 from drivers.simulated.simulated_machine import Simulation, build_simulation
 from drivers.waiting import RealClock, StepClock
 from tests.coded import raises_code
@@ -36,13 +36,13 @@ from tests.drivers.machines import CONFIG
 @pytest.fixture
 def patient(monkeypatch: pytest.MonkeyPatch) -> pytest.MonkeyPatch:
     """A control that waits for an answer as long as a loaded computer may take: no test of lateness."""
-    monkeypatch.setattr(feeder_line, "_QUICK", 60.0)
+    monkeypatch.setattr(host_line, "_QUICK", 60.0)
     return monkeypatch
 
 
 @pytest.fixture
 def served(patient: pytest.MonkeyPatch) -> Iterator[tuple[socket.socket, Simulation, threading.Thread]]:
-    """The loop of the feeder's process in a thread, and the control's end of its socket."""
+    """The loop of the driver host's process in a thread, and the control's end of its socket."""
     ours, theirs = socket.socketpair()
     clock = RealClock()
     sim = build_simulation(CONFIG, clock)
@@ -67,7 +67,7 @@ def test_the_loop_answers_and_ends_with_its_control(
     served: tuple[socket.socket, Simulation, threading.Thread],
 ) -> None:
     ours, sim, thread = served
-    ports = feeder_ports(Line(SocketLink(ours), RealClock()))
+    ports = host_ports(Line(SocketLink(ours), RealClock()))
     ports.axes.enable(True)
     assert ports.axes.sample().enabled
     ours.close()
@@ -80,7 +80,7 @@ def test_garbage_from_the_control_counts_as_its_end(
     served: tuple[socket.socket, Simulation, threading.Thread],
 ) -> None:
     ours, sim, thread = served
-    ports = feeder_ports(Line(SocketLink(ours), RealClock()))
+    ports = host_ports(Line(SocketLink(ours), RealClock()))
     ports.axes.enable(True)
     ours.sendall(b"\xff" * 64)
     thread.join(60.0)
@@ -134,7 +134,7 @@ def test_memory_is_locked_as_far_as_it_cannot_run_out(
     monkeypatch.setattr(os, "geteuid", lambda: user)
     monkeypatch.setattr(resource, "getrlimit", lambda _which: (limit, limit))
     monkeypatch.setattr(gc, "freeze", lambda: None)
-    assert feeder_loop.keep_memory() == told
+    assert host_loop.keep_memory() == told
     assert asked == [flags]
 
 
@@ -143,7 +143,7 @@ def test_what_the_system_refuses_is_told(monkeypatch: pytest.MonkeyPatch) -> Non
         raise PermissionError(1, "Operation not permitted")
 
     monkeypatch.setattr(os, "sched_setscheduler", refused)
-    (told,) = feeder_loop.real_time()
+    (told,) = host_loop.real_time()
     assert "(Operation not permitted)" in told
 
 
@@ -151,8 +151,8 @@ def test_nothing_is_answered_that_would_be_over_behind_a_sync() -> None:
     ours, theirs = socket.socketpair()
     clock = StepClock()
     sim = build_simulation(CONFIG, clock)
-    feeder = Feeder(Driven(sim.ports, sim.ports.axes.sample, lambda: None))
-    ear = Ear(theirs, feeder, clock)
+    host = DriverHost(Driven(sim.ports, sim.ports.axes.sample, lambda: None))
+    ear = Ear(theirs, host, clock)
     ours.sendall(packed(Message({"do": "horizon"}, NOTHING)))
     ours.setblocking(False)
     due = clock.now() + 0.0002
@@ -195,26 +195,26 @@ def test_a_trial_finds_a_process_that_wakes_up_late(monkeypatch: pytest.MonkeyPa
         def sleep_until(self, t: float) -> None:
             super().sleep_until(t + (0.02 if 0.1 < t < 0.103 else 0.0001))
 
-    monkeypatch.setattr(feeder_loop, "RealClock", Stalled)
-    assert feeder_loop.late_at_trial(0.002) == pytest.approx(0.02)
+    monkeypatch.setattr(host_loop, "RealClock", Stalled)
+    assert host_loop.late_at_trial(0.002) == pytest.approx(0.02)
 
 
-def test_a_feeder_that_does_not_answer_is_a_fault_and_no_hang() -> None:
+def test_a_driver_host_that_does_not_answer_is_a_fault_and_no_hang() -> None:
     ours, theirs = socket.socketpair()
     line = Line(SocketLink(ours), RealClock())
     with ours, theirs, raises_code(DriverError, "feeder-silent"):
-        feeder_ports(line)
+        host_ports(line)
 
 
-# --- a control that sleeps, and the process of its feeder
+# --- a control that sleeps, and the process of its driver host
 
 
 @pytest.fixture
-def asleep(patient: pytest.MonkeyPatch) -> Iterator[tuple[FeederProcess, MachinePorts]]:
-    """The simulated lathe in a feeder of its own, whose control is about to sleep."""
+def asleep(patient: pytest.MonkeyPatch) -> Iterator[tuple[DriverHostProcess, MachinePorts]]:
+    """The simulated lathe in a driver host of its own, whose control is about to sleep."""
     text = resources.machine_file("gt75.toml").replace("[machine]\n", "[machine]\nfeeder = true\n", 1)
-    process = FeederProcess(parse_machine(text, "gt75.toml"), RealClock())
-    ports = feeder_ports(process.line)
+    process = DriverHostProcess(parse_machine(text, "gt75.toml"), RealClock())
+    ports = host_ports(process.line)
     ports.axes.sample()
     assert ports.wakeup is not None
     assert ports.wakeup.settled()
@@ -224,8 +224,8 @@ def asleep(patient: pytest.MonkeyPatch) -> Iterator[tuple[FeederProcess, Machine
     process.close()
 
 
-def test_a_feeder_that_is_killed_wakes_its_control_and_the_next_one_rings_too(
-    asleep: tuple[FeederProcess, MachinePorts],
+def test_a_driver_host_that_is_killed_wakes_its_control_and_the_next_one_rings_too(
+    asleep: tuple[DriverHostProcess, MachinePorts],
 ) -> None:
     process, ports = asleep
     assert ports.wakeup is not None
@@ -246,15 +246,15 @@ def test_a_feeder_that_is_killed_wakes_its_control_and_the_next_one_rings_too(
     assert ports.station.snapshot().estop
 
 
-def test_a_feeder_that_stands_while_its_control_sleeps_is_told_with_the_next_look(
-    asleep: tuple[FeederProcess, MachinePorts], patient: pytest.MonkeyPatch
+def test_a_driver_host_that_stands_while_its_control_sleeps_is_told_with_the_next_look(
+    asleep: tuple[DriverHostProcess, MachinePorts], patient: pytest.MonkeyPatch
 ) -> None:
     process, ports = asleep
     assert ports.wakeup is not None
     ports.wakeup.wait(0.0)
     process.process.send_signal(signal.SIGSTOP)
     assert not ports.wakeup.wait(0.1)
-    patient.setattr(feeder_line, "_QUICK", 0.5)
+    patient.setattr(host_line, "_QUICK", 0.5)
     sample = ports.axes.sample()
     assert code_of(sample.fault, "driver") == "feeder-silent"
     assert not sample.enabled
@@ -262,7 +262,7 @@ def test_a_feeder_that_stands_while_its_control_sleeps_is_told_with_the_next_loo
 
 
 class Asleep:
-    """Stands for a feeder whose control sleeps, or not."""
+    """Stands for a driver host whose control sleeps, or not."""
 
     def __init__(self, asleep: bool) -> None:
         self.asleep, self.orphaned = asleep, False

@@ -1,4 +1,4 @@
-"""The feeder: answers the control, keeps the drivers going, stops the machine when the control is gone."""
+"""The driver host: answers the control, runs the drivers, stops the machine if the control ends."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import numpy as np
 from core.faults import Trip, TrippedError
 from core.message import Message as Text
 from core.ports import DriverError, MachinePorts, StationState, Stop, at_rest
-from drivers.feeder.feeder_messages import (
+from drivers.driver_host.host_messages import (
     NOTHING,
     VERSION,
     Message,
@@ -95,7 +95,7 @@ def _how(word: str) -> Stop:
         ) from error
 
 
-# --- What the feeder has switched off by itself, and that nothing goes on before the control knows it.
+# --- What the driver host has switched off by itself, and that nothing goes on before the control knows it.
 
 
 _MOVES = frozenset(("splice", "mesh"))
@@ -186,13 +186,13 @@ class Driven:
     asked: Callable[[], bool] = lambda: False
 
 
-class Feeder:
+class DriverHost:
     """``handle`` one message, ``tick`` between them. All by one thread.
 
     A silent control is played to the end of its queue, which is at rest; then the spindle stops and the
     outputs go to their safe states: it has tripped, and neither moves nor switches on anything until the
     control has acknowledged that. ``orphaned``: it will never speak again; at rest the drives go off too,
-    and once the spindle stands the feeder is done.
+    and once the spindle stands the driver host is done.
     """
 
     def __init__(

@@ -1,39 +1,42 @@
-"""A machine that is driven by the feeder: in a process of its own, or on a clock moved by hand in ours."""
+"""Connects a machine through the driver host: in a separate process, or in this one with a test clock."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
 from app.compose.backends.backend_entry import Connected, backend_of, has_station, played
-from app.compose.backends.feeder_process import FeederProcess, driven
+from app.compose.backends.driver_host_process import DriverHostProcess, driven
 from core.machine.machine_model import Machine
 from core.ports import Clock, DriverError
-from drivers.feeder.feeder_line import Line, LoopLink
-from drivers.feeder.feeder_ports import FeederHands, feeder_ports
-from drivers.feeder.feeder_server import Feeder
+from drivers.driver_host.host_line import Line, LoopLink
+from drivers.driver_host.host_ports import HostHands, host_ports
+from drivers.driver_host.host_server import DriverHost
 from drivers.waiting import RealClock
 
 
-def connect_feeder(machine: Machine, clock: Clock) -> Connected:
-    """Start the feeder and ask it for the machine's ports. Raises DriverError for what does not answer."""
+def connect_driver_host(machine: Machine, clock: Clock) -> Connected:
+    """Start the driver host and ask it for the machine's ports.
+
+    Raises DriverError where it does not answer.
+    """
     line, close = _line(machine, clock)
     try:
-        ports = feeder_ports(line)
+        ports = host_ports(line)
     except DriverError:
         close()
         raise
-    hands = FeederHands(line)
+    hands = HostHands(line)
     panel = hands if played(machine) or not has_station(machine) else None
     return Connected(ports, panel, hands.set_input if played(machine) else None, close)
 
 
 def _line(machine: Machine, clock: Clock) -> tuple[Line, Callable[[], None]]:
-    """The feeder in its own process where time is real, else the same messages in this thread."""
+    """The driver host in its own process where time is real, else the same messages in this thread."""
     if isinstance(clock, RealClock) and not _virtual(machine):
-        process = FeederProcess(machine, clock)
+        process = DriverHostProcess(machine, clock)
         return process.line, process.close
     owned = driven(machine, clock)
-    return Line(LoopLink(Feeder(owned, refresh=machine.hardware.refresh)), clock), owned.close
+    return Line(LoopLink(DriverHost(owned, refresh=machine.hardware.refresh)), clock), owned.close
 
 
 def _virtual(machine: Machine) -> bool:

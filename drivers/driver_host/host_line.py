@@ -1,6 +1,7 @@
-"""The line to the feeder, by a socket to its process or within one thread: requests, answers, its last look.
+"""The line to the driver host, by a socket to its process or within one thread: requests, answers, its last
+look.
 
-A feeder that is gone is a fault.
+A driver host that is gone is a fault.
 """
 
 from __future__ import annotations
@@ -18,8 +19,8 @@ from typing import Protocol
 from core.faults import TrippedError, code_of
 from core.message import Message as Text
 from core.ports import ALL_UNKNOWN, Clock, DriverError, Fault, FloatArray, Unknown
-from drivers.feeder.feeder_messages import NOTHING, VERSION, Inbox, Message, fault_of, packed, text, texts
-from drivers.feeder.feeder_server import Feeder
+from drivers.driver_host.host_messages import NOTHING, VERSION, Inbox, Message, fault_of, packed, text, texts
+from drivers.driver_host.host_server import DriverHost
 from drivers.waiting import Bell, Opening
 
 _log = logging.getLogger(__name__)
@@ -29,7 +30,7 @@ _BATCHES = 200  # of samples that wait for whoever records them
 
 
 class Link(Protocol):
-    """Carries a request to the feeder and its answer back; ``files`` are what can be waited for."""
+    """Carries a request to the driver host and its answer back; ``files`` are what can be waited for."""
 
     @property
     def files(self) -> Sequence[int]: ...
@@ -46,7 +47,7 @@ class Link(Protocol):
 
 
 def cleared(link: Link) -> Link:
-    """The Reset that has asked for another feeder is meant for its drives too. Raises DriverError."""
+    """The Reset that has asked for another driver host is meant for its drives too. Raises DriverError."""
     answer = link.ask(Message({"do": "do", "what": "clear_fault"}, NOTHING))
     if why := fault_of(answer.head, "error", "driver"):
         raise DriverError(why)
@@ -56,8 +57,8 @@ def cleared(link: Link) -> Link:
 class Line:
     """Requests in words, and the last look at everything.
 
-    ``again`` begins to start another feeder in the place of one that is gone: there is no other way back.
-    ``bell`` is rung by the feeder too, while the control sleeps.
+    ``again`` begins to start another driver host in the place of one that is gone: there is no other way
+    back. ``bell`` is rung by the driver host too, while the control sleeps.
     """
 
     def __init__(
@@ -72,15 +73,15 @@ class Line:
         self._opening: Opening[Link] | None = None
         self.clock = clock
         self.bell = bell
-        self._asleep = self._sleeps = False  # as the feeder has been told, and as the next look says
-        self.fault: Fault | str = ""  # why the feeder cannot be asked any more
+        self._asleep = self._sleeps = False  # as the driver host has been told, and as the next look says
+        self.fault: Fault | str = ""  # why the driver host cannot be asked any more
         self._state: Mapping[str, object] = {}
         self._at = -1.0
         self._posted: queue.SimpleQueue[Message] = queue.SimpleQueue()
         self.sampled: deque[FloatArray] = deque(maxlen=_BATCHES)  # since they were last taken
 
     def ask(self, message: Message) -> Message:
-        """The answer. Raises DriverError with what the drivers refuse, or that the feeder is gone."""
+        """The answer. Raises DriverError with what the drivers refuse, or that the driver host is gone."""
         if self.fault:
             raise DriverError(self.fault)
         if self._opening is not None:
@@ -109,7 +110,7 @@ class Line:
             self.bell.ring()
 
     def sleep(self) -> None:
-        """Until anything but a look is asked for the feeder rings for what is new. Raises DriverError."""
+        """Have the driver host ring for news until anything but a look is asked. Raises DriverError."""
         if not self._asleep:
             self.ask(Message({"do": "rest"}, NOTHING))
         self._asleep = self._sleeps = True
@@ -124,7 +125,7 @@ class Line:
         return self._link.files
 
     def look(self, *, anew: bool = False) -> Mapping[str, object]:
-        """Everything that can be seen, of this tick; the last known when the feeder is gone."""
+        """Everything that can be seen, of this tick; the last known when the driver host is gone."""
         if self._opening is not None:
             self._reopen(self._opening)
         now = self.clock.now()
@@ -143,17 +144,17 @@ class Line:
                 self.fault = self.fault or error.fault
             self._at = now
             for note in texts(self._state.get("notes")):
-                _log.warning("feeder: %s", note)
+                _log.warning("driver host: %s", note)
         return self._state
 
     @property
     def lost(self) -> bool:
-        """Whether there is no feeder to ask."""
+        """Whether there is no driver host to ask."""
         return self.fault != "" or self._opening is not None
 
     def restart(self) -> None:
-        """Begin to start another feeder; why that fails is the next fault. Raises DriverError where there is
-        none to start.
+        """Begin to start another driver host; why that fails is the next fault. Raises DriverError where
+        there is none to start.
         """
         if self._again is None:
             words = Text("{fault}; restart TurnDesk", fault=self.fault)
@@ -161,7 +162,7 @@ class Line:
         self.fault, self._opening = "", self._again()
 
     def greet(self) -> Mapping[str, object]:
-        """What the feeder says of itself. Raises DriverError for one of another version."""
+        """What the driver host says of itself. Raises DriverError for one of another version."""
         hello = self.ask(Message({"do": "hello"}, NOTHING)).head
         if hello.get("version") != VERSION:
             raise DriverError(
@@ -184,13 +185,13 @@ class Line:
             self._opening, self.fault = None, error.fault
 
     def unknown(self) -> frozenset[Unknown]:
-        """What the drivers do not hear of; of a feeder that is gone nothing is known."""
+        """What the drivers do not hear of; of a driver host that is gone nothing is known."""
         if self.lost:
             return ALL_UNKNOWN
         return frozenset(map(Unknown, texts(self.look().get("unknown"))))
 
     def hang_up(self) -> None:
-        """From any thread: the feeder sees that its control is gone, and stops the machine for good."""
+        """From any thread: the driver host sees that its control is gone, and stops the machine for good."""
         self._link.hang_up()
 
     def close(self) -> None:
@@ -198,10 +199,10 @@ class Line:
         self._link.close()
 
 
-# --- Two links to the feeder: within one thread, and by a socket.
+# --- Two links to the driver host: within one thread, and by a socket.
 
 
-_QUICK = 0.5  # s for an answer; the feeder's loop takes milliseconds
+_QUICK = 0.5  # s for an answer; the driver host's loop takes milliseconds
 _AT_ONCE = 0.05  # s that one look counts of it at most: who stood still himself blames nobody
 # s for orders that wait for a drive; a fault that is cleared may mean to configure all of a bus
 _SLOW = {"enable": 5.0, "home": 5.0, "clear_fault": 15.0}
@@ -209,23 +210,23 @@ _CHUNK = 1 << 16
 
 
 class LoopLink:
-    """The feeder in the same thread, by the same bytes as over the socket: for tests and headless runs."""
+    """Calls the driver host in the same thread, with the bytes of the socket: for tests and headless runs."""
 
     files = ()  # it cannot end unseen
 
-    def __init__(self, feeder: Feeder) -> None:
-        self._feeder = feeder
+    def __init__(self, host: DriverHost) -> None:
+        self._host = host
 
     def ask(self, message: Message) -> Message:
-        """There and back as bytes; the feeder's loop goes round before."""
-        self._feeder.tick()
+        """There and back as bytes; the driver host's loop goes round before."""
+        self._host.tick()
         (request,) = Inbox().feed(packed(message))
-        (answer,) = Inbox().feed(packed(self._feeder.handle(request)))
+        (answer,) = Inbox().feed(packed(self._host.handle(request)))
         return answer
 
     def hang_up(self) -> None:
         """The control has gone."""
-        self._feeder.orphaned = True
+        self._host.orphaned = True
 
     def close(self) -> None:
         """The same."""
@@ -233,7 +234,7 @@ class LoopLink:
 
 
 class SocketLink:
-    """A feeder in its own process. One request at a time, each answered within its time or never."""
+    """A driver host in its own process. One request at a time, each answered within its time or never."""
 
     def __init__(self, sock: socket.socket) -> None:
         self._socket = sock
@@ -242,11 +243,11 @@ class SocketLink:
 
     @property
     def files(self) -> tuple[int, ...]:
-        """Readable when the feeder has ended."""
+        """Readable when the driver host has ended."""
         return (self._socket.fileno(),)
 
     def ask(self, message: Message) -> Message:
-        """Raises DriverError when the feeder has gone or does not answer in time."""
+        """Raises DriverError when the driver host has gone or does not answer in time."""
         limit = _SLOW.get(text(message.head, "what"), _QUICK)
         try:
             self._socket.settimeout(limit)
@@ -269,7 +270,7 @@ class SocketLink:
             self._socket.shutdown(socket.SHUT_RDWR)
 
     def close(self) -> None:
-        """The feeder sees the end and stops what is left; who waits for its answer waits no longer."""
+        """The driver host sees the end and stops what is left; who waits for its answer waits no longer."""
         self.hang_up()
         self._socket.close()
 

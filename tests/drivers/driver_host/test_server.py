@@ -1,4 +1,4 @@
-"""The feeder within one thread: what it does when its control is silent, and what it answers to nonsense."""
+"""The driver host in one thread: what it does if its control is silent, and its answers to bad requests."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from core.ports import DriverError, MachinePorts
-from drivers.feeder.feeder_line import Line, LoopLink
-from drivers.feeder.feeder_messages import LARGEST, NOTHING, Inbox, Message, packed
-from drivers.feeder.feeder_ports import FeederHands, feeder_ports
-from drivers.feeder.feeder_server import PERIOD, RESTS, Driven, Feeder, TripGuard, act
+from drivers.driver_host.host_line import Line, LoopLink
+from drivers.driver_host.host_messages import LARGEST, NOTHING, Inbox, Message, packed
+from drivers.driver_host.host_ports import HostHands, host_ports
+from drivers.driver_host.host_server import PERIOD, RESTS, Driven, DriverHost, TripGuard, act
 from drivers.simulated.simulated_machine import Simulation, build_simulation
 from drivers.waiting import Bell, StepClock
 from tests.coded import raises_code
@@ -28,32 +28,32 @@ ZERO = (0.0, 0.0, 0.0)
 class Bench:
     sim: Simulation
     clock: StepClock
-    feeder: Feeder
+    host: DriverHost
     line: Line
     ports: MachinePorts
 
     def alone(self, seconds: float) -> None:
-        """Time passes for the feeder; the control says nothing."""
+        """Time passes for the driver host; the control says nothing."""
         for _ in range(round(seconds / 0.01)):
             self.clock.advance(0.01)
-            self.feeder.tick()
+            self.host.tick()
 
 
 @pytest.fixture
 def bench() -> Bench:
     clock = StepClock()
     sim = build_simulation(CONFIG, clock)
-    feeder = Feeder(simulation_driven(sim.ports, sim.machine), ["without real-time priority"])
-    line = Line(LoopLink(feeder), clock)
-    return Bench(sim, clock, feeder, line, feeder_ports(line))
+    host = DriverHost(simulation_driven(sim.ports, sim.machine), ["without real-time priority"])
+    line = Line(LoopLink(host), clock)
+    return Bench(sim, clock, host, line, host_ports(line))
 
 
 def test_a_slow_wire_of_the_spindle_is_reported_to_the_control() -> None:
     clock = StepClock()
     sim = build_simulation(CONFIG, clock)
     slow = dataclasses.replace(sim.ports, spindle_lag=lambda: 0.75)
-    line = Line(LoopLink(Feeder(simulation_driven(slow, sim.machine))), clock)
-    assert feeder_ports(line).spindle_lag() == 0.75
+    line = Line(LoopLink(DriverHost(simulation_driven(slow, sim.machine))), clock)
+    assert host_ports(line).spindle_lag() == 0.75
 
 
 def working(bench: Bench) -> None:
@@ -85,7 +85,7 @@ def test_what_happened_while_the_control_was_late_comes_with_its_next_looks(benc
     assert source.rate == 1000.0
     working(bench)
     bench.ports.axes.sample()
-    bench.alone(0.95)  # the feeder alone: the spindle was ordered to 600, and the slides go on
+    bench.alone(0.95)  # the driver host alone: the spindle was ordered to 600, and the slides go on
     rows = []
     for _ in range(5):
         bench.clock.advance(0.01)
@@ -108,11 +108,11 @@ def test_samples_that_were_damaged_on_their_way_are_none(bench: Bench) -> None:
     assert bench.ports.samples.take().shape == (2, 14)
 
 
-def test_a_driver_without_samples_has_none_through_the_feeder_either() -> None:
+def test_a_driver_without_samples_has_none_through_the_driver_host_either() -> None:
     clock = StepClock()
     sim = build_simulation(CONFIG, clock)
     plain = dataclasses.replace(sim.ports, samples=None)
-    ports = feeder_ports(Line(LoopLink(Feeder(simulation_driven(plain, sim.machine))), clock))
+    ports = host_ports(Line(LoopLink(DriverHost(simulation_driven(plain, sim.machine))), clock))
     ports.axes.sample()
     assert ports.samples is None
 
@@ -126,7 +126,7 @@ def test_a_control_that_comes_back_in_time_goes_on(bench: Bench) -> None:
     assert bench.sim.machine.spindle_rpm() > 500.0
 
 
-def test_what_the_feeder_did_alone_is_told(bench: Bench, caplog: pytest.LogCaptureFixture) -> None:
+def test_what_the_driver_host_did_alone_is_told(bench: Bench, caplog: pytest.LogCaptureFixture) -> None:
     working(bench)
     bench.alone(3.0)
     bench.ports.axes.sample()
@@ -139,9 +139,9 @@ def test_an_orphan_takes_the_power_at_rest_and_is_done(bench: Bench) -> None:
     bench.line.close()
     bench.alone(0.5)
     assert bench.sim.ports.axes.sample().enabled
-    assert [bench.feeder.done] == [False]
+    assert [bench.host.done] == [False]
     bench.alone(1.0)
-    assert bench.feeder.done
+    assert bench.host.done
     bench.alone(0.1)
     assert not bench.sim.ports.axes.sample().enabled
 
@@ -155,10 +155,10 @@ def test_an_orphan_brakes_the_spindle_before_it_lets_go(bench: Bench) -> None:
     assert bench.sim.machine.spindle_rpm() == pytest.approx(3000.0, abs=30.0)
     bench.line.close()
     bench.alone(1.0)  # 3000 rpm at 2500 rpm/s take 1.2 s
-    assert not bench.feeder.done
+    assert not bench.host.done
     assert bench.sim.machine.spindle_rpm() > 5.0
     bench.alone(0.5)
-    assert bench.feeder.done
+    assert bench.host.done
     assert abs(bench.sim.machine.spindle_rpm()) < 5.0
 
 
@@ -169,9 +169,9 @@ def test_an_orphan_does_not_wait_for_ever_for_a_spindle(bench: Bench) -> None:
     bench.ports.axes.sample()
     bench.line.close()
     bench.alone(7.9)
-    assert not bench.feeder.done
+    assert not bench.host.done
     bench.alone(0.3)
-    assert bench.feeder.done
+    assert bench.host.done
 
 
 def test_warnings_of_the_start_reach_the_control(bench: Bench) -> None:
@@ -179,7 +179,7 @@ def test_warnings_of_the_start_reach_the_control(bench: Bench) -> None:
 
 
 def test_hands_act_with_the_next_look_and_never_wait(bench: Bench) -> None:
-    hands = FeederHands(bench.line)
+    hands = HostHands(bench.line)
     hands.press_estop()
     assert not bench.sim.ports.station.snapshot().estop
     bench.ports.axes.sample()
@@ -211,7 +211,7 @@ def test_hands_act_with_the_next_look_and_never_wait(bench: Bench) -> None:
     ],
 )
 def test_nonsense_is_refused_and_changes_nothing(bench: Bench, head: dict[str, object], reason: str) -> None:
-    answer = bench.feeder.handle(Message(head, NOTHING))
+    answer = bench.host.handle(Message(head, NOTHING))
     assert answer.head["error"]
     assert answer.head["reason"] == reason
     assert not bench.sim.ports.axes.sample().enabled
@@ -230,14 +230,14 @@ def test_setpoints_that_are_no_numbers_never_reach_a_drive(bench: Bench, damage:
     assert bench.sim.ports.axes.sample().actual[0] == pytest.approx(0.0, abs=0.002)
 
 
-def test_a_feeder_of_another_version_is_not_driven(bench: Bench) -> None:
+def test_a_driver_host_of_another_version_is_not_driven(bench: Bench) -> None:
     class Older(LoopLink):
         def ask(self, message: Message) -> Message:
             answer = super().ask(message)
             return Message({k: v for k, v in answer.head.items() if k != "version"}, answer.numbers)
 
     with raises_code(DriverError, "driver", "None", "5"):
-        feeder_ports(Line(Older(bench.feeder), bench.clock))
+        host_ports(Line(Older(bench.host), bench.clock))
 
 
 def test_messages_in_pieces_and_in_heaps() -> None:
@@ -278,15 +278,15 @@ def test_an_order_that_takes_long_is_no_silence(bench: Bench, monkeypatch: pytes
     bench.ports.io.write("coolant", True)
     monkeypatch.setattr(bench.sim.ports.axes, "enable", slowly)
     bench.ports.axes.enable(True)
-    bench.feeder.tick()
+    bench.host.tick()
     assert bench.ports.io.outputs()["coolant"]
 
 
 def test_an_output_that_must_be_renewed_falls_while_the_slides_still_move(bench: Bench) -> None:
-    feeder = Feeder(simulation_driven(bench.sim.ports, bench.sim.machine), refresh={"coolant": 0.3})
-    bench.feeder = feeder
+    host = DriverHost(simulation_driven(bench.sim.ports, bench.sim.machine), refresh={"coolant": 0.3})
+    bench.host = host
     working(bench)
-    feeder.handle(Message({"do": "look"}, NOTHING))
+    host.handle(Message({"do": "look"}, NOTHING))
     bench.alone(0.29)
     assert bench.sim.ports.io.outputs()["coolant"]
     bench.alone(0.05)
@@ -298,7 +298,7 @@ def test_a_loop_that_wakes_up_late_is_told_once_for_each_record(
     bench: Bench, caplog: pytest.LogCaptureFixture
 ) -> None:
     for seconds in (0.01, 0.06, 0.055, 0.08):
-        bench.feeder.late(seconds)
+        bench.host.late(seconds)
     bench.ports.axes.sample()
     assert [re.findall(r"\d+ ms", line)[0] for line in caplog.messages] == ["60 ms", "80 ms"]
 
@@ -320,7 +320,7 @@ def test_a_thread_whose_spindle_stands_does_not_keep_an_orphan_for_ever(bench: B
     assert not bench.sim.ports.io.outputs()["coolant"]
     assert not bench.sim.ports.axes.sample().moving
     bench.alone(9.0)
-    assert bench.feeder.done
+    assert bench.host.done
 
 
 # --- a control that sleeps ----------------------------------------------------------------------------------
@@ -336,10 +336,10 @@ class Sleeper:
         axes = self.sim.ports.axes
         self.asked = False
         driven = Driven(self.sim.ports, axes.sample, lambda: None, self.sim.machine, asked=lambda: self.asked)
-        self.feeder = Feeder(driven, ring=self._ring)
+        self.host = DriverHost(driven, ring=self._ring)
         self.bell = Bell()
-        self.line = Line(LoopLink(self.feeder), self.clock, bell=self.bell)
-        self.ports = feeder_ports(self.line)
+        self.line = Line(LoopLink(self.host), self.clock, bell=self.bell)
+        self.ports = host_ports(self.line)
         self.ports.axes.enable(True)
         self.look()
 
@@ -353,17 +353,17 @@ class Sleeper:
         self.ports.axes.sample()
 
     def pause(self) -> float:
-        """Seconds to the feeder's next round."""
+        """Seconds to the driver host's next round."""
         now = self.clock.now()
-        return self.feeder.next_round(now) - now
+        return self.host.next_round(now) - now
 
     def sleeps(self) -> bool:
-        """Whether something has rung by the time the feeder has gone round once more."""
+        """Whether something has rung by the time the driver host has gone round once more."""
         assert self.ports.wakeup is not None
         assert self.ports.wakeup.settled()
         self.ports.wakeup.wait(0.0)
         self.clock.advance(0.005)
-        self.feeder.tick()
+        self.host.tick()
         return self.rung > 0
 
 
@@ -398,7 +398,7 @@ def test_nothing_rings_where_nothing_happens(sleeper: Sleeper) -> None:
     for _ in range(5):
         assert not sleeper.sleeps()
         sleeper.look()
-        assert sleeper.feeder.asleep
+        assert sleeper.host.asleep
     assert not sleeper.bell.wait(0.0)
 
 
@@ -424,10 +424,10 @@ def test_whatever_happens_rings_once_and_again_after_the_next_look(
     happens(sleeper.sim)
     for _ in range(50):  # a silent station is one after .2 s
         sleeper.clock.advance(0.005)
-        sleeper.feeder.tick()
+        sleeper.host.tick()
     assert sleeper.rung == 1
     assert sleeper.bell.wait(0.0)
-    sleeper.feeder.tick()
+    sleeper.host.tick()
     assert sleeper.rung == 1
 
 
@@ -442,22 +442,22 @@ def test_a_control_that_looks_as_ever_is_not_rung(sleeper: Sleeper) -> None:
     sleeper.bell.ring()
     assert sleeper.ports.wakeup.wait(0.0)  # something was asked for: it is awake
     sleeper.look()
-    assert not sleeper.feeder.asleep
+    assert not sleeper.host.asleep
     sleeper.sim.machine.set_input("TB2-5", True)
-    sleeper.feeder.tick()
+    sleeper.host.tick()
     assert sleeper.rung == 0
 
 
 def test_an_order_ends_its_sleep(sleeper: Sleeper) -> None:
     sleeper.sleeps()
-    assert sleeper.feeder.asleep
+    assert sleeper.host.asleep
     sleeper.ports.io.write("coolant", True)
-    assert not sleeper.feeder.asleep
+    assert not sleeper.host.asleep
     assert sleeper.pause() == pytest.approx(PERIOD)
 
 
 def test_a_hand_at_the_screen_wakes_its_own_control(sleeper: Sleeper) -> None:
-    FeederHands(sleeper.line).press_hold()
+    HostHands(sleeper.line).press_hold()
     assert sleeper.bell.wait(0.0)
 
 
@@ -465,12 +465,12 @@ def test_one_that_sleeps_is_missed_after_half_a_second(sleeper: Sleeper) -> None
     sleeper.sleeps()
     for _ in range(9):
         sleeper.clock.advance(0.05)
-        sleeper.feeder.tick()
-    assert sleeper.feeder._notes == []
+        sleeper.host.tick()
+    assert sleeper.host._notes == []
     for _ in range(3):
         sleeper.clock.advance(0.05)
-        sleeper.feeder.tick()
-    (note,) = sleeper.feeder._notes
+        sleeper.host.tick()
+    (note,) = sleeper.host._notes
     assert re.search("spindle .*outputs ", note)
 
 
@@ -486,7 +486,7 @@ def test_drivers_are_told_that_the_control_sleeps_and_that_it_has_woken_up(sleep
         told.append(asleep)
         return 9.0
 
-    sleeper.feeder._driven = dataclasses.replace(sleeper.feeder._driven, idle=idle)
+    sleeper.host._driven = dataclasses.replace(sleeper.host._driven, idle=idle)
     assert sleeper.pause() == pytest.approx(PERIOD)
     sleeper.sleeps()
     assert sleeper.pause() == pytest.approx(RESTS)
@@ -497,10 +497,10 @@ def test_drivers_are_told_that_the_control_sleeps_and_that_it_has_woken_up(sleep
 
 
 def test_an_orphan_does_not_go_on_sleeping(sleeper: Sleeper) -> None:
-    sleeper.feeder._driven = dataclasses.replace(sleeper.feeder._driven, idle=lambda _: 9.0)
+    sleeper.host._driven = dataclasses.replace(sleeper.host._driven, idle=lambda _: 9.0)
     sleeper.sleeps()
     assert sleeper.pause() == pytest.approx(RESTS)
-    sleeper.feeder.orphaned = True
+    sleeper.host.orphaned = True
     assert sleeper.pause() == pytest.approx(PERIOD)
 
 

@@ -1,4 +1,4 @@
-"""The feeder's process: one loop, real-time where the system permits, awake every few milliseconds."""
+"""The driver host's process: one loop, real-time where the system permits, awake every few milliseconds."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from functools import partial
 
 from core.message import Message
 from core.ports import Clock, DriverError
-from drivers.feeder.feeder_messages import Inbox, packed
-from drivers.feeder.feeder_server import Driven, Feeder
+from drivers.driver_host.host_messages import Inbox, packed
+from drivers.driver_host.host_server import Driven, DriverHost
 from drivers.waiting import RealClock
 
 PRIORITY = 50
 _CURRENT, _FUTURE = 1, 2  # MCL_CURRENT and MCL_FUTURE of mlockall(2)
 _CHUNK = 1 << 16
 TRIAL = 0.3  # s
-_LAST = 30.0  # s that an orphaned feeder has to bring the slides to rest; no queue is longer
+_LAST = 30.0  # s that an orphaned driver host has to bring the slides to rest; no queue is longer
 
 
 def real_time(priority: int = PRIORITY) -> list[str]:
@@ -97,9 +97,9 @@ def serve(
     bell: socket.socket | None = None,
 ) -> None:
     """Until the control has gone and the slides are at rest; ``bell`` wakes a control that sleeps."""
-    feeder = Feeder(driven, warnings, refresh, partial(_ring, bell))
+    host = DriverHost(driven, warnings, refresh, partial(_ring, bell))
     try:
-        _rounds(sock, feeder, driven)
+        _rounds(sock, host, driven)
     finally:  # whatever happens here: slides stopped, power off, bus closed
         driven.close()
 
@@ -110,16 +110,16 @@ def _ring(bell: socket.socket | None) -> None:
             bell.send(b"!")
 
 
-def _rounds(sock: socket.socket, feeder: Feeder, driven: Driven) -> None:
+def _rounds(sock: socket.socket, host: DriverHost, driven: Driven) -> None:
     clock = driven.ports.clock
-    ear = Ear(sock, feeder, clock)
+    ear = Ear(sock, host, clock)
     due = clock.now()
     gone: float | None = None  # since when the control has been
-    while not feeder.done:
-        feeder.late(clock.now() - due)
-        feeder.tick()
-        due = ear.listen(feeder.next_round(due), punctual=driven.wake() is not None)
-        if feeder.orphaned:
+    while not host.done:
+        host.late(clock.now() - due)
+        host.tick()
+        due = ear.listen(host.next_round(due), punctual=driven.wake() is not None)
+        if host.orphaned:
             sock.close()
             gone = clock.now() if gone is None else gone
             if clock.now() - gone > _LAST:
@@ -134,8 +134,8 @@ _DEAF = 0.005  # s after which a control is listened to, however late the driver
 class Ear:
     """Listens to the control between two rounds."""
 
-    def __init__(self, sock: socket.socket, feeder: Feeder, clock: Clock) -> None:
-        self._sock, self._feeder, self._clock = sock, feeder, clock
+    def __init__(self, sock: socket.socket, host: DriverHost, clock: Clock) -> None:
+        self._sock, self._host, self._clock = sock, host, clock
         self._inbox = Inbox()
         self._listened = clock.now()
         sock.setblocking(False)
@@ -145,7 +145,7 @@ class Ear:
 
         ``punctual``: nothing is begun that would be over behind that time.
         """
-        feeder, clock = self._feeder, self._clock
+        host, clock = self._host, self._clock
         keep = _TALK if punctual else 0.0
         while True:
             now = clock.now()
@@ -153,25 +153,25 @@ class Ear:
             if left <= keep and now - self._listened < _DEAF:
                 clock.sleep_until(due)
                 return due
-            slept, self._listened = feeder.asleep, now
-            if feeder.orphaned:
+            slept, self._listened = host.asleep, now
+            if host.orphaned:
                 clock.sleep_until(due)
             elif select.select([self._sock], [], [], max(left - keep, 0.0))[0]:
-                feeder.orphaned = not _talk(self._sock, self._inbox, feeder)
-                if feeder.asleep and not punctual and 0.0 < due - clock.now() < EARLY:
+                host.orphaned = not _talk(self._sock, self._inbox, host)
+                if host.asleep and not punctual and 0.0 < due - clock.now() < EARLY:
                     return clock.now()
-            if slept and not feeder.asleep:
+            if slept and not host.asleep:
                 return clock.now()
 
 
-def _talk(sock: socket.socket, inbox: Inbox, feeder: Feeder) -> bool:
+def _talk(sock: socket.socket, inbox: Inbox, host: DriverHost) -> bool:
     """Answer what has come; False when the other side has gone."""
     try:
         data = sock.recv(_CHUNK)
         if not data:
             return False
         for message in inbox.feed(data):
-            _send(sock, packed(feeder.handle(message)))
+            _send(sock, packed(host.handle(message)))
     except BlockingIOError:
         return True
     except (OSError, DriverError):

@@ -1,15 +1,16 @@
-"""The feeder with a setpoint each SYNC: how late SYNC goes out, under load or not, with SCHED_FIFO or not.
+"""The driver host with a setpoint each SYNC: how late SYNC goes out, under load or not, with SCHED_FIFO or
+not.
 
-``python -m tests.benchmarks.bench_feeder [--seconds 10] [--sync 4 2 1] [--busy 0 6] [--fifo yes no]``. Three
-processes as they are shipped: this one is the control and sends X to and fro in pieces of 2 ms, the feeder
-owns the bus, EPOS4 drives and terminals are the far end. Its frames are those of SocketCAN, packed and taken
-apart by python-can, on a socket pair: what a CAN interface and its driver take is not in it; ``--udp`` has
-them on UDP multicast instead, which costs several times that.
+``python -m tests.benchmarks.bench_driver_host [--seconds 10] [--sync 4 2 1] [--busy 0 6] [--fifo yes no]``.
+Three processes as they are shipped: this one is the control and sends X to and fro in pieces of 2 ms, the
+driver host owns the bus, EPOS4 drives and terminals are the far end. Its frames are those of SocketCAN,
+packed and taken apart by python-can, on a socket pair: what a CAN interface and its driver take is not in it;
+``--udp`` has them on UDP multicast instead, which costs several times that.
 
-A *witness* on each core, above the feeder's priority, does nothing but wait for every second millisecond: how
-late it is, the computer is by itself. ``own`` are SYNCs at times when no witness was more than .2 ms late.
-A run that a fault has ended is followed by another until there are ``--seconds`` of each kind, in ten runs at
-most; the rows are kept for docs/speed.md.
+A *witness* on each core, above the driver host's priority, does nothing but wait for every second
+millisecond: how late it is, the computer is by itself. ``own`` are SYNCs at times when no witness was more
+than .2 ms late. A run that a fault has ended is followed by another until there are ``--seconds`` of each
+kind, in ten runs at most; the rows are kept for docs/speed.md.
 """
 
 from __future__ import annotations
@@ -38,15 +39,15 @@ from can.interfaces.socketcan.socketcan import build_can_frame, dissect_can_fram
 
 import resources
 from app.compose.backends.canopen_backend import canopen_peers
-from app.compose.backends.feeder_process import driven
+from app.compose.backends.driver_host_process import driven
 from app.compose.backends.played_machine import play_peers
 from app.compose.machine.machine_files import load_machine
 from core.ports import DriverError, FloatArray, MachinePorts, Segments
 from drivers.canopen.position_modes import CyclicFollower, SyncSchedule
-from drivers.feeder.feeder_line import Line, SocketLink
-from drivers.feeder.feeder_loop import PRIORITY, keep_memory, real_time, serve
-from drivers.feeder.feeder_messages import NOTHING, Inbox, Message, packed
-from drivers.feeder.feeder_ports import feeder_ports
+from drivers.driver_host.host_line import Line, SocketLink
+from drivers.driver_host.host_loop import PRIORITY, keep_memory, real_time, serve
+from drivers.driver_host.host_messages import NOTHING, Inbox, Message, packed
+from drivers.driver_host.host_ports import host_ports
 from drivers.setpoint_queue import straight
 from drivers.waiting import RealClock
 from tests.benchmarks.footprint import keep_result
@@ -126,8 +127,8 @@ def machine_file(folder: Path, sync_ms: int) -> Path:
 # --- processes -------------------------------------------------------------------------------------------
 
 
-def feeder(arguments: list[str]) -> None:
-    """The feeder's process; what came late goes to a file."""
+def host(arguments: list[str]) -> None:
+    """The driver host's process; what came late goes to a file."""
     descriptor, zero, file, fifo, out, bus = arguments
     on_pair(int(bus))
     late: list[tuple[float, float]] = []
@@ -247,7 +248,7 @@ def to_and_fro(ports: MachinePorts, seconds: float) -> str:
 
 def started(words: list[str], *descriptors: int, heard: bool = False) -> subprocess.Popen[bytes]:
     """This module in another process; ``heard``: once it has said its first line."""
-    command = [sys.executable, "-m", "tests.benchmarks.bench_feeder", *words]
+    command = [sys.executable, "-m", "tests.benchmarks.bench_driver_host", *words]
     child = subprocess.Popen(
         command,
         pass_fds=[each for each in descriptors if each >= 0],
@@ -286,7 +287,7 @@ def measured(folder: Path, sync_ms: int, seconds: float, busy: int, *, fifo: boo
     clock = RealClock()
     how = "yes" if fifo else "no"
     words = [str(theirs.fileno()), repr(clock.zero), str(file), how, str(out), str(near)]
-    child = started(["--feeder", *words], theirs.fileno(), near)
+    child = started(["--driver-host", *words], theirs.fileno(), near)
     for each in (theirs, *(pair or ())):
         each.close()
     ours.settimeout(60.0)
@@ -294,7 +295,7 @@ def measured(folder: Path, sync_ms: int, seconds: float, busy: int, *, fifo: boo
     while not list(inbox.feed(ours.recv(1 << 16))):
         pass
     try:
-        ports = feeder_ports(Line(SocketLink(ours), clock))
+        ports = host_ports(Line(SocketLink(ours), clock))
         with load(busy), witnesses(folder) as seen:
             fault = to_and_fro(ports, seconds)
     except DriverError as error:
@@ -365,7 +366,7 @@ def main() -> None:
 
 if __name__ == "__main__":
     roles: dict[str, Callable[[list[str]], None]] = {
-        "--feeder": feeder,
+        "--driver-host": host,
         "--far-end": far_end,
         "--witness": lambda a: witness(int(a[0]), a[1]),
     }

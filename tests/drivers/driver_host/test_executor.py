@@ -1,4 +1,4 @@
-"""The executor sees no difference: the same run through the feeder's messages, event by event."""
+"""The executor sees no difference: the same run through the driver host's messages, event by event."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ import pytest
 from core.executor.commands import CycleStart, FeedHold
 from core.executor.snapshot import State
 from core.interpreter.shared.job_setup import ToolOffset
-from drivers.feeder.feeder_line import Line
-from drivers.feeder.feeder_ports import feeder_ports
-from drivers.feeder.feeder_server import Feeder
+from drivers.driver_host.host_line import Line
+from drivers.driver_host.host_ports import host_ports
+from drivers.driver_host.host_server import DriverHost
 from drivers.simulated.simulated_machine import Simulation
 from tests.drivers.contract.simulated import BrokenLink, simulation_driven
 from tests.executor.rig import Rig
@@ -22,14 +22,14 @@ TOOLS = {1: ToolOffset(0.0, 0.0, 0.0)}
 
 
 class FedRig(Rig):
-    """The executor's rig with the feeder between it and the simulation."""
+    """The executor's rig with the driver host between it and the simulation."""
 
     def __post_init__(self) -> None:
         super().__post_init__()
         plain = self.sim
-        self.feeder = Feeder(simulation_driven(plain.ports, plain.machine))
-        self.link = BrokenLink(self.feeder)
-        ports = feeder_ports(Line(self.link, self.clock))
+        self.host = DriverHost(simulation_driven(plain.ports, plain.machine))
+        self.link = BrokenLink(self.host)
+        ports = host_ports(Line(self.link, self.clock))
         self.sim = Simulation(ports, plain.machine)
         self.events.clear()
         self.executor = type(self.executor)(self.machine, ports, self.events.append, self._passes)
@@ -61,7 +61,7 @@ def test_a_hold_comes_to_rest_at_the_same_place() -> None:
     assert places[0] == pytest.approx(places[1], abs=1e-12)
 
 
-def test_without_its_feeder_the_control_shows_no_station_and_no_motion() -> None:
+def test_without_its_driver_host_the_control_shows_no_station_and_no_motion() -> None:
     rig = FedRig()
     rig.ready()
     rig.link.why = "the driver host has ended"
@@ -78,12 +78,12 @@ def tripped(seconds: float, names: str) -> str:
 def test_coolant_that_nobody_renewed_in_a_cut_holds_and_comes_on_with_the_start() -> None:
     """Its terminal wants a word each .3 s; the control was away for .5 s, and the slides went on."""
     rig = FedRig()
-    rig.feeder._refresh = {"coolant": 0.3}
+    rig.host._refresh = {"coolant": 0.3}
     rig.start("G90G94F300\nT1\nM03S600\nM08\nX.5Z0\nG01F20Z-2\nM30\n", TOOLS)
     rig.until_true(lambda shot: shot.actual[1] < -3.0)
     for _ in range(50):
         rig.clock.advance(0.01)
-        rig.feeder.tick()
+        rig.host.tick()
     assert not rig.sim.machine.outputs()["coolant"]
     assert rig.sim.ports.axes.sample().moving
     rig.tick()
@@ -104,10 +104,10 @@ DWELL = "G90G94F300\nT1\n{on}\nX.5Z.1\nG01F30Z-.2\nG04F3\nG01Z-.3\nG00Z.1\nM30\n
 
 
 def silent(rig: FedRig, seconds: float) -> None:
-    """The control is away; the feeder goes on."""
+    """The control is away; the driver host goes on."""
     for _ in range(round(seconds / 0.01)):
         rig.clock.advance(0.01)
-        rig.feeder.tick()
+        rig.host.tick()
 
 
 def in_dwell_away(on: str) -> FedRig:
@@ -122,7 +122,7 @@ def in_dwell_away(on: str) -> FedRig:
     return rig
 
 
-def test_a_lamp_that_the_feeder_switched_off_costs_no_part() -> None:
+def test_a_lamp_that_the_driver_host_switched_off_costs_no_part() -> None:
     rig = in_dwell_away("")
     rig.run(1.2)
     assert tower(rig) == {"green"}

@@ -1,6 +1,6 @@
-"""Starts the feeder, and is it.
+"""Starts the driver host, and is it.
 
-``python -m app.compose.backends.feeder_process FD ZERO BELL``, with the machine on stdin.
+``python -m app.compose.backends.driver_host_process FD ZERO BELL``, with the machine on stdin.
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ from core.message import Message as Text
 from core.ports import Clock, DriverError
 from drivers.canopen.canopen_nodes import CYCLIC, EVENED_OUT
 from drivers.canopen.canopen_table import CanopenTable
-from drivers.feeder.feeder_line import Line, Link, SocketLink, cleared
-from drivers.feeder.feeder_loop import TRIAL, keep_memory, late_at_trial, real_time, serve
-from drivers.feeder.feeder_messages import NOTHING, Inbox, Message, fault_of, packed, with_code
-from drivers.feeder.feeder_server import Driven
+from drivers.driver_host.host_line import Line, Link, SocketLink, cleared
+from drivers.driver_host.host_loop import TRIAL, keep_memory, late_at_trial, real_time, serve
+from drivers.driver_host.host_messages import NOTHING, Inbox, Message, fault_of, packed, with_code
+from drivers.driver_host.host_server import Driven
 from drivers.waiting import Bell, Opening, RealClock
 
 
@@ -44,13 +44,13 @@ _START = 20.0  # s for the first answer: the process has to start and to configu
 _END = 10.0
 
 
-class FeederProcess:
-    """A feeder in its own process, and the line to it."""
+class DriverHostProcess:
+    """A driver host in its own process, and the line to it."""
 
     def __init__(self, machine: Machine, clock: RealClock) -> None:
         self._machine, self._clock = machine, clock
         self._closed = False
-        self._bell = Bell()  # the same for whichever feeder there is
+        self._bell = Bell()  # the same for whichever driver host there is
         try:
             link = self._begin()
         except DriverError:
@@ -77,12 +77,12 @@ class FeederProcess:
             command = [
                 sys.executable,
                 "-m",
-                "app.compose.backends.feeder_process",
+                "app.compose.backends.driver_host_process",
                 str(theirs.fileno()),
                 repr(clock.zero),
                 str(self._bell.far.fileno()),
             ]
-            # A session of its own: Ctrl-C is for the control, which then ends the feeder in good order.
+            # A session of its own: Ctrl-C is for the control, which then ends the driver host in good order.
             self.process = subprocess.Popen(
                 command,
                 stdin=subprocess.PIPE,
@@ -103,7 +103,7 @@ class FeederProcess:
         return self._link
 
     def close(self) -> None:
-        """The feeder stops what is left and ends; one that is being started again, too."""
+        """The driver host stops what is left and ends; one that is being started again, too."""
         self._closed = True
         self._end()
         self._bell.close()
@@ -117,7 +117,7 @@ class FeederProcess:
             self.process.wait()
 
     def _first(self, sock: socket.socket) -> Message:
-        """The feeder's own first word: it is ready, or why not."""
+        """The driver host's own first word: it is ready, or why not."""
         inbox = Inbox()
         sock.settimeout(_START)
         try:
@@ -138,7 +138,7 @@ def beat(machine: Machine) -> float:
 
 
 def without_priority(period: float, late: float) -> str:
-    """What a feeder cannot promise whose trial has come so late, in words for the operator."""
+    """What a driver host cannot promise whose trial has come so late, in words for the operator."""
     template = (
         (
             "{cause}, a SYNC every {period} ms is not reliable, even though the SYNC arrived in "

@@ -8,11 +8,11 @@ from pathlib import Path
 
 import numpy as np
 
-from app.compose.backends.feeder_process import FeederProcess
+from app.compose.backends.driver_host_process import DriverHostProcess
 from app.compose.machine.machine_files import load_machine
 from core.faults import code_of
 from core.ports import Segments
-from drivers.feeder.feeder_ports import feeder_ports
+from drivers.driver_host.host_ports import host_ports
 from drivers.waiting import RealClock
 
 SPEED, CRUISE, UP = 20.0, 1.4, 0.02  # mm/s, s, s: 28.4 mm of X and as much of Z
@@ -21,8 +21,8 @@ TICK = 0.02
 
 def main(path: str) -> None:
     clock = RealClock()
-    feeder = FeederProcess(load_machine(Path(path)), clock)
-    ports = feeder_ports(feeder.line)
+    host = DriverHostProcess(load_machine(Path(path)), clock)
+    ports = host_ports(host.line)
     ports.axes.enable(True)
     ports.spindle.run(600.0)
     ports.io.write("coolant", True)
@@ -34,7 +34,7 @@ def main(path: str) -> None:
         v[:, axis] = [0.0, SPEED, SPEED]
         a[:, axis] = [SPEED / UP, 0.0, -SPEED / UP]
     ports.axes.splice(Segments(at + np.array([0.0, UP, UP + CRUISE]), np.array([UP, CRUISE, UP]), p, v, a))
-    sys.stdout.write(json.dumps({"feeder": feeder.process.pid, "warnings": list(ports.warnings)}) + "\n")
+    sys.stdout.write(json.dumps({"feeder": host.process.pid, "warnings": list(ports.warnings)}) + "\n")
     sys.stdout.flush()
     while True:
         sample = ports.axes.sample()
