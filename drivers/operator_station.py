@@ -278,3 +278,33 @@ def station_of(
 
 def _scaled(pot: Pot, fraction: float) -> float:
     return pot.low + (pot.high - pot.low) * fraction
+
+
+# --- hands at a station in another process ----------------------------------------------------------------
+
+
+def _hand(name: str) -> Callable[..., None]:
+    """Return the method of this name, which is used at the station later: nobody waits."""
+
+    def use(self: PostedHands, *values: object) -> None:
+        self.post(name, *values)
+
+    return use
+
+
+class PostedHands:
+    """Hands at a simulated station of another process; ``app.desk.station_hands.StationPanel`` explains them.
+
+    A subclass has ``post``, which sends what a hand does to that process.
+    """
+
+    def post(self, name: str, *values: object) -> None:
+        """Have the method of this name used at the station. Never waits."""
+        raise NotImplementedError
+
+    press_left, release_left = _hand("press_left"), _hand("release_left")
+    press_right, release_right = _hand("press_right"), _hand("release_right")
+    press_hold, release_hold = _hand("press_hold"), _hand("release_hold")
+    press_estop, release_estop = _hand("press_estop"), _hand("release_estop")
+    set_spindle_auto, set_spindle_pot = _hand("set_spindle_auto"), _hand("set_spindle_pot")
+    set_feed_pot, turn_handwheel = _hand("set_feed_pot"), _hand("turn_handwheel")

@@ -29,10 +29,10 @@ from app.programs.run_history import PartCounter, RunHistory
 from app.shopfloor.floor_reading import UNKNOWN, FloorReader
 from app.shopfloor.status_file import NAME, StatusFile, StatusKeeper, status_of
 from app.special.lamps_and_sound import DeskSounds
-from core.executor.recorder import Recorder
 from core.executor.snapshot import Snapshot
 from core.machine.machine_model import Machine
 from core.records.record import Channel, Record
+from core.records.recordings import Recordings
 from core.store.store_errors import StoreError
 from core.store.store_rows import Kind, utc_now
 
@@ -66,7 +66,7 @@ def furnish(
     own = own or data_folder() / "programs"
     sounds = DeskSounds(desk, persistence)
     desk.attach(sounds)
-    desk.hears = sounds.see
+    desk.frame_watchers.append(sounds.see)
     desk.attach_later(
         "app.special.special_functions.SpecialFunctions",
         partial(_special_functions, desk, machine, persistence, workshop, own, sounds),
@@ -114,7 +114,7 @@ def give_production(desk: Desk, machine: Machine, journal: Journal | None) -> No
 class RecordedSamples:
     """The recorder's ring, as the page reads it."""
 
-    recorder: Recorder
+    recorder: Recordings
 
     @property
     def channels(self) -> tuple[Channel, ...]:

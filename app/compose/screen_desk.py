@@ -5,12 +5,17 @@ from __future__ import annotations
 import gc
 import sys
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.compose.backends.backend_entry import NO_PRIORITY, Connected, has_inverter, played
 from app.compose.backends.connection import connect
+from app.compose.control.control_client import ControlClient, find_control
+from app.compose.control.control_events import ControlEvents
+from app.compose.control.control_start import StartedControl, start_control
+from app.compose.control.left_note import take_note
 from app.compose.desk_functions import furnish, give_production, give_scope, keep_status
 from app.compose.extra import drawing_endings, extras
 from app.compose.machine.accepted_machine import file_changes, guarded
@@ -38,6 +43,7 @@ from app.desk.persistence import Persistence
 from app.desk.programs.program_folder import ProgramFile, ProgramFolders
 from app.desk.programs.program_loading import LoadingSteps, ProgramLoader
 from app.desk.programs.start_watch import StartWatch
+from app.desk.station_hands import StationPanel
 from app.desk.status.alarm_log import KEPT, KINDS
 from app.desk.status.prompt_line import UNDER_WAY
 from app.desk.translation import tr
@@ -45,10 +51,10 @@ from app.offsets.mill_touch import MillTouch
 from app.offsets.offset_effect import Effect
 from core.access.access_table import Act
 from core.closing import ClosingStep
-from core.executor.commands import LeftInterrupted
+from core.executor.commands import Command, LeftInterrupted
 from core.executor.executor import Executor
 from core.executor.recorder import Recorder, recorded_of
-from core.executor.safety.watchdog import WATCHDOG, ExecutorThread, Watchdog
+from core.executor.safety.watchdog import WATCHDOG, ExecutorThread, ThreadWatch, Watchdog
 from core.executor.snapshot import Event, InterruptedJob, Snapshot
 from core.interpreter.shared.modal_state import Modal
 from core.language.source import Dialect, usual_ending
@@ -56,6 +62,7 @@ from core.machine.desk_tables import BackupTable
 from core.machine.machine_model import Machine
 from core.message import Message
 from core.ports import Clock, DriverError
+from core.records.recordings import Recordings
 from core.store.backup import problems as backup_problems
 from core.store.store_errors import StoreError
 from core.store.store_rows import EventRow
@@ -73,27 +80,71 @@ SUPERVISED = {
     "inverter": "INVERTER CONNECTION",
     "recorder": "SCOPE RECORDER",
     WATCHDOG: "CONTROL WATCHDOG",
+    "commands": "OPERATION OF THE CONTROL",
     **{name: what for extra in extras().values() for name, what in extra.threads.items()},
 }
+OWN_PROCESS = sys.platform == "linux"  # elsewhere the control runs on a thread of the screen's process
+CONTROL_CLOSES = 30.0  # s: as the executor and its drivers, and then the process is killed
 EXECUTOR_CLOSES = 12.0  # s: drives that come on are waited for, then the machine is halted
 STORE_CLOSES = 15.0  # s: a slow disk takes what waits in memory
 _OFTEN = (700, 10, 10)  # Python's usual: a collection stops every thread, so many short ones
 GIVE_WAY = 0.001  # seconds after which a worker that proves or draws lets the screen and the executor go on
 
 
-def build_desk(machine_file: str | None = None, offsets: Callable[[], Offsets] = stored_offsets) -> Desk:
-    """The desk on the machine that a file describes, its executor running. Close it with ``Desk.close``.
+def build_desk(
+    machine_file: str | None = None,
+    offsets: Callable[[], Offsets] = stored_offsets,
+    *,
+    own_process: bool = OWN_PROCESS,
+) -> Desk:
+    """The desk on the machine that a file describes, its control running. Close it with ``Desk.close``.
 
-    Raises CommandError for a bad machine file and for a machine that does not answer.
+    ``own_process``: the control runs in a process of its own. Raises CommandError for a bad machine file and
+    for a machine that does not answer.
     """
     sys.setswitchinterval(GIVE_WAY)
-    clock, journal = RealClock(), Journal.at_home()
-    desk, executor = desk_and_executor(machine_file, offsets, clock, journal, data_folder() / RECORDS)
-    thread, log, recorder = ExecutorThread(executor, clock), Log(), desk.recorder
-    assert recorder is not None
-    floor = _shop_floor(desk, executor, journal)
+    machine = read_machine(machine_file)
+    control = _begin_control(machine) if own_process else None
+    journal, log = Journal.at_home(goes_on=isinstance(control, ControlClient)), Log()
+    try:
+        remember_machine(machine_file, journal)
+        if control is None:
+            desk = _desk_on_thread(machine, offsets, journal)
+        else:
+            desk = _desk_on_process(machine, offsets, journal, control)
+    except BaseException:
+        journal.close()
+        log.close()
+        raise
+    floor = _shop_floor(desk, journal)
     file = ProgramFile(lambda: desk.session.now)
+    desk.closing.workers += [
+        ClosingStep("program-file", file.close),
+        *(ClosingStep(f"shop-floor-{number}", close) for number, close in enumerate(floor, 1)),
+    ]
+    desk.closing.ends += [
+        ClosingStep("store", partial(_close_store, journal), STORE_CLOSES),
+        ClosingStep("log", log.close),
+    ]
+    desk.differs, desk.saved_here = (lambda: file.differs), file.hurry
+    desk.not_kept, desk.waiting = (lambda: journal.trouble or log.trouble), (lambda: journal.held)
+    gc.freeze()  # modules and the like: collections need not look at them again
+    gc.set_threshold(*_OFTEN)
+    file.start()
+    return desk
 
+
+def _begin_control(machine: Machine) -> ControlClient | StartedControl:
+    """Find the control that a killed screen has left, or begin to start one."""
+    with as_command_error(DriverError):
+        return find_control(machine, data_folder()) or start_control(machine, data_folder())
+
+
+def _desk_on_thread(machine: Machine, offsets: Callable[[], Offsets], journal: Journal) -> Desk:
+    """The desk with its control on a thread of this process."""
+    clock = RealClock()
+    desk, executor, recorder = _desk_and_parts(machine, offsets, clock, journal, data_folder() / RECORDS)
+    thread = ExecutorThread(executor, clock)
     watchdog = Watchdog(thread, executor.halt, SUPERVISED, partial(_thread_ended, desk, journal))
     desk.closing.stops += [
         ClosingStep("watchdog", watchdog.end),  # what ends from now on ends in good order
@@ -101,24 +152,67 @@ def build_desk(machine_file: str | None = None, offsets: Callable[[], Offsets] =
     ]
     desk.closing.workers += [
         ClosingStep("watchdog", watchdog.close),
-        ClosingStep("program-file", file.close),
         ClosingStep("recorder", recorder.close),
-        *(ClosingStep(f"shop-floor-{number}", close) for number, close in enumerate(floor, 1)),
-    ]
-    desk.closing.ends += [
-        ClosingStep("store", partial(_close_store, journal), STORE_CLOSES),
-        ClosingStep("log", log.close),
     ]
     executor.stirs = lambda: desk.stirs()  # noqa: PLW0108  the window gives it later
-    desk.differs, desk.saved_here = (lambda: file.differs), file.hurry
-    desk.not_kept, desk.waiting = (lambda: journal.trouble or log.trouble), (lambda: journal.held)
-    gc.freeze()  # modules and the like: collections need not look at them again
-    gc.set_threshold(*_OFTEN)
     thread.start()
     recorder.start()
-    file.start()
     watchdog.start()
     return desk
+
+
+def _desk_on_process(
+    machine: Machine,
+    offsets: Callable[[], Offsets],
+    journal: Journal,
+    control: ControlClient | StartedControl,
+) -> Desk:
+    """The desk with its control in a process of its own."""
+    if isinstance(control, ControlClient):
+        client = control
+        journal.note(client.hello.noted)
+        journal.go_on(client.snapshot)
+    else:
+        with as_command_error(DriverError):
+            client = ControlClient(control, data_folder())
+        _tell_what_was_left(client, journal)
+    events = _Events(client.clock, journal)
+    used = DeskControl(
+        client.post,
+        lambda: client.snapshot,
+        client.hands,
+        client.set_input if client.hello.inputs else None,
+        client.hello.warnings,
+        client.records,
+    )
+    desk = _desk_of(machine, used, events, offsets)
+    threads = ThreadWatch(SUPERVISED, partial(_thread_ended, desk, journal))
+    desk.closing.stops += [
+        ClosingStep("threads", threads.end),  # what ends from now on ends in good order
+        ClosingStep("control", client.close, CONTROL_CLOSES),
+    ]
+    desk.frame_watchers.append(client.see)
+    client.begin(
+        ControlEvents(
+            events.hear,
+            journal.note,
+            partial(_thread_ended, desk, journal),
+            lambda: desk.stirs(),  # noqa: PLW0108  the window gives it later
+        )
+    )
+    threads.start()
+    return desk
+
+
+def _tell_what_was_left(client: ControlClient, journal: Journal) -> None:
+    """Tell a new control which job the one before has left, in the store or beside it."""
+    known, left = take_note(data_folder())
+    if known:
+        journal.note(left)
+    else:
+        left = journal.left
+    if left is not None:
+        client.post(LeftInterrupted(left))
 
 
 def _close_store(journal: Journal) -> None:
@@ -135,7 +229,7 @@ def _thread_ended(desk: Desk, journal: Journal, name: str) -> None:
     journal.hear(Event(desk.snapshot().t, "warning", text))
 
 
-def _shop_floor(desk: Desk, executor: Executor, journal: Journal) -> list[Callable[[], None]]:
+def _shop_floor(desk: Desk, journal: Journal) -> list[Callable[[], None]]:
     """Start the status file, the daily backup, and what reports to the shop floor or to other desks.
 
     What prevents it goes to the prompt line and to the log. A folder that another TurnDesk has, as its store
@@ -144,15 +238,12 @@ def _shop_floor(desk: Desk, executor: Executor, journal: Journal) -> list[Callab
 
     def tell(why: str) -> None:
         desk.say(tr(Message("NO SHOP-FLOOR DATA: {why}", why=why)))
-        journal.hear(Event(executor.snapshot.t, "warning", why))
-
-    def snapshot() -> Snapshot:
-        return executor.snapshot
+        journal.hear(Event(desk.snapshot().t, "warning", why))
 
     assert desk.lathe is not None
     open_ones = list[Callable[[], None]]()
     if not journal.trouble or journal.waiting:
-        open_ones.append(keep_status(desk.lathe, snapshot, data_folder()))
+        open_ones.append(keep_status(desk.lathe, desk.snapshot, data_folder()))
         open_ones.append(_daily_backup(desk, desk.lathe, journal))
     started = [extra.start(desk, journal, tell) for extra in extras().values()]
     open_ones += [close for close in started if close is not None]
@@ -199,9 +290,19 @@ def desk_and_executor(
     machine = read_machine(machine_file)
     if journal is not None:
         remember_machine(machine_file, journal)
+    return _desk_and_parts(machine, offsets, clock, journal, records)[:2]
+
+
+def _desk_and_parts(
+    machine: Machine,
+    offsets: Callable[[], Offsets],
+    clock: Clock,
+    journal: Journal | None,
+    records: Path | None,
+) -> tuple[Desk, Executor, Recorder]:
     connected = _connected(machine, clock)
     recorder = Recorder(recorded_of(machine, connected.ports), records)
-    events = _Events(clock, journal, recorder)
+    events = _Events(clock, journal, recorder.note)
     executor = Executor(
         machine,
         connected.ports,
@@ -211,27 +312,42 @@ def desk_and_executor(
         tell=recorder.tell,
         checks_starts=machine.kind == "lathe",
     )
-    desk = _desk(machine, executor, connected, events, offsets)
-    events.desk, desk.recorder = desk, recorder
+    control = DeskControl(
+        executor.post,
+        lambda: executor.snapshot,
+        connected.panel,
+        connected.set_input,
+        connected.ports.warnings,
+        recorder,
+    )
+    desk = _desk_of(machine, control, events, offsets)
+    desk.closing.shut = connected.close
+    return desk, executor, recorder
+
+
+def _desk_of(machine: Machine, control: DeskControl, events: _Events, offsets: Callable[[], Offsets]) -> Desk:
+    """The desk, and what it has to say at its start."""
+    journal = events.journal
+    desk = _desk(machine, control, events, offsets)
+    events.desk, desk.recorder = desk, control.recordings
     give_scope(desk)
     if journal is not None:
         desk.log.recall(_stops(journal))
         journal.when_late(partial(_came_late, desk, journal))
-    desk.closing.shut = connected.close
     for warning in (
-        *connected.ports.warnings,
+        *control.warnings,
         *(Message("machine file: {item}", item=each) for each in desk.changes.changes),
     ):
         events.say("warning", warning)
     if journal is not None:
         _tell_damage(desk, journal, partial(events.say, "warning"))
-    if recorder.trouble:
-        events.say("warning", recorder.trouble)
-    if any(each.startswith(NO_PRIORITY) for each in connected.ports.warnings):
+    if control.recordings.trouble:
+        events.say("warning", control.recordings.trouble)
+    if any(each.startswith(NO_PRIORITY) for each in control.warnings):
         desk.say(tr("NO REAL-TIME PRIORITY: AXES STOP IF THE COMPUTER IS 10 MS LATE"))
     if desk.changes.barred:
         desk.say(desk.changes.barred)
-    return desk, executor
+    return desk
 
 
 def _came_late(desk: Desk, journal: Journal) -> None:
@@ -248,16 +364,34 @@ def _tell_damage(desk: Desk, journal: Journal, log: Callable[[str], None]) -> No
         desk.say(tr(Message("CHECK: {what}", what=damage)))
 
 
+@dataclass(frozen=True, slots=True)
+class DeskControl:
+    """The control as the desk uses it, whether it runs in this process or in one of its own.
+
+    ``panel`` is the operator station on the screen, None where the machine has its own. ``set_input``
+    switches an input of a simulated machine.
+    """
+
+    post: Callable[[Command], None]
+    snapshot: Callable[[], Snapshot]
+    panel: StationPanel | None
+    set_input: Callable[[str, bool], None] | None
+    warnings: Sequence[str]
+    recordings: Recordings
+
+
 class _Events:
     """What happens is heard by the desk, once there is one, and by the journal, where there is one."""
 
-    def __init__(self, clock: Clock, journal: Journal | None, recorder: Recorder) -> None:
-        self.journal, self._recorder = journal, recorder
+    def __init__(
+        self, clock: Clock, journal: Journal | None, record: Callable[[Event], Event] = lambda event: event
+    ) -> None:
+        self.journal, self._record = journal, record
         self.desk: Desk | None = None
         self._clock = clock
 
     def hear(self, event: Event) -> None:
-        event = self._recorder.note(event)
+        event = self._record(event)
         if self.desk is not None:
             self.desk.hear(event)
         if self.journal is not None:
@@ -270,8 +404,7 @@ class _Events:
 
 def _desk(
     machine: Machine,
-    executor: Executor,
-    connected: Connected,
+    control: DeskControl,
     events: _Events,
     offsets: Callable[[], Offsets],
 ) -> Desk:
@@ -280,23 +413,23 @@ def _desk(
     keep = journal or Persistence()
 
     def left() -> Modal:
-        return executor.snapshot.modal
+        return control.snapshot().modal
 
     kept = partial(kept_part, keep.setting)
     changed = file_changes(machine, keep, partial(say, "machine"))
     desk = Desk(
-        post=guarded(executor.post, changed, partial(say, "refused")),
-        snapshot=lambda: executor.snapshot,
+        post=guarded(control.post, changed, partial(say, "refused")),
+        snapshot=control.snapshot,
         session=ProgramLoader(
             workshop(machine, offsets, journal, left=left, shapes=shapes_at_hand, kept=kept),
-            executor.post,
+            control.post,
         ),
         program_folders=ProgramFolders((data_folder() / "programs", samples()), drawing_endings()),
-        station=connected.panel,
+        station=control.panel,
         two_hand=machine.interlocks.two_hand_start,
         with_c=machine.c_enabled,
         lathe=machine,
-        set_input=connected.set_input,
+        set_input=control.set_input,
         one_hand=played(machine) and not has_inverter(machine),
         machine=Message("{machine} · {machine2}", machine=machine.name, machine2=_drives(machine)),
         changes=changed,

@@ -51,8 +51,8 @@ from core.message import Message
 from core.store.store_errors import StoreError
 
 if TYPE_CHECKING:
-    from core.executor.recorder import Recorder
     from core.machine.machine_model import Machine
+    from core.records.recordings import Recordings
 
 SWITCHES = frozenset({"single_block", "optional_stop", "cycle_repeat", "no_count"})
 SILENT = "CONTROL SILENT"
@@ -91,7 +91,7 @@ class Desk:
     counter: PartCounter = field(default_factory=PartCounter)
     record: RunHistory = field(default_factory=RunHistory)
     open_record: Callable[[str], None] = field(default=lambda _name: None)  # of an alarm, in the scope
-    recorder: Recorder | None = None  # of the scope: the last minutes of samples
+    recorder: Recordings | None = None  # of the scope: the last minutes of samples
     restoring: bool = False  # a backup takes the place of what is kept
     book: OffsetBook = field(default_factory=lambda: OffsetBook(locked=NONE_KEPT))
     changes: FileChanges = field(default_factory=FileChanges)  # of the machine file, to be accepted
@@ -106,7 +106,7 @@ class Desk:
     rebuilding: ProgramRenewal = field(init=False)
     first_job: FirstJob = field(default_factory=FirstJob)
     own_starts: list[OwnStart] = field(default_factory=list)
-    hears: Callable[[Snapshot], None] = lambda _snapshot: None  # the sounds
+    frame_watchers: list[Callable[[Snapshot], None]] = field(default_factory=list)  # called once a frame
     offered: Callable[[Snapshot], NoticeRow | None] = lambda _snapshot: None  # between cycles: the next job
     first_move: StartWatch | None = None  # what is known of it
     program_keys: dict[str, ProgramKey] = field(default_factory=dict)  # keys of features in the program list
@@ -283,7 +283,8 @@ class Desk:
             self.record.see(snapshot, loaded)
             for watcher in self.watches:
                 watcher.see(snapshot, loaded)
-        self.hears(snapshot)
+        for watch in self.frame_watchers:
+            watch(snapshot)
         self._tell_part(snapshot, loaded)
         if self.settings.now.first_job:
             self.first_job.see(snapshot, loaded, self.counter.count)

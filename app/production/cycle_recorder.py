@@ -72,6 +72,13 @@ class CycleRecorder:
                 self._end_stop(event, store)
                 self._begin_stop(event, BETWEEN, named=True)
 
+    def go_on(self, program: str, t: float, store: Store) -> None:
+        """Record the rest of a part that was begun before this process; it counts as restarted."""
+        self._program = Path(program).name
+        self._begin(Event(t, "start", program), store)
+        assert self._cycle is not None
+        self._cycle.restarted = True
+
     # --- cycles -------------------------------------------------------------------------------------------
 
     def _key(self) -> tuple[str, str]:

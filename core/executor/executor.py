@@ -53,7 +53,8 @@ TICK = 0.01  # s from the end of one to the beginning of the next
 _OFF_BY_ESTOP = frozenset({"power-lost", "spindle-off"})  # of what its chain switches off by itself
 _STALL = 0.2  # s between two ticks that tell of a stalled host
 _STALE = 0.5  # s after which nobody expects a press to move the machine any more
-_STARTS = (CycleStart, DriveTest, EnableDrives, Home, Jog, JogStep, Touch, Wheel)
+STARTS = (CycleStart, DriveTest, EnableDrives, Home, Jog, JogStep, Touch, Wheel)
+"""Commands that begin a motion, or switch the drives on."""
 _WAITED_FOR = (EnableDrives, Home, Reset)  # a driver answers them when its drives have obeyed
 _WORTH_AN_ENTRY = 0.1  # change of the feed override that is worth an entry in the log
 _COMMANDS = 100  # looked at in one tick
@@ -204,9 +205,12 @@ class Executor:
         """The drivers' own way to stop everything, which any thread may use."""
         return self._ports.halt
 
-    def post(self, command: Command) -> None:
-        """Ask for something; it is looked at first thing in the next tick. Never waits."""
-        self._commands.put((self._ports.clock.now(), command))
+    def post(self, command: Command, at: float | None = None) -> None:
+        """Ask for something; it is looked at first thing in the next tick. Never waits.
+
+        ``at`` is when it was asked for, s of the machine's clock; None: now.
+        """
+        self._commands.put((self._ports.clock.now() if at is None else at, command))
         self.wake()
 
     def wake(self) -> None:
@@ -383,7 +387,7 @@ class Executor:
             except queue.Empty:
                 return
             self._rest.over()  # whatever it does is shown at once
-            if isinstance(command, _STARTS) and self._context.now - posted > _STALE:
+            if isinstance(command, STARTS) and self._context.now - posted > _STALE:
                 self._context.log(
                     "refused",
                     Message(

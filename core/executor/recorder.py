@@ -10,7 +10,7 @@ import logging
 import threading
 import time
 from collections import deque
-from collections.abc import Collection, Iterable
+from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
@@ -22,9 +22,10 @@ from core.executor.snapshot import Event, Snapshot, State, Tick
 from core.machine.machine_model import Machine
 from core.message import Message
 from core.ports import FloatArray, MachinePorts, Unknown
-from core.records.record import Record, RecordError
-from core.records.record_file import ENDING, open_record, save_record
+from core.records.record import RecordError
+from core.records.record_file import ENDING, save_record
 from core.records.record_ring import TICKS, Recorded, Ring, Rows, bits_of
+from core.records.recordings import KEPT, Recordings
 from core.records.ring_file import NOW, RingFile, new_ring
 
 _log = logging.getLogger(__name__)
@@ -37,7 +38,6 @@ _MOST = 12_000  # ticks that wait for a recorder that does not come: two minutes
 BEFORE, BEHIND = 10.0, 2.0  # s before an alarm and after it that are kept with it
 _SOON = 0.2  # s; a machine that stands is waited for so long
 ENDS = 3.0  # s that closing waits for the thread: a disk may hang
-KEPT = 50  # records of alarms
 _FROZEN = frozenset({"alarm", "estop"})  # kinds of events
 _STATES = {state: float(i) for i, state in enumerate(State)}
 _STANDS = 0.01  # mm/s
@@ -64,17 +64,22 @@ def recorded_of(machine: Machine, ports: MachinePorts) -> Recorded:
     )
 
 
-class Recorder:
+class Recorder(Recordings):
     """``tell`` and ``note`` are the executor's; ``latest`` and ``between`` may be used from any thread.
 
     ``folder`` is where the ring's file ``name`` and the records of alarms lie, None: nothing is written.
-    ``trouble`` says why the file is not written; the record is then in memory alone.
+    ``trouble`` says why the file is not written; the record is then in memory alone. ``memory`` is shared
+    with another process that reads the ring.
     """
 
-    def __init__(self, recorded: Recorded, folder: Path | None = None, name: str = NOW) -> None:
-        self.ring = Ring.of(recorded)
-        self.folder = folder
-        self.trouble = ""
+    def __init__(
+        self,
+        recorded: Recorded,
+        folder: Path | None = None,
+        name: str = NOW,
+        memory: memoryview | None = None,
+    ) -> None:
+        super().__init__(Ring.of(recorded, memory), folder)
         self._told: deque[Tick] = deque(maxlen=_MOST)
         self._noted: deque[_Frozen] = deque()
         self._freezing: _Frozen | None = None
@@ -120,28 +125,9 @@ class Recorder:
             return named
         return replace(event, record=self._name)
 
-    # --- the screen -------------------------------------------------------------------------------------
-
-    def latest(self, since: float, names: Collection[str] | None = None) -> Record:
-        """What was sampled after ``since``, seconds of the clock; ``names``: these channels alone."""
-        return self.ring.latest(since, names)
-
-    def between(self, begin: float, end: float, names: Collection[str] | None = None) -> Record:
-        """The samples from ``begin`` up to and with ``end``."""
-        return self.ring.between(begin, end, names)
-
-    def alarm_record(self, name: str) -> Record:
-        """The record of an alarm, by the name that its entry in the log has; not for the screen's thread.
-
-        Raises RecordError while it is still being written, and for one that is no longer kept.
-        """
-        if name in {self._name, self._writing} - {""}:
-            raise RecordError("the record of this alarm is still being saved; try again in 2 s")
-        if self.folder is None or Path(name).name != name or not (self.folder / name).exists():
-            raise RecordError(
-                Message("this alarm record was deleted; only the newest {saved} are stored", saved=KEPT)
-            )
-        return open_record(self.folder / name)
+    def is_saving(self, name: str) -> bool:
+        """Return whether the record of this alarm is still to be written."""
+        return name in {self._name, self._writing} - {""}
 
     # --- the recorder's thread --------------------------------------------------------------------------
 

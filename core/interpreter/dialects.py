@@ -148,6 +148,18 @@ class ReadProgram:
         self.source = source
         self._strict = strict
 
+    def __reduce__(self) -> tuple[object, ...]:
+        """Return how another process makes it: from the text, which it reads again."""
+        return _unread, (self.source, self._strict)
+
+    def read(self) -> None:
+        """Read the text now, so that the first pass need not."""
+        _ = self._begin
+
+    def is_same(self, other: ReadProgram) -> bool:
+        """Return whether the other one is of the same text, read in the same way."""
+        return self.source == other.source and self._strict == other._strict
+
     def begin(self, setup: Setup) -> Interpretation:
         """One more pass under these circumstances."""
         dialect = self.source.dialect
@@ -177,6 +189,10 @@ class ReadProgram:
     @cached_property
     def _begin(self) -> PassFactory:
         return _READERS[self.source.dialect](self.source, self._strict)
+
+
+def _unread(source: Source, strict: bool) -> ReadProgram:
+    return ReadProgram(source, strict=strict)
 
 
 def interpretation(source: Source, setup: Setup) -> Interpretation:

@@ -58,6 +58,10 @@ class Source:
     said: Dialect | None = None
     subprograms: tuple[Source, ...] = ()
 
+    def __reduce__(self) -> tuple[object, ...]:
+        """Return how another process makes it: without the lines, which it splits itself."""
+        return Source, (self.name, self.text, self.said, self.subprograms)
+
     @property
     def dialect(self) -> Dialect:
         """The language it is written in."""

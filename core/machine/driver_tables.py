@@ -54,6 +54,7 @@ class DriverReading:
         refreshed = {name: values.number(f"io.out.{name}.refresh_ms") for name in outputs}
         return Hardware(
             feeder=values.flag("machine.feeder"),
+            continues_alone=values.text("machine.screen_lost") == "continue",
             spindle_driver=values.text("spindle.driver"),
             tables={table.path: table.model(file) for table in self._tables},
             analog={

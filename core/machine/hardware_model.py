@@ -69,6 +69,7 @@ class Hardware:
     """Everything about wires."""
 
     feeder: bool = False  # the drivers run in a process of their own
+    continues_alone: bool = False  # a cut goes on while the screen does not answer
     spindle_driver: str = "sim"  # sim, cia402, vfd or grblhal
     tables: Mapping[str, object] = field(default_factory=dict)  # of the drivers, by path
     analog: Mapping[str, AnalogModel] = field(default_factory=dict)

@@ -58,6 +58,13 @@ class General:
         meaning='true: the drivers run in a separate process, the driver host. "canopen" and "hal" always '
         'use it, "grblhal" never.',
     )
+    screen_lost: str = file_key(
+        default="hold",
+        choices=("hold", "continue"),
+        meaning="Reaction to a screen that has not answered for 3 s, or that was killed, during a program. "
+        '"hold": feed hold. "continue": the part under way is finished, and no other part begins until the '
+        "screen is back.",
+    )
     x_is: str = file_key(
         default="diameter",
         choices=("radius", "diameter"),

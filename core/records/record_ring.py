@@ -68,6 +68,17 @@ class Recorded:
         return 1 + len(TICK_FIGURES) + _words(self.inputs) + _words(self.outputs)
 
     @property
+    def rooms(self) -> tuple[int, int]:
+        """How many samples and how many ticks are kept."""
+        return max(2, round(self.lasts * self.rate)), max(2, round(self.lasts * TICKS))
+
+    @property
+    def ring_bytes(self) -> int:
+        """Memory that the ring needs."""
+        samples, ticks = self.rooms
+        return bytes_of(samples, self.sample_width) + bytes_of(ticks, self.tick_width)
+
+    @property
     def about(self) -> dict[str, str]:
         """In words, for a record."""
         return {"machine": self.machine, "states": "|".join(self.states)}
@@ -90,12 +101,35 @@ def bits_of(names: tuple[str, ...], on: Collection[str]) -> list[float]:
 
 
 class Rows:
-    """The last rows of one kind; one thread writes, any reads without a lock. Column 0 is the time."""
+    """The last rows of one kind; one thread writes, any reads without a lock. Column 0 is the time.
 
-    def __init__(self, room: int, width: int) -> None:
+    ``memory`` is where they lie, of ``bytes_of(room, width)`` bytes: another process may read what lies in
+    memory that both share.
+    """
+
+    def __init__(self, room: int, width: int, memory: memoryview | None = None) -> None:
         self.room = room
-        self.data: FloatArray = np.zeros((room, width + 1))  # and the row's number
-        self.begun = self.whole = 0
+        figures = np.zeros(bytes_of(room, width) // 8) if memory is None else np.frombuffer(memory)
+        self._counts = figures[:2].view(np.int64)
+        self.data: FloatArray = figures[2:].reshape(room, width + 1)  # and the row's number
+
+    @property
+    def begun(self) -> int:
+        """Rows of which writing has begun."""
+        return int(self._counts[0])
+
+    @begun.setter
+    def begun(self, count: int) -> None:
+        self._counts[0] = count
+
+    @property
+    def whole(self) -> int:
+        """Rows that are written."""
+        return int(self._counts[1])
+
+    @whole.setter
+    def whole(self, count: int) -> None:
+        self._counts[1] = count
 
     def write(self, rows: FloatArray) -> list[tuple[int, FloatArray]]:
         """Append; returns what has become which slots, for the file."""
@@ -143,6 +177,11 @@ class Rows:
         return float(self.data[max(0, self.begun - self.room) % self.room, 0]) if self.whole else np.inf
 
 
+def bytes_of(room: int, width: int) -> int:
+    """Return how much memory ``Rows`` of this size need."""
+    return 8 * (2 + room * (width + 1))
+
+
 def sound(rows: FloatArray, first: int) -> FloatArray:
     """Rows that are whole: numbered from ``first`` on, each later than the last. The number is taken off."""
     if not len(rows):
@@ -165,12 +204,14 @@ class Ring:
     ticks: Rows
 
     @classmethod
-    def of(cls, recorded: Recorded) -> Ring:
-        """An empty one."""
+    def of(cls, recorded: Recorded, memory: memoryview | None = None) -> Ring:
+        """Return the ring in this memory of ``recorded.ring_bytes`` bytes, else an empty one of its own."""
+        room, ticks = recorded.rooms
+        cut = bytes_of(room, recorded.sample_width)
         return cls(
             recorded,
-            Rows(max(2, round(recorded.lasts * recorded.rate)), recorded.sample_width),
-            Rows(max(2, round(recorded.lasts * TICKS)), recorded.tick_width),
+            Rows(room, recorded.sample_width, memory[:cut] if memory is not None else None),
+            Rows(ticks, recorded.tick_width, memory[cut:] if memory is not None else None),
         )
 
     def latest(self, since: float, names: Collection[str] | None = None) -> Record:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -31,6 +31,7 @@ from drivers.driver_host.host_messages import (
     rows,
     texts,
 )
+from drivers.operator_station import PostedHands
 from drivers.waiting import Bell
 
 
@@ -315,27 +316,11 @@ def _flags(value: object) -> dict[str, bool]:
 # --- The hands at a station that lives in the driver host: the simulated one, or the one on the screen.
 
 
-def _hand(name: str) -> Callable[..., None]:
-    """The method of this name at that station: it goes out with the executor's next look, nobody waits."""
-
-    def use(self: HostHands, *values: object) -> None:
-        self.post(name, *values)
-
-    return use
-
-
-class HostHands:
+class HostHands(PostedHands):
     """Any thread may act; what an act means stands at ``app.desk.station_hands.StationPanel``."""
 
     def __init__(self, line: Line) -> None:
         self._line = line
-
-    press_left, release_left = _hand("press_left"), _hand("release_left")
-    press_right, release_right = _hand("press_right"), _hand("release_right")
-    press_hold, release_hold = _hand("press_hold"), _hand("release_hold")
-    press_estop, release_estop = _hand("press_estop"), _hand("release_estop")
-    set_spindle_auto, set_spindle_pot = _hand("set_spindle_auto"), _hand("set_spindle_pot")
-    set_feed_pot, turn_handwheel = _hand("set_feed_pot"), _hand("turn_handwheel")
 
     def set_input(self, name: str, on: bool) -> None:
         """Make an input of a simulated machine true or false, at once. Raises DriverError."""

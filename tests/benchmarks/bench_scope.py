@@ -211,7 +211,7 @@ def _on_a_run(home: Path, *, rested: bool = True) -> tuple[Bench, Recorder]:
         bench.until(lambda: bench.window.ahead is not None and bench.window.ahead.done)
     bench.start()
     recorder = bench.desk.recorder
-    assert recorder is not None
+    assert isinstance(recorder, Recorder)
     return bench, recorder
 
 

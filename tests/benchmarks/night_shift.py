@@ -23,6 +23,7 @@ from app.production.parts_book import PartsBook
 from app.production.parts_watch import PartsWatch
 from app.programs.whole_file import write_whole
 from core.executor.executor import Executor
+from core.executor.recorder import Recorder
 from core.executor.snapshot import Alarm, Snapshot, State
 from core.store.store import Store
 from drivers.simulators.plant_hands import PlantHands
@@ -182,7 +183,7 @@ class NightShift:
         self._ticks += 1
         if self._ticks % FRAME == 0:
             self.frame()
-        if self._ticks % DRAIN == 0 and self.desk.recorder is not None:
+        if self._ticks % DRAIN == 0 and isinstance(self.desk.recorder, Recorder):
             self.desk.recorder.drain()
 
     def frame(self) -> None:
@@ -229,7 +230,7 @@ def night_shift() -> Iterator[NightShift]:
         yield NightShift(desk, executor, clock, journal)
     finally:
         executor.shut()
-        if desk.recorder is not None:
+        if isinstance(desk.recorder, Recorder):
             desk.recorder.close()
         desk.close()
         journal.close()

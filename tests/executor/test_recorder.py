@@ -14,12 +14,13 @@ import pytest
 from app.compose.machine.machine_files import load_machine
 from core.executor.commands import CycleStart, EnableDrives
 from core.executor.executor import Executor
-from core.executor.recorder import KEPT, Recorder, recorded_of, rotate
+from core.executor.recorder import Recorder, recorded_of, rotate
 from core.executor.snapshot import Event, State, Tick
 from core.machine.hardware_model import AnalogModel
 from core.ports import ALL_UNKNOWN, DriverError, FloatArray, SampleSource, Unknown
 from core.records.record import RecordError
 from core.records.record_file import open_record
+from core.records.recordings import KEPT
 from core.records.ring_file import NOW, read_ring
 from tests.executor.rig import FINE, INCH, Rig
 from tests.texts import pattern

@@ -52,9 +52,24 @@ class Process:
         return {pid for pid in _alive() if mark in _environment(pid)}
 
     def host(self) -> int:
-        """The one process that it has started; what is just being begun looks like who begins it."""
-        until(lambda: len(self.family()) == 2, self.family)
-        (pid,) = self.family() - {self.popen.pid}
+        """Its driver host."""
+        return self._one_of("driver_host_process")
+
+    def control(self) -> int:
+        """The process of its control."""
+        return self._one_of("control_process")
+
+    def kill_all(self) -> None:
+        """As a computer that runs out of memory does it: the screen and its control, not the driver host."""
+        os.kill(self.control(), signal.SIGKILL)
+        self.kill()
+
+    def _one_of(self, module: str) -> int:
+        def found() -> set[int]:
+            return {pid for pid in self.family() if any(module.encode() in word for word in _words(pid))}
+
+        until(lambda: len(found()) == 1, self.family)
+        (pid,) = found()
         return pid
 
 
@@ -93,7 +108,15 @@ def _alive() -> Iterator[int]:
 
 
 def _environment(pid: int) -> list[bytes]:
+    return _strings(pid, "environ")
+
+
+def _words(pid: int) -> list[bytes]:
+    return _strings(pid, "cmdline")
+
+
+def _strings(pid: int, name: str) -> list[bytes]:
     try:
-        return Path(f"/proc/{pid}/environ").read_bytes().split(b"\0")
+        return Path(f"/proc/{pid}/{name}").read_bytes().split(b"\0")
     except OSError:
         return []

@@ -1,6 +1,7 @@
 """An operator in a process of his own: the real window, driven by keys, and he tells what he sees.
 
-``python -m tests.killed.operator MACHINE PROGRAM``: types tool 9's offset, makes parts until he is killed.
+``python -m tests.killed.operator MACHINE PROGRAM [--again|--idle]``: types tool 9's offset, makes parts
+until he is killed. ``--again``: goes on with a program that the control has kept. ``--idle``: makes none.
 """
 
 from __future__ import annotations
@@ -8,7 +9,7 @@ from __future__ import annotations
 import json
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from PySide6.QtCore import Qt, QTimer
 from PySide6.QtTest import QTest
@@ -26,7 +27,8 @@ Key = Qt.Key
 class Operator:
     """Goes on a step whenever he sees what it waits for; a ``False`` is that he does not yet."""
 
-    def __init__(self) -> None:
+    def __init__(self, words: Sequence[str]) -> None:
+        self._again, self._idle = "--again" in words, "--idle" in words
         self._steps = self._day()
         self._told: dict[str, object] = {}
 
@@ -39,24 +41,41 @@ class Operator:
     def _day(self) -> Iterator[bool]:
         while not (self._windows() and self._windows()[0].frame):
             yield False
-        while self._frame.desk.session.now.picture is None or self._state is not State.DISABLED:
+        if self._again:  # the control goes on from before
+            yield from self._until_drawn()
+            yield from self._press_palms()
+        else:
+            yield from self._switch_on()
+        while not self._idle:
+            if self._asked:
+                self._key(Key.Key_Y)  # he has read which job was interrupted, and means to begin anew
+                yield from self._wait(1.2)  # an answer is no start: he looks before his hands come down
+            elif self._state is State.IDLE and self._checked:
+                yield from self._press_palms()
+            yield True
+        while True:
+            yield False
+
+    def _until_drawn(self) -> Iterator[bool]:
+        while self._frame.desk.session.now.picture is None:
+            yield False
+
+    def _switch_on(self) -> Iterator[bool]:
+        yield from self._until_drawn()
+        while self._state is not State.DISABLED:
             yield False
         self._key(Key.Key_D)
         while self._state is not State.IDLE:
             yield False
         yield from self._set_tool_nine()
-        while True:
-            if self._asked:
-                self._key(Key.Key_Y)  # he has read which job was interrupted, and means to begin anew
-                yield from self._wait(1.2)  # an answer is no start: he looks before his hands come down
-            elif self._state is State.IDLE and self._checked:
-                for key in (Key.Key_F11, Key.Key_F12):
-                    QTest.keyPress(self._window, key)
-                yield True
-                for key in (Key.Key_F11, Key.Key_F12):
-                    QTest.keyRelease(self._window, key)
-                yield from self._wait(0.6)  # the relay of the two buttons wants them up
-            yield True
+
+    def _press_palms(self) -> Iterator[bool]:
+        for key in (Key.Key_F11, Key.Key_F12):
+            QTest.keyPress(self._window, key)
+        yield True
+        for key in (Key.Key_F11, Key.Key_F12):
+            QTest.keyRelease(self._window, key)
+        yield from self._wait(0.6)  # the relay of the two buttons wants them up
 
     @staticmethod
     def _wait(seconds: float) -> Iterator[bool]:
@@ -137,8 +156,8 @@ class Operator:
         QTest.keyClick(self._focus, key)
 
 
-def main(machine: str, program: str) -> int:
-    operator = Operator()  # Qt alone would let it go
+def main(machine: str, program: str, *words: str) -> int:
+    operator = Operator(words)  # Qt alone would let it go
     QTimer.singleShot(LOOK, operator.look)
     return run_screen(machine=machine, program=program)
 

@@ -90,7 +90,10 @@ def test_a_killed_control_stops_on_the_path_with_everything_off(
     with process(home, *words(command, machine, tmp_path)) as control:
         moving(shop, control)
         off: list[float] = []
-        control.kill()
+        if command is SCREEN:
+            control.kill_all()
+        else:
+            control.kill()
 
         def gone() -> bool:
             off.append(abs(shop.place[0] - shop.place[1]))

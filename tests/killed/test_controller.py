@@ -66,7 +66,7 @@ def test_a_killed_control_leaves_a_controller_that_ends_what_it_has(
             return bool(control.lines) and int(str(control.lines[-1]["x"])) >= 4
 
         until(moving, lambda: control.lines[-3:])
-        control.kill()
+        control.kill_all()
         assert not control.family()  # nobody between the control and its controller
     said = [""]
 

@@ -1,4 +1,4 @@
-"""kill -9 of the screen, which is the control: what stops, what is kept; the next start works at once."""
+"""kill -9 of the screen, of its control, and of both: what stops, what is kept; the next start works."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ def between_start_and_end(home: Path) -> bool:
         return store.parts("part.nc") >= 1 and [run.outcome for run in store.runs()] == [""]
 
 
-def test_a_killed_screen_keeps_what_was_entered_and_leaves_nobody(
+def test_a_killed_screen_and_control_keep_what_was_entered_and_leave_nobody(
     files: tuple[str, str], tmp_path: Path
 ) -> None:
     home = tmp_path / "home"
@@ -83,7 +83,7 @@ def test_a_killed_screen_keeps_what_was_entered_and_leaves_nobody(
         assert desk.host()
         until(lambda: between_start_and_end(home), lambda: desk.lines[-3:])  # written behind the screen
         made = kept_parts(home)
-        desk.kill()
+        desk.kill_all()
         until(lambda: not desk.family(), lambda: "the driver host has not ended")
     assert parts_in(read_ring(home / "records" / NOW)) >= made
     with Store.open(home) as store:
@@ -97,7 +97,7 @@ def test_a_killed_screen_keeps_what_was_entered_and_leaves_nobody(
     with process(home, OPERATOR, *files) as again:
         cutting(again, 1)
         assert again.lines[-1]["alarms"] == []
-        again.kill()
+        again.kill_all()
         assert parts_in(read_ring(home / "records" / LAST)) >= made  # of the control before
         until(lambda: not again.family(), lambda: "the driver host has not ended")
     with Store.open(home, read_only=True) as store:
@@ -125,4 +125,46 @@ def test_a_killed_driver_host_stops_the_program_and_says_so(files: tuple[str, st
         until(lambda: desk.says("state", "ALARM"), lambda: desk.lines[-3:])
         assert CATALOGUE["feeder-gone"].text.upper() in str(desk.lines[-1]["alarms"])
         # The screen goes on: offsets and editor stay at hand.
-        until(lambda: desk.family() == {desk.popen.pid}, desk.family)
+        until(lambda: desk.family() == {desk.popen.pid, desk.control()}, desk.family)
+
+
+def test_a_killed_screen_holds_its_program_and_finds_it_again(files: tuple[str, str], tmp_path: Path) -> None:
+    home = tmp_path / "home"
+    with process(home, OPERATOR, *files) as desk:
+        cutting(desk, 1)
+        control, made = desk.control(), int(str(desk.lines[-1]["parts"]))
+        desk.kill()
+        with process(home, OPERATOR, *files, "--again") as again:
+            until(lambda: again.says("state", "FEED HOLD"), lambda: again.lines[-3:])
+            assert again.control() == control
+            until(lambda: again.says("state", "RUNNING"), lambda: again.lines[-3:])
+            cutting(again, made + 2)
+            again.popen.terminate()
+            until(lambda: not again.family(), again.family)
+    with Store.open(home, read_only=True) as store:
+        kinds = [event.kind for event in store.events()]
+        assert kinds.count("stop") == 1  # the feed hold by the control
+        assert kinds.count("part") == store.parts("part.nc") >= made + 1
+        assert [run.outcome for run in store.runs()] != ["CUT OFF"]
+
+
+def test_a_killed_control_is_an_alarm_and_the_screen_stays(files: tuple[str, str], tmp_path: Path) -> None:
+    with process(tmp_path / "home", OPERATOR, *files) as desk:
+        cutting(desk, 0)
+        os.kill(desk.control(), signal.SIGKILL)
+        until(lambda: desk.says("state", "ALARM"), lambda: desk.lines[-3:])
+        assert CATALOGUE["control-silent"].text.upper() in str(desk.lines[-1]["alarms"])
+        until(lambda: desk.family() == {desk.popen.pid}, desk.family)  # its driver host stops what is left
+
+
+def test_a_killed_screen_that_does_not_come_back_is_closed_in_order(tmp_path: Path) -> None:
+    machine, program = tmp_path / "lathe.toml", tmp_path / "part.nc"
+    machine.write_text(resources.machine_file("gt75.toml"))
+    program.write_text(PROGRAM)
+    home = tmp_path / "home"
+    with process(home, OPERATOR, str(machine), str(program), "--idle") as desk:
+        until(lambda: desk.says("state", "READY"), lambda: desk.lines[-3:])
+        assert desk.control()
+        desk.kill()
+        until(lambda: not desk.family(), desk.family)
+    assert not (home / "control.sock").exists()

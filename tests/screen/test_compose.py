@@ -115,6 +115,14 @@ def test_a_machine_file_that_is_not_there_is_refused(tmp_path: Path) -> None:
 
 def test_closing_the_desk_ends_its_threads() -> None:
     desk = build_desk()
+    names = ("control", "loading", "executor")
+    assert any(thread.name.startswith(names) for thread in threading.enumerate())
+    desk.close()
+    assert not any(thread.name.startswith(names) for thread in threading.enumerate())
+
+
+def test_a_control_on_a_thread_ends_with_its_desk() -> None:
+    desk = build_desk(own_process=False)
     assert any(thread.name == "executor" for thread in threading.enumerate())
     desk.close()
-    assert not any(thread.name.startswith(("executor", "loading")) for thread in threading.enumerate())
+    assert not any(thread.name == "executor" for thread in threading.enumerate())

@@ -27,16 +27,18 @@ _FORM = "%(asctime)s %(levelname)s %(threadName)s %(name)s: %(message)s"
 
 
 class Log:
-    """Every logger writes to ``logs/turndesk.log`` until this is closed; nowhere, where no file can be made.
+    """Every logger writes to this file in the folder ``logs`` until this is closed.
+
+    Nothing is written where no file can be made.
 
     No thread of the machine may wait for a disk, so records go through a queue. ``trouble`` says why nothing
     is written; empty while all is well.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, name: str = "turndesk.log") -> None:
         records: queue.SimpleQueue[logging.LogRecord] = queue.SimpleQueue()
         self._unmade, self._next = "", 0.0
-        self._file = self._opened()
+        self._file = self._opened(name)
         self._handler = logging.handlers.QueueHandler(records)
         self._listener = logging.handlers.QueueListener(records, *([self._file] if self._file else []))
         logging.getLogger().addHandler(self._handler)
@@ -59,11 +61,11 @@ class Log:
             with contextlib.suppress(OSError):  # of a full disk: told already
                 handler.close()
 
-    def _opened(self) -> _File | None:
+    def _opened(self, name: str) -> _File | None:
         folder = data_folder() / "logs"
         try:
             folder.mkdir(parents=True, exist_ok=True)
-            file = _File(folder / "turndesk.log", maxBytes=_SIZE, backupCount=2, encoding="utf-8")
+            file = _File(folder / name, maxBytes=_SIZE, backupCount=2, encoding="utf-8")
         except OSError as error:
             self._unmade = Message(
                 "the log cannot be written to {file}: {what}",

@@ -15,7 +15,7 @@ from app.offsets.offset_book import OffsetBook, OffsetRows, rows_of_store
 from app.production.cycle_recorder import CycleRecorder
 from app.production.parts_book import PartsBook
 from app.programs.run_history import note_cut_off_runs
-from core.executor.snapshot import Event, InterruptedJob, of_plain, plain
+from core.executor.snapshot import CYCLE, Event, InterruptedJob, Snapshot, of_plain, plain
 from core.language.source import Source
 from core.message import Message
 from core.store import backup, people, store_connection
@@ -45,8 +45,9 @@ class Journal(Persistence):
     where the reason is one that passes, as a full disk is, the store is opened as soon as it does.
     """
 
-    def __init__(self, folder: Path) -> None:
-        self._folder = folder
+    def __init__(self, folder: Path, *, goes_on: bool = False) -> None:
+        """``goes_on``: the control of the journal before is still running, so nothing was interrupted."""
+        self._folder, self._goes_on = folder, goes_on
         self.who: Callable[[], str] = str  # has signed in, as the desk knows
         self._lock = threading.Lock()  # held for the blink in which stores or events change hands
         self._held: deque[Event] | None = None  # while a restore is under way
@@ -91,17 +92,19 @@ class Journal(Persistence):
     def _read_what_was_left(self, store: Store) -> None:
         """Damage, runs that were cut off, the interrupted job. Raises StoreError."""
         self.damage = (*store.repaired, *store.damaged())
-        note_cut_off_runs(store)
-        left = of_plain(store.setting(UNDER_WAY))
+        left = None
+        if not self._goes_on:
+            note_cut_off_runs(store)
+            left = of_plain(store.setting(UNDER_WAY))
         with self._lock:
             self._unread = False
             if not self._has_noted:
                 self.left = self._noted = left
 
     @classmethod
-    def at_home(cls) -> Journal:
+    def at_home(cls, *, goes_on: bool = False) -> Journal:
         """The journal of the product's folder."""
-        return cls(data_folder())
+        return cls(data_folder(), goes_on=goes_on)
 
     @property
     def trouble(self) -> str:
@@ -174,6 +177,13 @@ class Journal(Persistence):
                 self._held.append(event)
             elif self._store is not None:
                 self._write(self._store, event)
+
+    def go_on(self, snapshot: Snapshot) -> None:
+        """Take up a control that has gone on without this process, before its events are heard."""
+        with self._lock:
+            self._program = snapshot.program
+            if snapshot.state in CYCLE and self._store is not None:
+                self._recorder.go_on(snapshot.program, snapshot.t, self._store)
 
     def _write(self, store: Store, event: Event) -> None:
         store.log_event(event.kind, event.text, event.line, event.record)

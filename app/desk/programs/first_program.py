@@ -5,7 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from app.desk.desk import LAST_PROGRAM
 from app.desk.translation import tr
+from core.executor.snapshot import CYCLE
 from core.message import Message
 
 if TYPE_CHECKING:
@@ -13,7 +15,10 @@ if TYPE_CHECKING:
 
 
 def begin_with(desk: Desk, named: str | None) -> None:
-    """At the start: the program that was interrupted, or else the one that is ``named``."""
+    """At the start: the program that runs, or was interrupted, or else the one that is ``named``."""
+    if desk.snapshot().state in CYCLE:
+        _show_program_under_way(desk, named)
+        return
     found = desk.snapshot().interrupted
     path = str(Path(named).absolute()) if named is not None else ""
     if found is None:
@@ -34,3 +39,18 @@ def begin_with(desk: Desk, named: str | None) -> None:
         desk.say(
             tr(Message("{name} NOT LOADED: THE INTERRUPTED JOB WAS LOADED INSTEAD", name=Path(named).name))
         )
+
+
+def _show_program_under_way(desk: Desk, named: str | None) -> None:
+    """Load the program that the control runs already: it has gone on while there was no screen."""
+    now = desk.snapshot()
+    last = desk.settings.persistence.setting(LAST_PROGRAM)
+    known = (Path(each) for each in (named, last) if isinstance(each, str))
+    path = next((each for each in known if each.name == now.program), None)
+    path = path or desk.program_folders.find(now.program)
+    if path is None:
+        words = "RUNNING PROGRAM {name} NOT FOUND. ITS TEXT IS NOT SHOWN"
+    else:
+        words = "SCREEN RESTARTED. {name} IS STILL UNDER WAY"
+        desk.session.load(path.absolute(), now.block_delete)
+    desk.warn(tr(Message(words, name=now.program)))

@@ -117,6 +117,52 @@ class Halting:
             _log.error("the drivers cannot be halted", exc_info=halting.error)
 
 
+class ThreadWatch:
+    """Supervises threads by their names, whenever these start.
+
+    ``tell`` gets the name of a thread that has ended, once. A name is supervised from the first look that
+    finds its thread, or from ``watch``.
+    """
+
+    def __init__(self, names: Iterable[str], tell: Tell) -> None:
+        self._tell = tell
+        self._awaited = list(names)  # threads that have not been seen yet
+        self._running: list[str] = []
+        self._closing = threading.Event()
+
+    def watch(self, name: str) -> None:
+        """Supervise the thread of this name from now on, also one that ends before the next look."""
+        self._running.append(name)
+
+    def look(self) -> None:
+        """Look once; after ``end`` threads that have ended are not told of."""
+        for name in [name for name in self._awaited if running(name)]:
+            self._awaited.remove(name)
+            self._running.append(name)
+        for name in [name for name in self._running if not running(name)]:
+            self._running.remove(name)
+            self._awaited.append(name)  # it may be started again
+            if not self._closing.is_set():
+                self._tell(name)
+
+    def start(self) -> None:
+        """Look once a second, on a thread of its own."""
+        threading.Thread(target=self._look_again, name="thread-watch", daemon=True).start()
+
+    def end(self) -> None:
+        """Tell no more: threads that end from now on end in good order."""
+        self._closing.set()
+
+    def _look_again(self) -> None:
+        while not self._closing.wait(LOOK * OTHERS):
+            with ReportedAttempt(_report):
+                self.look()
+
+
+def _report(error: BaseException) -> None:
+    _log.error("the watch over the threads has failed", exc_info=error)
+
+
 class Watchdog:
     """Supervises the executor's thread, and other threads by their names, whenever these start.
 
@@ -130,8 +176,7 @@ class Watchdog:
     ) -> None:
         self._executor, self._tell = executor, tell
         self._halting = Halting(halt)
-        self._awaited = list(others)  # threads that have not been seen yet
-        self._others: list[str] = []
+        self._others = ThreadWatch(others, tell)
         self._closing = threading.Event()
         self._thread = threading.Thread(target=self._watch, name=WATCHDOG, daemon=True)
         self.looks = 0
@@ -156,11 +201,12 @@ class Watchdog:
 
     def watch(self, name: str) -> None:
         """Supervise the thread of this name from now on, also one that ends before the next look."""
-        self._others.append(name)
+        self._others.watch(name)
 
     def end(self) -> None:
         """Look no more, without waiting: threads that end from now on end in good order."""
         self._closing.set()
+        self._others.end()
 
     def close(self, limit: float = ENDS) -> None:
         """End the thread; one that hangs is left running after ``limit`` seconds."""
@@ -173,7 +219,7 @@ class Watchdog:
         with Attempt() as trial:
             self._mind_executor()
             if self.looks % OTHERS == 0:
-                self._mind_others()
+                self._others.look()
         self.looks += 1
         if trial.error is not None:
             _log.error("the watchdog has failed", exc_info=trial.error)
@@ -202,16 +248,6 @@ class Watchdog:
                 if dead
                 else ("the software thread of the control is stuck")
             )
-
-    def _mind_others(self) -> None:
-        for name in [name for name in self._awaited if running(name)]:
-            self._awaited.remove(name)
-            self._others.append(name)
-        for name in [name for name in self._others if not running(name)]:
-            self._others.remove(name)
-            self._awaited.append(name)  # it may be started again
-            if not self.closing:
-                self._tell(name)
 
 
 class WatchdogWatch:

@@ -21,6 +21,7 @@ from app.extras.analyses.analyses import Analyses
 from app.scope.scope_model import Scope
 from app.screen.look import DARK, Look, dress, load_fonts
 from app.screen.window.main_window import MainWindow
+from core.executor.recorder import Recorder
 from core.executor.snapshot import State
 from tests.screen.pictures import Stage, _grab, _settle, press
 
@@ -90,6 +91,8 @@ def _picture(
     stage.make_ready(str(file))
     wear(desk.station)
     stage.press_start()
+
+    assert isinstance(recorder, Recorder)
 
     def over() -> bool:
         recorder.drain()

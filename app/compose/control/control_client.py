@@ -1,0 +1,255 @@
+"""The control as the screen sees it: what is posted to its process, and what has come from there."""
+
+from __future__ import annotations
+
+import logging
+import pickle
+import queue
+import subprocess
+import threading
+import time
+from contextlib import suppress
+from dataclasses import replace
+from multiprocessing.connection import Client, Connection
+from pathlib import Path
+
+from app.compose.control.control_events import ControlEvents
+from app.compose.control.control_messages import (
+    VERSION,
+    Alive,
+    Close,
+    Closed,
+    Failed,
+    Hand,
+    Happened,
+    Heard,
+    Hello,
+    Noted,
+    Post,
+    SetInput,
+    Shown,
+    ThreadEnded,
+    socket_path,
+)
+from app.compose.control.control_start import StartedControl
+from app.compose.control.shared_memory import SharedMemory
+from app.desk.data_folder import RECORDS
+from core.executor.commands import Command, GiveProof, LoadJob
+from core.executor.raised_alarm import make_alarm
+from core.executor.snapshot import CYCLE, Event, Snapshot, State
+from core.machine.machine_model import Machine
+from core.message import Message
+from core.ports import DriverError
+from core.records.record_ring import Ring
+from core.records.recordings import Recordings
+from drivers.operator_station import PostedHands
+from drivers.waiting import RealClock
+
+_log = logging.getLogger(__name__)
+STARTS_IN = 20.0  # s for the first message: drives may have to be configured
+ALIVE_EVERY = 0.25  # s
+ENDS = 1.0  # s that closing waits for a thread
+ANSWERS_IN = 2.0  # s for that of a control that runs already
+_SAVED_IN = 5.0  # s for the record of an alarm
+CLOSES_IN = 15.0  # s: drives that come on are waited for, then the machine is halted
+
+
+class ControlClient:
+    """The process of the control. ``snapshot`` is the newest; ``post`` never waits."""
+
+    def __init__(self, started: StartedControl, folder: Path) -> None:
+        self._connection, self.process = connection, process = started
+        hello = _hello(connection, STARTS_IN if process is not None else ANSWERS_IN)
+        self.hello = hello
+        self.attached = process is None  # to a control that another screen had started
+        memory = SharedMemory.received_from(connection)
+        ring = Ring.of(hello.recorded, memory.view)
+        self.records = ControlRecords(ring, folder / RECORDS, hello.trouble)
+        self.clock = RealClock(hello.zero)
+        self.snapshot: Snapshot = hello.snapshot
+        self.hands = ControlHands(self) if hello.station else None
+        self._outbox: queue.SimpleQueue[object] = queue.SimpleQueue()
+        self._closed = threading.Event()
+        self._events: ControlEvents | None = None
+        self._threads: list[threading.Thread] = []
+        self._next_alive = 0.0  # s
+        self._kept: dict[type[Command], Command] = {}  # for the end of the program that was found under way
+
+    def begin(self, events: ControlEvents) -> None:
+        """Begin to listen and to send."""
+        self._events = events
+        for run, name in ((self._listen, "control-events"), (self._send, "control-posts")):
+            self._threads.append(threading.Thread(target=run, name=name, daemon=True))
+            self._threads[-1].start()
+
+    def post(self, command: Command) -> None:
+        """Ask the executor for something."""
+        if self.attached and isinstance(command, LoadJob | GiveProof) and self.snapshot.state in CYCLE:
+            self._kept[type(command)] = command  # the program that is under way has its job already
+            return
+        self._outbox.put(Post(command, self.clock.now()))
+
+    def hand(self, name: str, *values: object) -> None:
+        """Use the simulated operator station."""
+        self._outbox.put(Hand(name, values, self.clock.now()))
+
+    def set_input(self, name: str, on: bool) -> None:
+        """Switch an input of a simulated machine."""
+        self._outbox.put(SetInput(name, on))
+
+    def see(self, snapshot: Snapshot) -> None:
+        """Tell the control that the screen handles its keys; called once a frame."""
+        now = self.clock.now()
+        if now >= self._next_alive:
+            self._next_alive = now + ALIVE_EVERY
+            self._outbox.put(Alive())
+        if self._kept and snapshot.state not in CYCLE:
+            kept, self._kept = self._kept, {}
+            for command in kept.values():
+                self.post(command)
+
+    def leave(self, *, close: bool) -> None:
+        """Disconnect before ``begin``; ``close``: end the control, whose machine is at rest."""
+        with suppress(OSError):
+            if close:
+                self._connection.send(Close())
+                while not isinstance(self._connection.recv(), Closed):
+                    pass
+        self._connection.close()
+
+    def close(self) -> None:
+        """Stop the machine, close its drivers, and wait for the end of the process."""
+        self._outbox.put(Close())
+        self._closed.wait(CLOSES_IN)
+        if self.process is not None:
+            try:
+                self.process.wait(CLOSES_IN)
+            except subprocess.TimeoutExpired:
+                _log.error("the process of the control does not end; it is killed")
+                self.process.kill()
+                self.process.wait()
+        self._outbox.put(None)
+        for thread in self._threads:
+            thread.join(ENDS)
+        self._connection.close()
+
+    # --- threads ----------------------------------------------------------------------------------------
+
+    def _send(self) -> None:
+        with suppress(OSError):
+            while (message := self._outbox.get()) is not None:
+                try:
+                    self._connection.send(message)
+                except (pickle.PicklingError, TypeError, AttributeError):
+                    _log.exception("this message cannot be sent to the control: %r", message)
+
+    def _listen(self) -> None:
+        assert self._events is not None
+        try:
+            while True:
+                self._take(self._connection.recv(), self._events)
+        except (OSError, EOFError, pickle.UnpicklingError):
+            if not self._closed.is_set():
+                self._lose(self._events)
+        self._closed.set()
+
+    def _take(self, message: object, events: ControlEvents) -> None:
+        match message:
+            case Shown(snapshot, stirred):
+                self.snapshot = snapshot
+                if stirred:
+                    events.stirs()
+            case Happened(number, event):
+                self.records.hear(event)
+                events.event(event)
+                self._outbox.put(Heard(number))
+            case Noted(job):
+                events.note(job)
+            case ThreadEnded(name):
+                events.thread_ended(name)
+            case Closed():
+                self._closed.set()
+            case _:
+                _log.error("the screen does not know this message of the control: %r", message)
+
+    def _lose(self, events: ControlEvents) -> None:
+        """The process of the control has ended: its drivers have stopped the machine in their own way."""
+        why = Message("the process of the control has ended")
+        last = self.snapshot
+        alarm = make_alarm("control-silent", why, last.line, last.t)
+        self.snapshot = replace(last, state=State.FAULT, alarms=(*last.alarms, alarm))
+        events.event(Event(last.t, "alarm", alarm.text, alarm.line, alarm))
+        events.stirs()
+
+
+class ControlHands(PostedHands):
+    """The hands at the simulated station of the control; any thread may act."""
+
+    def __init__(self, client: ControlClient) -> None:
+        self._client = client
+
+    def post(self, name: str, *values: object) -> None:
+        """Use the method of this name at the station."""
+        self._client.hand(name, *values)
+
+
+class ControlRecords(Recordings):
+    """What the scope of the control records. ``hear`` gets the events, which name the records of alarms."""
+
+    def __init__(self, ring: Ring, folder: Path, trouble: str) -> None:
+        super().__init__(ring, folder, trouble)
+        self._named: dict[str, float] = {}  # records by their name, and when it was heard, s
+
+    def hear(self, event: Event) -> None:
+        """Note which record is being written now."""
+        if event.record:
+            self._named.setdefault(event.record, time.monotonic())
+
+    def is_saving(self, name: str) -> bool:
+        """Return whether the record is expected, and is not there yet."""
+        there = self.folder is not None and (self.folder / name).exists()
+        return not there and time.monotonic() < self._named.get(name, -_SAVED_IN) + _SAVED_IN
+
+
+def _hello(connection: Connection, limit: float) -> Hello:
+    """Return the first message of the control. Raises DriverError for what it says else, or does not say."""
+    try:
+        message = connection.recv() if connection.poll(limit) else None
+    except (OSError, EOFError, pickle.UnpicklingError, AttributeError, ImportError):
+        raise DriverError("the process of the control ended during start-up; see its message above") from None
+    match message:
+        case Hello() if message.version == VERSION:
+            return message
+        case Failed(why):
+            raise DriverError(why)
+        case None:
+            raise DriverError("the process of the control does not start")
+        case _:
+            raise DriverError(
+                "the control that runs belongs to another version of TurnDesk: wait until it has ended, then "
+                "start TurnDesk again"
+            )
+
+
+def find_control(machine: Machine, folder: Path) -> ControlClient | None:
+    """Return the control that runs already, since its screen was killed; None where there is none.
+
+    Raises DriverError where it runs another machine file.
+    """
+    path = socket_path(folder)
+    if path is None or not path.is_socket():
+        return None
+    try:
+        found = ControlClient(StartedControl(Client(str(path), "AF_UNIX"), None), folder)
+    except (OSError, DriverError):
+        return None
+    if found.hello.machine == machine:
+        return found
+    under_way = found.snapshot.state in CYCLE
+    found.leave(close=not under_way)
+    if under_way:
+        raise DriverError(
+            "a program is under way in a control that runs another machine file: start TurnDesk with that "
+            "machine file"
+        )
+    return None

@@ -1,0 +1,100 @@
+"""The process of the control: ``python -m app.compose.control.control_process FD ZERO FOLDER``.
+
+The machine comes over stdin. FD is the socket to the screen that has started it; another screen finds the
+control at the socket of the data folder FOLDER.
+"""
+
+from __future__ import annotations
+
+import gc
+import os
+import pickle
+import signal
+import socket
+import sys
+import threading
+from contextlib import suppress
+from multiprocessing.connection import Connection, Listener
+from pathlib import Path
+
+from app.compose.control.control_messages import Failed, is_own_user, socket_path
+from app.compose.control.control_server import LOOK, ControlServer
+from app.compose.control.rights import acquire_rights
+from app.compose.runs.error_log import Log
+from core.machine.machine_model import Machine
+from core.ports import DriverError
+from drivers.waiting import RealClock
+
+_GIVE_WAY = 0.001  # s after which a thread that reads a program lets the executor go on
+LOG_FILE = "control.log"
+
+
+def main(arguments: list[str]) -> int:
+    """Drive the machine until the screen closes it, or no screen has come back."""
+    first, clock, folder = Connection(int(arguments[0])), RealClock(float(arguments[1])), Path(arguments[2])
+    machine = pickle.load(sys.stdin.buffer)  # of our own parent, over a pipe that nobody else has
+    assert isinstance(machine, Machine)
+    sys.setswitchinterval(_GIVE_WAY)
+    log = Log(LOG_FILE)
+    rights = acquire_rights()
+    try:
+        server = ControlServer(machine, clock, folder, tuple(each.lacks for each in rights if each.lacks))
+    except DriverError as error:
+        with suppress(OSError):
+            first.send(Failed(error.fault if isinstance(error.fault, str) else str(error)))
+        log.close()
+        return 1
+    gc.collect()
+    gc.freeze()  # modules and the like: collections need not look at them again
+    for number in (signal.SIGTERM, signal.SIGINT):  # of a computer that shuts down
+        signal.signal(number, lambda *_: server.closing.set())
+    server.start()
+    threading.Thread(target=_serve_screens, args=(server, first, folder), name="screens", daemon=True).start()
+    while not server.closing.wait(LOOK):
+        server.look()
+    server.close()
+    log.close()
+    return 0
+
+
+def _serve_screens(server: ControlServer, first: Connection, folder: Path) -> None:
+    """Talk to the screen that has started the control, then to one after the other that finds it."""
+    path = socket_path(folder)
+    listener = _listener(path)
+    server.serve(first)
+    while listener is not None and not server.closing.is_set():
+        with suppress(OSError, EOFError):
+            connection = listener.accept()
+            if is_own_user(connection):
+                server.serve(connection)
+            connection.close()
+
+
+def _listener(path: Path | None) -> Listener | None:
+    """The socket in the data folder; None where it cannot be made, so that no other screen finds this one."""
+    if path is None or _listens(path):
+        return None
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.unlink(missing_ok=True)
+        before = os.umask(0o177)
+        try:
+            return Listener(str(path), "AF_UNIX")
+        finally:
+            os.umask(before)
+    except OSError:
+        return None
+
+
+def _listens(path: Path) -> bool:
+    """Return whether another control has the socket."""
+    try:
+        with socket.socket(socket.AF_UNIX) as other:
+            other.connect(str(path))
+    except OSError:
+        return False
+    return True
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

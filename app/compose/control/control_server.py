@@ -1,0 +1,353 @@
+"""The control as its process runs it: executor, watchdog, recorder, and the screen that is connected now.
+
+The executor never waits for the screen. What it shows replaces what was not sent yet; events and notes wait
+in order until a screen takes them.
+"""
+
+from __future__ import annotations
+
+import logging
+import queue
+import threading
+from collections import deque
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import replace
+from multiprocessing.connection import Connection
+from pathlib import Path
+
+from app.compose.backends.connection import connect
+from app.compose.control.control_messages import (
+    STALE,
+    VERSION,
+    Alive,
+    Close,
+    Closed,
+    Hand,
+    Happened,
+    Heard,
+    Hello,
+    Noted,
+    Post,
+    SetInput,
+    Shown,
+    ThreadEnded,
+)
+from app.compose.control.left_note import remove_note, save_note
+from app.compose.control.shared_memory import SharedMemory
+from core.executor.commands import BarNextPart, Command, FeedHold, JogStop, LoadJob, Prepare, Renew
+from core.executor.executor import STARTS, Executor
+from core.executor.raised_alarm import ReportedAttempt
+from core.executor.recorder import Recorder, recorded_of
+from core.executor.safety.watchdog import WATCHDOG, ExecutorThread, Watchdog
+from core.executor.snapshot import ACTIVE, STOPPED, Event, InterruptedJob, Snapshot, Tick
+from core.interpreter.dialects import ReadProgram
+from core.machine.machine_model import Machine
+from core.message import Message
+from core.ports import DriverError
+from drivers.waiting import RealClock
+
+_log = logging.getLogger(__name__)
+HELD = 10_000  # events that wait while no screen is connected
+PACE = 0.015  # s between two snapshots of a machine that moves
+SEND_AGAIN = 0.1  # s after which a snapshot that nobody announced is looked for
+LOOK = 0.1  # s between two looks at the screen
+SILENT_LOOKS = 30  # looks without a message after which the screen counts as hung: 3 s
+REST_LOOKS = 150  # looks without a screen after which a machine at rest is closed: 15 s
+STOPPED_LOOKS = 600  # the same for a program that is stopped: a minute
+_STARTING_HANDS = frozenset({"press_left", "press_right"})
+_STOPPING_HANDS = frozenset({"press_hold", "press_estop"})
+ENDS = 1.0  # s that closing waits until the screen has been told
+_ALONE = Message("TurnDesk, because the screen did not respond")
+WATCHED = ("commands", "recorder", "inverter", WATCHDOG)  # threads of this process
+
+
+class Outbox:
+    """What waits for the screen. Any thread fills it, and the screen's sender empties it.
+
+    An event waits until the screen has answered that it is kept; another screen gets it again.
+    """
+
+    def __init__(self, snapshot: Callable[[], Snapshot]) -> None:
+        self._snapshot = snapshot
+        self._events: deque[Happened] = deque(maxlen=HELD)
+        self._ended: deque[ThreadEnded] = deque()
+        self._noted: Noted | None = None
+        self._ready = threading.Event()
+        self._lock = threading.Lock()  # held for the blink in which an event gets its number
+        self._number = self._sent = 0  # of the newest event, of the last that this screen got
+        self._stirred = self._closed = False
+        self._shown: Snapshot | None = None
+
+    def show(self) -> None:
+        """Have the newest snapshot sent."""
+        self._ready.set()
+
+    def stir(self) -> None:
+        """Have it sent at once, and told that something has changed."""
+        self._stirred = True
+        self._ready.set()
+
+    def put(self, event: Event) -> None:
+        """Queue an event."""
+        with self._lock:
+            self._number += 1
+            self._events.append(Happened(self._number, event))
+        self._ready.set()
+
+    def heard(self, number: int) -> None:
+        """Forget the events up to this number."""
+        with self._lock:
+            while self._events and self._events[0].number <= number:
+                self._events.popleft()
+
+    def note(self, job: InterruptedJob | None) -> None:
+        """Replace the note of the interrupted job."""
+        self._noted = Noted(job)
+        self._ready.set()
+
+    def thread_ended(self, name: str) -> None:
+        """Have it told that a thread has ended."""
+        self._ended.append(ThreadEnded(name))
+        self._ready.set()
+
+    def close(self) -> None:
+        """Have it told that the machine is closed."""
+        self._closed = True
+        self._ready.set()
+
+    def send(self, connection: Connection, gone: threading.Event) -> None:
+        """Send what there is to one screen until it is gone. Raises OSError when its connection ends."""
+        self._shown, self._sent = None, 0
+        while not gone.is_set():
+            self._ready.wait(SEND_AGAIN)
+            self._ready.clear()
+            self._send_all(connection)
+            if self._closed:
+                return
+            if not self._stirred:
+                gone.wait(PACE)
+
+    def _send_all(self, connection: Connection) -> None:
+        with self._lock:
+            events = [each for each in self._events if each.number > self._sent]
+        for event in events:
+            connection.send(event)
+            self._sent = event.number
+        while self._ended:
+            connection.send(self._ended.popleft())
+        noted, self._noted = self._noted, None
+        if noted is not None:
+            connection.send(noted)  # a screen that comes later has it from Hello
+        stirred, self._stirred = self._stirred, False
+        snapshot = self._snapshot()
+        if stirred or snapshot is not self._shown:
+            connection.send(Shown(snapshot, stirred))
+            self._shown = snapshot
+        if self._closed:
+            connection.send(Closed())
+
+
+class ControlServer:
+    """The machine of one machine file, and the connection to its screen. Raises DriverError.
+
+    ``folder`` is the data folder, in which the scope writes its records.
+    """
+
+    def __init__(self, machine: Machine, clock: RealClock, folder: Path, rights: tuple[str, ...]) -> None:
+        self._machine, self._clock, self._folder, self._rights = machine, clock, folder, rights
+        self._connected = connect(machine, clock)
+        recorded = recorded_of(machine, self._connected.ports)
+        self._memory = SharedMemory.of_size(recorded.ring_bytes)
+        self.recorder = Recorder(recorded, folder / "records", memory=self._memory.view)
+        self.outbox = Outbox(lambda: self.executor.snapshot)
+        self.executor = Executor(
+            machine,
+            self._connected.ports,
+            self._hear,
+            note=self._note,
+            tell=self._tell,
+            checks_starts=machine.kind == "lathe",
+        )
+        self.executor.stirs = self.outbox.stir
+        self._thread = ExecutorThread(self.executor, clock)
+        self._watchdog = Watchdog(self._thread, self.executor.halt, WATCHED, self.outbox.thread_ended)
+        self._noted: InterruptedJob | None = None
+        self._reading: ReadProgram | None = None
+        self._screen: Connection | None = None
+        self._sender: threading.Thread | None = None
+        self._quiet = self._away = 0  # looks since the screen was heard, since it has gone
+        self._alone = False  # the screen has gone, or hangs
+        self._barred = ""  # why no next part was to begin before that
+        self._saved: InterruptedJob | None = None  # the note that is kept in the data folder
+        self._posts: queue.SimpleQueue[Post] = queue.SimpleQueue()
+        self._stopped_at = -1.0  # s, when a hand or a key has asked for a stop
+        self.closing = threading.Event()
+
+    def start(self) -> None:
+        """Begin to tick."""
+        self._thread.start()
+        threading.Thread(target=self._carry_out, name="commands", daemon=True).start()
+        self.recorder.start()
+        self._watchdog.start()
+
+    def close(self) -> None:
+        """Stop the machine as E-stop would leave it, and close its drivers."""
+        self._watchdog.end()
+        self._thread.close()
+        self._connected.close()
+        self._watchdog.close()
+        self.recorder.close()
+        self.outbox.close()
+        if self._sender is not None:
+            self._sender.join(ENDS)
+
+    # --- the executor's thread ------------------------------------------------------------------------
+
+    def _hear(self, event: Event) -> None:
+        self.outbox.put(self.recorder.note(event))
+
+    def _note(self, job: InterruptedJob | None) -> None:
+        self._noted = job
+        self.outbox.note(job)
+
+    def _tell(self, tick: Tick) -> None:
+        self.recorder.tell(tick)
+        self.outbox.show()
+
+    # --- the screen -----------------------------------------------------------------------------------
+
+    def serve(self, connection: Connection) -> None:
+        """Talk to one screen until its connection ends."""
+        gone = threading.Event()
+        sender = self._sender = threading.Thread(
+            target=self._send, args=(connection, gone), name="control-sender", daemon=True
+        )
+        try:
+            connection.send(self._hello())
+            self._memory.send_to(connection)
+            self._screen = connection
+            remove_note(self._folder)
+            sender.start()
+            while True:
+                self._obey(connection.recv())
+        except (OSError, EOFError):
+            pass  # the screen has ended: ``look`` does what the machine file says
+        finally:
+            self._screen = None
+            gone.set()
+            self._let_go()
+
+    def _send(self, connection: Connection, gone: threading.Event) -> None:
+        with suppress(OSError):
+            self.outbox.send(connection, gone)
+
+    def _hello(self) -> Hello:
+        connected, recorder = self._connected, self.recorder
+        return Hello(
+            VERSION,
+            self._machine,
+            self._clock.zero,
+            tuple(connected.ports.warnings),
+            self._rights,
+            recorder.ring.recorded,
+            recorder.trouble,
+            connected.panel is not None,
+            connected.set_input is not None,
+            self.executor.snapshot,
+            self._noted,
+        )
+
+    def _obey(self, message: object) -> None:
+        self._quiet = 0
+        match message:
+            case Post(FeedHold() | JogStop() as command, at):
+                self._stopped_at = at
+                self.executor.post(command, at)
+            case Post():
+                self._posts.put(message)
+            case Hand():
+                self._use_hand(message)
+            case SetInput(name, on):
+                self._set_input(name, on)
+            case Heard(number):
+                self.outbox.heard(number)
+            case Alive():
+                pass
+            case Close():
+                self.closing.set()
+            case _:
+                _log.error("the control does not know this message of the screen: %r", message)
+
+    def _carry_out(self) -> None:
+        """Post commands in their order, on a thread of their own: to read a program takes its time.
+
+        A stop overtakes them, and what would start something and was asked for before it is dropped.
+        """
+        while not self.closing.is_set():
+            command, at = self._posts.get()
+            if not (isinstance(command, STARTS) and at <= self._stopped_at):
+                with ReportedAttempt(self.executor.failed):
+                    self.executor.post(self._with_reading(command), at)
+
+    def _use_hand(self, hand: Hand) -> None:
+        if hand.name in _STOPPING_HANDS:
+            self._stopped_at = hand.at
+        late = self._clock.now() - hand.at > STALE
+        if self._connected.panel is None or (late and hand.name in _STARTING_HANDS):
+            return
+        getattr(self._connected.panel, hand.name)(*hand.values)
+
+    def _let_go(self) -> None:
+        """Release the buttons that the screen has held; an E-stop stays pressed."""
+        if self._connected.panel is not None:
+            for release in ("release_left", "release_right", "release_hold"):
+                getattr(self._connected.panel, release)()
+
+    def _set_input(self, name: str, on: bool) -> None:
+        if self._connected.set_input is not None:
+            with suppress(DriverError):
+                self._connected.set_input(name, on)
+
+    def _with_reading(self, command: Command) -> Command:
+        """The command with a job whose text was read here: the executor's thread has no time for that."""
+        if not isinstance(command, LoadJob | Renew | Prepare) or command.job is None:
+            return command
+        job = command.job
+        if job.setup.begin is not None and job.setup.begin.single:
+            return command
+        if self._reading is None or not self._reading.is_same(job.reading):
+            job.reading.read()
+            self._reading = job.reading
+        return replace(command, job=replace(job, reading=self._reading))
+
+    # --- a screen that is silent or gone --------------------------------------------------------------
+
+    def look(self) -> None:
+        """Look at the screen, every ``LOOK`` seconds: a cut goes on without it, or stops."""
+        self._quiet += 1
+        self._away = 0 if self._screen is not None else self._away + 1
+        alone = self._away > 0 or self._quiet >= SILENT_LOOKS
+        if alone is not self._alone:
+            self._alone = alone
+            self._go_alone() if alone else self._go_together()
+        if self._away and self._noted is not self._saved:
+            self._saved = self._noted
+            save_note(self._folder, self._noted)
+        state = self.executor.snapshot.state
+        longest = STOPPED_LOOKS if state in STOPPED else REST_LOOKS
+        if self._away >= longest and state not in ACTIVE:
+            self.closing.set()
+
+    def _go_alone(self) -> None:
+        """The screen has gone, or hangs: its keys stop nothing now, and it counts no parts."""
+        self._saved = None
+        if self._machine.hardware.continues_alone:
+            self._barred = self.executor.snapshot.next_barred
+            self.executor.post(BarNextPart(_ALONE))
+        else:
+            self.executor.post(FeedHold(_ALONE))
+
+    def _go_together(self) -> None:
+        if self._machine.hardware.continues_alone:
+            self.executor.post(BarNextPart(self._barred))

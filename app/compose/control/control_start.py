@@ -1,0 +1,54 @@
+"""Starts the process of the control. A screen does this first: the process loads while the window opens."""
+
+from __future__ import annotations
+
+import pickle
+import socket
+import subprocess
+import sys
+import time
+from multiprocessing.connection import Connection
+from pathlib import Path
+from typing import NamedTuple
+
+from core.machine.machine_model import Machine
+
+
+class StartedControl(NamedTuple):
+    """The connection to a control, and its process; None for a control that another screen has started."""
+
+    connection: Connection
+    process: subprocess.Popen[bytes] | None
+
+    def abandon(self) -> None:
+        """Kill a process whose machine has not begun to move."""
+        self.connection.close()
+        if self.process is not None:
+            self.process.kill()
+            self.process.wait()
+
+
+def start_control(machine: Machine, folder: Path) -> StartedControl:
+    """Start the process for this machine and this data folder, without waiting for it."""
+    ours, theirs = socket.socketpair()
+    with theirs:
+        command = [
+            sys.executable,
+            "-m",
+            "app.compose.control.control_process",
+            str(theirs.fileno()),
+            repr(time.monotonic()),
+            str(folder),
+        ]
+        # A session of its own: Ctrl-C is for the screen, which then ends the control in good order.
+        process = subprocess.Popen(
+            command,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.DEVNULL,
+            pass_fds=(theirs.fileno(),),
+            start_new_session=True,
+        )
+    assert process.stdin is not None
+    with process.stdin as pipe:
+        pipe.write(pickle.dumps(machine))
+    return StartedControl(Connection(ours.detach()), process)
