@@ -45,6 +45,7 @@ from app.desk.programs.program_loading import LoadingSteps, ProgramLoader
 from app.desk.programs.start_watch import StartWatch
 from app.desk.station_hands import StationPanel
 from app.desk.status.alarm_log import KEPT, KINDS
+from app.desk.status.busy_notice import BusyNotice
 from app.desk.status.prompt_line import UNDER_WAY
 from app.desk.translation import tr
 from app.offsets.mill_touch import MillTouch
@@ -330,6 +331,7 @@ def _desk_of(machine: Machine, control: DeskControl, events: _Events, offsets: C
     journal = events.journal
     desk = _desk(machine, control, events, offsets)
     events.desk, desk.recorder = desk, control.recordings
+    desk.frame_watchers.append(BusyNotice(desk.warn).see)
     give_scope(desk)
     if journal is not None:
         desk.log.recall(_stops(journal))

@@ -238,7 +238,7 @@ class Executor:
             self._guarded(part)
         status = self._control.status
         self._lamps.look(self._control.state, self._control.counters.ends, barred=bool(status.next_barred))
-        self._late = max(self._late, self._context.now - self._due)
+        self._note_late(self._context.now - self._due)
         self._due = self._context.now + TICK
         if self._rest.look():
             self._show()
@@ -248,6 +248,14 @@ class Executor:
                 self.stirs()
         self.patient = False
         self.ticks += 1
+
+    def _note_late(self, late: float) -> None:
+        """A busy computer deepens the setpoint queue; that a hold reacts later is logged once."""
+        self._late = max(self._late, late)
+        lateness = self._context.lateness
+        if lateness.look(late, self._context.now):
+            words = "the computer is busy: a feed hold reacts up to {seconds} s later"
+            self._context.log("late", Message(words, seconds=f"{lateness.hold_later:.1f}"))
 
     def declare_silent(self, why: str) -> None:
         """From the watchdog's thread, which has halted the machine: an alarm on the screen, whose snapshot

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from core.alarms import Code
+from core.executor.lateness import Lateness
 from core.executor.raised_alarm import Attempt, log_line, make_alarm
 from core.executor.signals import CommandedOutputs, StationSignals
 from core.executor.snapshot import Alarm, Event
@@ -50,8 +51,12 @@ class MachineContext:
     lamp_test: float = 0.0  # until when all lamps of the tower are on
     line: int = 0  # of the block being executed, for the log
     stop: Alarm | None = None  # why the machine stands, where no alarm says it
+    lateness: Lateness = field(init=False)
     _noted: Code | None = None  # the last that went into the log
     _borne: float | None = None  # by the spindle's drive, per cent, as its samples said last
+
+    def __post_init__(self) -> None:
+        self.lateness = Lateness(self.machine.timing.lookahead)
 
     @property
     def spindle_load(self) -> float | None:

@@ -242,6 +242,7 @@ class Snapshot:
     next_barred: str = ""  # why no other part begins after the one under way
     ends: int = 0  # programs that came to their end, counted or not
     underruns: int = 0
+    hold_later: float = 0.0  # s by which a hold reacts later, since the computer is busy
     max_following_error: float = 0.0
     proof_wanted: bool = False  # a job is loaded that no proof covers
     starts: Starts = Starts.PROGRAM  # what Cycle Start begins
@@ -294,7 +295,7 @@ class Event:
 
     t: float
     # state, alarm, disturbed, estop, start, repeat, restart, mdi, end, part, uncounted, stop,
-    # interrupted, cleared, refused, override, switch, force, load, offsets, test
+    # interrupted, late, cleared, refused, override, switch, force, load, offsets, test
     kind: str
     text: str
     line: int = 0

@@ -96,6 +96,7 @@ class Publisher:
             next_barred=status.next_barred,
             ends=counters.ends,
             underruns=counters.underruns,
+            hold_later=context.lateness.hold_later,
             max_following_error=control.supervisor.max_following_error,
             proof_wanted=job is not None and (status.proof is None or status.proof.digest != job.digest),
             starts=status.starts,

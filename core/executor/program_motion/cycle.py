@@ -292,7 +292,7 @@ class Cycle:
             self._advance()
 
     def _read(self) -> None:
-        self._feed.pull(_BLOCKS, _BUFFER * self._context.machine.timing.lookahead)
+        self._feed.pull(_BLOCKS, _BUFFER * self._context.lateness.lookahead)
 
     def _advance(self) -> None:
         if self._context.spindle.waits and self._turns_next():

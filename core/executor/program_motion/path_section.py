@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from core.executor.lateness import Lateness
 from core.interpreter.shared.elementary_blocks import Block
 from core.motion.axis_limits import MotionLimits
 from core.motion.motion_path import Path, PathBuilder
@@ -187,9 +188,9 @@ class Tracks:
 class PlanQueue:
     """What is queued and what of the present plan is still to be; on the executor's thread alone."""
 
-    def __init__(self, axes: AxisSink, lookahead: float) -> None:
+    def __init__(self, axes: AxisSink, lateness: Lateness) -> None:
         self._axes = axes
-        self._lookahead = lookahead
+        self._lateness = lateness
         self._cost = 0.0  # s that planning took of late
         self._tracks = Tracks()
         self._profile: Profile | None = None
@@ -253,7 +254,11 @@ class PlanQueue:
 
     def extend(self, now: float) -> bool:
         """Keep it filled from the present plan; False when it is too late for that."""
-        if self._profile is None or self._queued_to - now >= self._lookahead or self.starving == np.inf:
+        if (
+            self._profile is None
+            or self._queued_to - now >= self._lateness.lookahead
+            or self.starving == np.inf
+        ):
             return True
         at = self._queued_to
         if at < self._axes.now() + self._axes.commit:
@@ -270,7 +275,7 @@ class PlanQueue:
 
     def _queue(self, t: float, origin: float, profile: Profile) -> None:
         """Splice the plan from ``t`` on, as far as the look-ahead, and its tail."""
-        ahead = self._axes.now() + self._lookahead + _AHEAD
+        ahead = self._axes.now() + self._lateness.lookahead + _AHEAD
         end = min(origin + profile.duration, max(ahead, t + _AHEAD))
         parts = [profile.segments(t - origin, end - origin, origin)]
         tracks = [Track(t, origin, profile)]

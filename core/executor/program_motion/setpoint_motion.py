@@ -33,7 +33,7 @@ class SetpointMotion:
         self._context = context
         self._axes = context.ports.axes
         self._limits = MotionLimits.of(machine.axes, machine.timing.setpoint, machine.limits.corner_tolerance)
-        self._queue = PlanQueue(self._axes, machine.timing.lookahead)
+        self._queue = PlanQueue(self._axes, context.lateness)
         self._section: PathSection | None = None
         self._pass: ThreadPass | GearedThreadPass | None = None  # instead of a path section
         self._retract: ThreadRetract | None = None
@@ -239,7 +239,7 @@ class SetpointMotion:
         """Read-ahead blocks join the path section before its braking end comes near."""
         now = self._context.now
         left = (self._pass.end if self._pass is not None else self._queue.planned_to) - now
-        ahead = self._context.machine.timing.lookahead
+        ahead = self._context.lateness.lookahead
         wanted = feed.seconds > 0.25 * ahead or feed.dry or left < 0.75 * ahead
         if feed.pending and wanted and left < 1.5 * ahead:
             self._add(feed.take())
