@@ -192,6 +192,7 @@ def check(file: str | None, *, json_wanted: bool) -> int:
             "errors": [],
             "changes": [change._asdict() for change in told],
             "ports": [{**row._asdict(), "verdict": row.verdict} for row in answers.rows],
+            "rights": [right._asdict() for right in answers.rights],
             "warnings": answers.warnings,
             "trouble": answers.trouble,
         },
@@ -205,6 +206,9 @@ def check(file: str | None, *, json_wanted: bool) -> int:
         unchecked = [row.name for row in answers.rows if row.verdict == NOT_CHECKED]
         if unchecked:
             sys.stdout.write(f"  not checked, because no hardware reports them: {summary(unchecked)}\n")
+        for right in answers.rights:
+            sys.stdout.write(f"  computer: {right.name}: {right.granted}\n")
+            sys.stdout.write(f"    {right.missing}\n" if right.missing else "")
         sys.stdout.write("".join(f"  changed since it was accepted: {change}\n" for change in told))
     said = (*answers.warnings, *answers.trouble)
     sys.stderr.write("".join(f"turndesk: {machine.source}: {text}\n" for text in said))

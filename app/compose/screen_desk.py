@@ -12,9 +12,10 @@ from typing import TYPE_CHECKING
 
 from app.compose.backends.backend_entry import NO_PRIORITY, Connected, has_inverter, played
 from app.compose.backends.connection import connect
-from app.compose.control.control_client import ControlClient, find_control
+from app.compose.control.control_begin import Begun, begin_control
+from app.compose.control.control_client import ControlClient
 from app.compose.control.control_events import ControlEvents
-from app.compose.control.control_start import StartedControl, start_control
+from app.compose.control.control_start import StartedControl
 from app.compose.control.left_note import take_note
 from app.compose.desk_functions import furnish, give_production, give_scope, keep_status
 from app.compose.extra import drawing_endings, extras
@@ -84,7 +85,6 @@ SUPERVISED = {
     "commands": "OPERATION OF THE CONTROL",
     **{name: what for extra in extras().values() for name, what in extra.threads.items()},
 }
-OWN_PROCESS = sys.platform == "linux"  # elsewhere the control runs on a thread of the screen's process
 CONTROL_CLOSES = 30.0  # s: as the executor and its drivers, and then the process is killed
 EXECUTOR_CLOSES = 12.0  # s: drives that come on are waited for, then the machine is halted
 STORE_CLOSES = 15.0  # s: a slow disk takes what waits in memory
@@ -95,17 +95,15 @@ GIVE_WAY = 0.001  # seconds after which a worker that proves or draws lets the s
 def build_desk(
     machine_file: str | None = None,
     offsets: Callable[[], Offsets] = stored_offsets,
-    *,
-    own_process: bool = OWN_PROCESS,
+    begun: Begun | None = None,
 ) -> Desk:
     """The desk on the machine that a file describes, its control running. Close it with ``Desk.close``.
 
-    ``own_process``: the control runs in a process of its own. Raises CommandError for a bad machine file and
-    for a machine that does not answer.
+    ``begun`` is what ``begin_control`` has returned for this file; None: it begins now. Raises CommandError
+    for a bad machine file and for a machine that does not answer.
     """
     sys.setswitchinterval(GIVE_WAY)
-    machine = read_machine(machine_file)
-    control = _begin_control(machine) if own_process else None
+    machine, control = begun or begin_control(machine_file)
     journal, log = Journal.at_home(goes_on=isinstance(control, ControlClient)), Log()
     try:
         remember_machine(machine_file, journal)
@@ -114,6 +112,8 @@ def build_desk(
         else:
             desk = _desk_on_process(machine, offsets, journal, control)
     except BaseException:
+        if isinstance(control, StartedControl):
+            control.abandon()
         journal.close()
         log.close()
         raise
@@ -133,12 +133,6 @@ def build_desk(
     gc.set_threshold(*_OFTEN)
     file.start()
     return desk
-
-
-def _begin_control(machine: Machine) -> ControlClient | StartedControl:
-    """Find the control that a killed screen has left, or begin to start one."""
-    with as_command_error(DriverError):
-        return find_control(machine, data_folder()) or start_control(machine, data_folder())
 
 
 def _desk_on_thread(machine: Machine, offsets: Callable[[], Offsets], journal: Journal) -> Desk:
@@ -187,6 +181,9 @@ def _desk_on_process(
         client.records,
     )
     desk = _desk_of(machine, used, events, offsets)
+    for right in client.hello.rights:
+        words = Message("control process: {name}: {granted}", name=right.name, granted=right.granted)
+        events.say("rights", right.missing or words)
     threads = ThreadWatch(SUPERVISED, partial(_thread_ended, desk, journal))
     desk.closing.stops += [
         ClosingStep("threads", threads.end),  # what ends from now on ends in good order

@@ -39,12 +39,13 @@ def run_screen(
     the composed one); a ``kiosk`` fills the screen and is not closed by hand.
     What building raises is raised here, after the window is gone.
     """
+    build = build or _composed(machine, offsets)
     app = _application(theme)
     app.setQuitOnLastWindowClosed(False)  # it posts a quit that would outlive this loop
     window = MainWindow(Look(PALETTES[theme]), app.quit)
     window.kiosk = kiosk
     window.open_on(app.primaryScreen())
-    start = _Start(window, build or (lambda: _composed(machine, offsets)), program)
+    start = _Start(window, build, program)
     before, sys.excepthook = sys.excepthook, start.mistake
     # Not quit: a window may refuse to close while a program is under way, a computer going down cannot wait.
     handlers = [(number, signal.signal(number, lambda *_: app.exit(0))) for number in ENDING]
@@ -93,11 +94,19 @@ class _Start:
             raise self._trouble
 
 
-def _composed(machine: str | None, offsets: str | None) -> Desk:
-    from app.compose.screen_desk import build_desk
-    from app.compose.stored_offsets import chosen_offsets
+def _composed(machine: str | None, offsets: str | None) -> BuildDesk:
+    """Begin to start the control, and return what makes the desk on it once the window is there."""
+    from app.compose.control.control_begin import begin_control
 
-    return build_desk(machine, chosen_offsets(offsets))
+    begun = begin_control(machine)
+
+    def build() -> Desk:
+        from app.compose.screen_desk import build_desk
+        from app.compose.stored_offsets import chosen_offsets
+
+        return build_desk(machine, chosen_offsets(offsets), begun)
+
+    return build
 
 
 def _application(theme: str) -> QApplication:

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import ctypes
-import gc
-import os
 import select
 import socket
 from collections.abc import Mapping
@@ -15,10 +12,10 @@ from core.message import Message
 from core.ports import Clock, DriverError
 from drivers.driver_host.host_messages import Inbox, packed
 from drivers.driver_host.host_server import Driven, DriverHost
+from drivers.process_rights import ask_real_time, lock_memory
 from drivers.waiting import RealClock
 
 PRIORITY = 50
-_CURRENT, _FUTURE = 1, 2  # MCL_CURRENT and MCL_FUTURE of mlockall(2)
 _CHUNK = 1 << 16
 TRIAL = 0.3  # s
 _LAST = 30.0  # s that an orphaned driver host has to bring the slides to rest; no queue is longer
@@ -26,16 +23,9 @@ _LAST = 30.0  # s that an orphaned driver host has to bring the slides to rest; 
 
 def real_time(priority: int = PRIORITY) -> list[str]:
     """Ask for SCHED_FIFO; what was refused, in words for the operator."""
-    try:
-        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(priority))
-    except (OSError, AttributeError) as error:
-        return [
-            Message(
-                "the driver host runs without real-time priority ({cause}); see docs/integrator/computer.md",
-                cause=_why(error),
-            )
-        ]
-    return []
+    cause = ask_real_time("SCHED_FIFO", priority)
+    words = "the driver host runs without real-time priority ({cause}); see docs/integrator/computer.md"
+    return [Message(words, cause=cause)] if cause else []
 
 
 def late_at_trial(period: float) -> float:
@@ -50,20 +40,10 @@ def late_at_trial(period: float) -> float:
 
 
 def keep_memory() -> list[str]:
-    """Lock what is there once the drivers stand, and what comes, and collect garbage no more than needed.
-
-    Returns what was refused, in words for the operator. Under a limit only what is there is locked: with
-    ``MCL_FUTURE`` the first allocation beyond the limit would fail, in the middle of a cut.
-    """
-    gc.collect()
-    gc.freeze()
-    limit = _memory_limit()
-    try:
-        libc = ctypes.CDLL(None, use_errno=True)
-        if libc.mlockall(_CURRENT if limit else _CURRENT | _FUTURE) != 0:
-            return [_not_locked(os.strerror(ctypes.get_errno()))]
-    except (OSError, AttributeError) as error:
-        return [_not_locked(_why(error))]
+    """Lock the memory once the drivers stand; what was refused, in words for the operator."""
+    cause, limit = lock_memory()
+    if cause:
+        return [Message("the driver host's memory is not locked ({cause})", cause=cause)]
     if not limit:
         return []
     return [
@@ -73,20 +53,6 @@ def keep_memory() -> list[str]:
             limit=limit >> 20,
         )
     ]
-
-
-def _not_locked(cause: str) -> str:
-    return Message("the driver host's memory is not locked ({cause})", cause=cause)
-
-
-def _memory_limit() -> int:
-    """Bytes that may be locked; 0: as many as there are, which an administrator always may."""
-    if not hasattr(os, "geteuid") or os.geteuid() == 0:
-        return 0
-    import resource  # noqa: PLC0415  not on every system
-
-    limit, _ = resource.getrlimit(resource.RLIMIT_MEMLOCK)
-    return 0 if limit == resource.RLIM_INFINITY else limit
 
 
 def serve(
@@ -186,7 +152,3 @@ def _send(sock: socket.socket, data: bytes) -> None:
         sock.sendall(data)
     finally:
         sock.setblocking(False)
-
-
-def _why(error: Exception) -> str:
-    return getattr(error, "strerror", None) or str(error)

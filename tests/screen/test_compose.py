@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from app.compose.machine.machine_setup import read_machine
 from app.compose.runs.journal import Journal
 from app.compose.screen_desk import build_desk
 from app.compose.stored_offsets import NONE, book_of, chosen_offsets, stored_offsets
@@ -122,7 +123,7 @@ def test_closing_the_desk_ends_its_threads() -> None:
 
 
 def test_a_control_on_a_thread_ends_with_its_desk() -> None:
-    desk = build_desk(own_process=False)
+    desk = build_desk(begun=(read_machine(None), None))
     assert any(thread.name == "executor" for thread in threading.enumerate())
     desk.close()
     assert not any(thread.name == "executor" for thread in threading.enumerate())

@@ -308,6 +308,10 @@ ports[].at | string | | Where it is connected.
 ports[].state | string | | State, such as ok, on, off, not checked, no answer, missing, wrong or fault.
 ports[].detail | string | | Details; may be empty.
 ports[].verdict | string | | ok, FAIL, or not checked if no hardware reports the value.
+rights | list | | Rights that the computer grants the process of the control.
+rights[].name | string | | Name of the right.
+rights[].granted | string | | What was granted.
+rights[].missing | string | | Consequence and remedy; empty if nothing is missing.
 warnings | list | | Warnings, as sentences.
 trouble | list | | Failures, as sentences; if there are any, the exit status is 1.
 """

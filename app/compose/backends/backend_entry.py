@@ -14,6 +14,7 @@ from core.machine.machine_model import Axis, Machine
 from core.ports import Clock, DriverError, MachinePorts
 
 if TYPE_CHECKING:
+    from app.compose.control.rights import Right
     from app.desk.station_hands import StationPanel
     from drivers.driver_host.host_server import Driven
 
@@ -177,8 +178,12 @@ class Row(NamedTuple):
 
 @dataclass(slots=True)
 class Answers:
-    """What answered; ``warnings``: worth knowing although nothing is broken; ``trouble``: what is."""
+    """What answered; ``warnings``: worth knowing although nothing is broken; ``trouble``: what is.
+
+    ``rights`` are those that the computer grants the process of the control.
+    """
 
     rows: list[Row] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
     trouble: list[str] = field(default_factory=list)
+    rights: tuple[Right, ...] = ()

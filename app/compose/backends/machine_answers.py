@@ -16,6 +16,7 @@ from app.compose.backends.backend_entry import (
     played,
 )
 from app.compose.backends.connection import connect, real_time, wired
+from app.compose.control.rights import OWN_PROCESS, check_rights
 from app.compose.extra import extras
 from core.key_declaration import Unit, shown
 from core.machine.machine_model import Axis, Machine
@@ -46,6 +47,7 @@ def check_ports(machine: Machine) -> Answers:
     except DriverError as error:
         answers.rows.append(Row(_blamed(machine), "", "no answer", str(error)))
         answers.trouble.append(str(error))
+    answers.rights = check_rights() if OWN_PROCESS else ()
     for extra in extras().values():
         extra.check(machine, answers)
     return answers

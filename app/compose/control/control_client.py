@@ -29,7 +29,6 @@ from app.compose.control.control_messages import (
     SetInput,
     Shown,
     ThreadEnded,
-    socket_path,
 )
 from app.compose.control.control_start import StartedControl
 from app.compose.control.shared_memory import SharedMemory
@@ -231,14 +230,13 @@ def _hello(connection: Connection, limit: float) -> Hello:
             )
 
 
-def find_control(machine: Machine, folder: Path) -> ControlClient | None:
-    """Return the control that runs already, since its screen was killed; None where there is none.
+def find_control(machine: Machine, folder: Path, path: Path) -> ControlClient | None:
+    """Return the control that runs already, since its screen was killed.
+
+    It listens at the socket ``path``. Returns None where nobody does.
 
     Raises DriverError where it runs another machine file.
     """
-    path = socket_path(folder)
-    if path is None or not path.is_socket():
-        return None
     try:
         found = ControlClient(StartedControl(Client(str(path), "AF_UNIX"), None), folder)
     except (OSError, DriverError):

@@ -9,10 +9,10 @@ import os
 import struct
 from contextlib import suppress
 from multiprocessing.connection import Connection
-from pathlib import Path
 from socket import AF_UNIX, SO_PEERCRED, SOCK_STREAM, SOL_SOCKET, fromfd
 from typing import NamedTuple
 
+from app.compose.control.rights import Right
 from core.executor.commands import Command
 from core.executor.snapshot import Event, InterruptedJob, Snapshot
 from core.machine.machine_model import Machine
@@ -20,7 +20,6 @@ from core.records.record_ring import Recorded
 
 VERSION = 1  # of these messages
 STALE = 0.5  # s after which a press that moves something does not count any more
-_PATH_LENGTH = 100  # bytes of the path of a socket; Linux allows 107
 _CREDENTIALS = struct.Struct("3i")  # process, user, group
 
 
@@ -73,7 +72,7 @@ class Hello(NamedTuple):
     machine: Machine  # that the control runs
     zero: float  # of its clock: s of the monotonic clock of the computer
     warnings: tuple[str, ...]
-    rights: tuple[str, ...]  # that the system has refused, in sentences
+    rights: tuple[Right, ...]  # that the system has granted and refused
     recorded: Recorded
     trouble: str  # why the scope does not write its file
     station: bool  # whether the station on the screen operates this machine
@@ -116,15 +115,6 @@ class ThreadEnded(NamedTuple):
 
 class Closed(NamedTuple):
     """The machine is stopped and its drivers are closed."""
-
-
-def socket_path(folder: Path) -> Path | None:
-    """Return where the control of this data folder listens for a screen.
-
-    Returns None if the path is too long for a socket. Nobody can find such a control again.
-    """
-    path = folder / "control.sock"
-    return path if len(os.fsencode(path)) < _PATH_LENGTH else None
 
 
 def is_own_user(connection: Connection) -> bool:

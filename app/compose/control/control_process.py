@@ -17,8 +17,9 @@ from contextlib import suppress
 from multiprocessing.connection import Connection, Listener
 from pathlib import Path
 
-from app.compose.control.control_messages import Failed, is_own_user, socket_path
+from app.compose.control.control_messages import Failed, is_own_user
 from app.compose.control.control_server import LOOK, ControlServer
+from app.compose.control.control_start import socket_path
 from app.compose.control.rights import acquire_rights
 from app.compose.runs.error_log import Log
 from core.machine.machine_model import Machine
@@ -38,7 +39,7 @@ def main(arguments: list[str]) -> int:
     log = Log(LOG_FILE)
     rights = acquire_rights()
     try:
-        server = ControlServer(machine, clock, folder, tuple(each.lacks for each in rights if each.lacks))
+        server = ControlServer(machine, clock, folder, rights)
     except DriverError as error:
         with suppress(OSError):
             first.send(Failed(error.fault if isinstance(error.fault, str) else str(error)))

@@ -34,6 +34,7 @@ from app.compose.control.control_messages import (
     ThreadEnded,
 )
 from app.compose.control.left_note import remove_note, save_note
+from app.compose.control.rights import Right
 from app.compose.control.shared_memory import SharedMemory
 from core.executor.commands import BarNextPart, Command, FeedHold, JogStop, LoadJob, Prepare, Renew
 from core.executor.executor import STARTS, Executor
@@ -154,7 +155,7 @@ class ControlServer:
     ``folder`` is the data folder, in which the scope writes its records.
     """
 
-    def __init__(self, machine: Machine, clock: RealClock, folder: Path, rights: tuple[str, ...]) -> None:
+    def __init__(self, machine: Machine, clock: RealClock, folder: Path, rights: tuple[Right, ...]) -> None:
         self._machine, self._clock, self._folder, self._rights = machine, clock, folder, rights
         self._connected = connect(machine, clock)
         recorded = recorded_of(machine, self._connected.ports)

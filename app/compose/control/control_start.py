@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import pickle
 import socket
 import subprocess
@@ -12,6 +13,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from core.machine.machine_model import Machine
+
+_PATH_LENGTH = 100  # bytes of the path of a socket; Linux allows 107
 
 
 class StartedControl(NamedTuple):
@@ -26,6 +29,15 @@ class StartedControl(NamedTuple):
         if self.process is not None:
             self.process.kill()
             self.process.wait()
+
+
+def socket_path(folder: Path) -> Path | None:
+    """Return where the control of this data folder listens for a screen.
+
+    Returns None if the path is too long for a socket. Nobody can find such a control again.
+    """
+    path = folder / "control.sock"
+    return path if len(os.fsencode(path)) < _PATH_LENGTH else None
 
 
 def start_control(machine: Machine, folder: Path) -> StartedControl:

@@ -1,82 +1,82 @@
-"""What the system grants the process of the control: a real-time class, or a better nice value."""
+"""What the system grants the process of the control: real-time priority, locked memory, nice value."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+import sys
 from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
 
 from core.message import Message
+from drivers.process_rights import ask_real_time, lock_memory
 
+OWN_PROCESS = sys.platform == "linux"  # elsewhere the control runs on a thread of the screen's process
 PRIORITY = 40  # of SCHED_RR: below the driver host, whose bus has the shorter period
 NICE = -10
 _AUTOGROUP = Path("/proc/sys/kernel/sched_autogroup_enabled")
 
 
 class Right(NamedTuple):
-    """One right. ``lacks`` is what it costs to be without it, empty where it is granted."""
+    """One right: what was granted, and what is missing without it, empty if nothing is."""
 
     name: str
-    value: str
-    lacks: str = ""
+    granted: str
+    missing: str = ""
 
 
 def acquire_rights() -> tuple[Right, ...]:
-    """Ask the system for what a control needs, and return what was granted. Raises nothing."""
+    """Ask the system for all of them, for this process. Raises nothing."""
     scheduling = _scheduling()
-    rights = [scheduling]
-    if scheduling.lacks:
-        rights.append(_nice())
-        rights += _autogroup()
-    return tuple(rights)
+    others = (_nice(), *_autogroup()) if scheduling.missing else ()
+    return scheduling, _memory(), *others
+
+
+def check_rights() -> tuple[Right, ...]:
+    """Return what a control would be granted; this process gives it back."""
+    rights = (_scheduling(), _nice(), *_autogroup())
+    with suppress(OSError, AttributeError):
+        os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
+        os.setpriority(os.PRIO_PROCESS, 0, 0)
+    return rights
 
 
 def _scheduling() -> Right:
-    try:
-        os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(PRIORITY))
-    except (OSError, AttributeError) as error:
-        return Right(
-            "real-time priority",
-            "no",
-            Message(
-                "other programs can delay the control ({cause}); to grant it, add the line "
-                "'{user} - rtprio {priority}' to /etc/security/limits.d/turndesk.conf, then sign in again",
-                cause=getattr(error, "strerror", None) or str(error),
-                user=_user(),
-                priority=PRIORITY + 20,
-            ),
-        )
-    return Right("real-time priority", f"SCHED_RR {PRIORITY}")
+    cause = ask_real_time("SCHED_RR", PRIORITY)
+    if not cause:
+        return Right("real-time priority", Message("SCHED_RR {priority}", priority=PRIORITY))
+    words = (
+        "other programs can delay the control ({cause}). To prevent this, add the line "
+        "'@machine - rtprio 60' to /etc/security/limits.d/turndesk.conf and log in again"
+    )
+    return Right("real-time priority", "no", Message(words, cause=cause))
+
+
+def _memory() -> Right:
+    cause, limit = lock_memory()
+    words = (
+        "the system can move memory of the control to the disk ({cause}). To prevent this, add the line "
+        "'@machine - memlock unlimited' to /etc/security/limits.d/turndesk.conf and log in again"
+    )
+    if cause:
+        return Right("locked memory", "no", Message(words, cause=cause))
+    return Right("locked memory", Message("{limit} MB", limit=limit >> 20) if limit else "all")
 
 
 def _nice() -> Right:
     with suppress(OSError, AttributeError):
         os.setpriority(os.PRIO_PROCESS, 0, NICE)
         return Right("nice value", str(NICE))
-    return Right(
-        "nice value",
-        "0",
-        Message(
-            "the control has the same priority as other programs; to grant a better one, add the line "
-            "'{user} - nice {nice}' to /etc/security/limits.d/turndesk.conf, then sign in again",
-            user=_user(),
-            nice=NICE,
-        ),
+    words = (
+        "the control has the priority of any other program. To improve it, add the line "
+        "'@machine - nice -10' to /etc/security/limits.d/turndesk.conf and log in again"
     )
+    return Right("nice value", "0", words)
 
 
-def _autogroup() -> Iterator[Right]:
-    """A kernel that groups processes by their session makes nice values count within a session only."""
+def _autogroup() -> tuple[Right, ...]:
+    """A kernel that groups processes by session makes nice values count within one session only."""
     with suppress(OSError):
         if _AUTOGROUP.read_text().strip() == "1":
-            yield Right("automatic groups", "on")
-
-
-def _user() -> str:
-    import getpass
-
-    with suppress(OSError, KeyError):
-        return getpass.getuser()
-    return "USER"
+            return (Right("automatic groups", "on"),)
+    return ()
