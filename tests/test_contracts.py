@@ -144,6 +144,9 @@ def test_pickle_goes_between_our_own_processes_alone() -> None:
         "app/cli/proofs/proof_job.py",
         "app/cli/proofs/proof_work.py",
         "app/compose/backends/driver_host_process.py",
+        "app/compose/control/control_client.py",
+        "app/compose/control/control_process.py",
+        "app/compose/control/control_start.py",
     }
     house = Path(__file__).parents[1]
     paths = [path for top in OURS for path in (house / top).rglob("*.py")]

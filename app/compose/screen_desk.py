@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from app.compose.backends.backend_entry import NO_PRIORITY, Connected, has_inverter, played
 from app.compose.backends.connection import connect
-from app.compose.control.control_begin import Begun, begin_control
+from app.compose.control.control_begin import begin_control
 from app.compose.control.control_client import ControlClient
 from app.compose.control.control_events import ControlEvents
 from app.compose.control.control_start import StartedControl
@@ -71,6 +71,7 @@ from core.store.store_rows import EventRow
 from drivers.waiting import RealClock
 
 if TYPE_CHECKING:
+    from app.compose.control.control_begin import Begun
     from app.editor.editor import Editor
 
 # Threads beside the executor, and what an operator misses when they end.

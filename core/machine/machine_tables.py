@@ -62,8 +62,8 @@ class General:
         default="hold",
         choices=("hold", "continue"),
         meaning="Reaction to a screen that has not answered for 3 s, or that was killed, during a program. "
-        '"hold": feed hold. "continue": the part under way is finished, and no other part begins until the '
-        "screen is back.",
+        '"hold": feed hold. "continue": the machine finishes the part, and no other part begins before the '
+        "screen responds again.",
     )
     x_is: str = file_key(
         default="diameter",

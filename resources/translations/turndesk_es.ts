@@ -5460,6 +5460,11 @@
     </message>
     <message>
       <location filename="app/compose/screen_desk.py" />
+      <source>OPERATION OF THE CONTROL</source>
+      <translation>MANEJO DEL CONTROL</translation>
+    </message>
+    <message>
+      <location filename="app/compose/screen_desk.py" />
       <source>PROGRAM FILE MONITOR</source>
       <translation>VIGILANCIA DEL ARCHIVO DEL PROGRAMA</translation>
     </message>
@@ -5482,6 +5487,11 @@
       <location filename="app/compose/screen_desk.py" />
       <source>STORAGE OF OFFSETS AND COUNTS</source>
       <translation>ALMACENAMIENTO DE CORRECTORES Y CUENTAS</translation>
+    </message>
+    <message>
+      <location filename="app/compose/screen_desk.py" />
+      <source>control process: {name}: {granted}</source>
+      <translation>proceso del control: {name}: {granted}</translation>
     </message>
     <message>
       <location filename="app/compose/screen_desk.py" />
@@ -5870,6 +5880,16 @@
     </message>
     <message>
       <location filename="app/desk/programs/first_program.py" />
+      <source>RUNNING PROGRAM {name} NOT FOUND. ITS TEXT IS NOT SHOWN</source>
+      <translation>PROGRAMA EN CURSO {name} NO ENCONTRADO. NO SE MUESTRA SU TEXTO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/programs/first_program.py" />
+      <source>SCREEN RESTARTED. PROGRAM {name} IS NOT FINISHED</source>
+      <translation>PANTALLA REINICIADA. EL PROGRAMA {name} NO HA TERMINADO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/programs/first_program.py" />
       <source>{name} NOT LOADED: THE INTERRUPTED JOB WAS LOADED INSTEAD</source>
       <translation>{name} NO SE CARGÓ: EN SU LUGAR SE CARGÓ EL TRABAJO INTERRUMPIDO</translation>
     </message>
@@ -6042,6 +6062,11 @@
       <location filename="app/desk/standard_input.py" />
       <source>stdin is closed, so the {what} cannot be read from it; specify a file</source>
       <translation>stdin está cerrado y «{what}» no se puede leer de ahí; indique un archivo</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/busy_notice.py" />
+      <source>COMPUTER BUSY: HOLD REACTS {seconds} S LATER</source>
+      <translation>ORDENADOR OCUPADO: EL PARO DE AVANCE ACTÚA {seconds} S MÁS TARDE</translation>
     </message>
     <message>
       <location filename="app/desk/status/formats.py" />
@@ -17690,6 +17715,11 @@
     </message>
     <message>
       <location filename="core/executor/executor.py" />
+      <source>the computer is busy: a feed hold reacts up to {seconds} s later</source>
+      <translation>el ordenador está ocupado: el paro de avance actúa hasta {seconds} s más tarde</translation>
+    </message>
+    <message>
+      <location filename="core/executor/executor.py" />
       <source>the control software did not run for {now} s</source>
       <translation>el software del control no se ejecutó durante {now} s</translation>
     </message>
@@ -18325,18 +18355,8 @@
     </message>
     <message>
       <location filename="core/executor/recorder.py" />
-      <source>the record of this alarm is still being saved; try again in 2 s</source>
-      <translation>el registro de esta alarma aún se está guardando; reintente en 2 s</translation>
-    </message>
-    <message>
-      <location filename="core/executor/recorder.py" />
       <source>the scope record is stored in memory only: {error}</source>
       <translation>el registro del osciloscopio se guarda sólo en memoria: {error}</translation>
-    </message>
-    <message>
-      <location filename="core/executor/recorder.py" />
-      <source>this alarm record was deleted; only the newest {saved} are stored</source>
-      <translation>este registro de alarma se borró; sólo se guardan los {saved} más recientes</translation>
     </message>
     <message>
       <location filename="core/executor/recorder.py" />
@@ -31182,6 +31202,16 @@
       <location filename="core/records/record_file.py" />
       <source>{path} is not a scope record; choose a file that ends in {ending}</source>
       <translation>{path} no es un registro del osciloscopio; elija un archivo que termine en {ending}</translation>
+    </message>
+    <message>
+      <location filename="core/records/recordings.py" />
+      <source>the record of this alarm is still being saved; try again in 2 s</source>
+      <translation>el registro de esta alarma aún se está guardando; reintente en 2 s</translation>
+    </message>
+    <message>
+      <location filename="core/records/recordings.py" />
+      <source>this alarm record was deleted; only the newest {saved} are stored</source>
+      <translation>este registro de alarma se borró; sólo se guardan los {saved} más recientes</translation>
     </message>
     <message>
       <location filename="core/records/ring_file.py" />

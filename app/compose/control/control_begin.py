@@ -15,7 +15,7 @@ from core.machine.machine_model import Machine
 if TYPE_CHECKING:
     from app.compose.control.control_client import ControlClient
 
-Begun: TypeAlias = "tuple[Machine, ControlClient | StartedControl | None]"
+    Begun: TypeAlias = tuple[Machine, ControlClient | StartedControl | None]
 
 
 def begin_control(machine_file: str | None) -> Begun:

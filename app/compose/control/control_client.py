@@ -29,6 +29,7 @@ from app.compose.control.control_messages import (
     SetInput,
     Shown,
     ThreadEnded,
+    is_own_user,
 )
 from app.compose.control.control_start import StartedControl
 from app.compose.control.shared_memory import SharedMemory
@@ -238,7 +239,11 @@ def find_control(machine: Machine, folder: Path, path: Path) -> ControlClient | 
     Raises DriverError where it runs another machine file.
     """
     try:
-        found = ControlClient(StartedControl(Client(str(path), "AF_UNIX"), None), folder)
+        connection = Client(str(path), "AF_UNIX")
+        if not is_own_user(connection):  # what it sends is executed when it is read
+            connection.close()
+            return None
+        found = ControlClient(StartedControl(connection, None), folder)
     except (OSError, DriverError):
         return None
     if found.hello.machine == machine:
@@ -247,7 +252,7 @@ def find_control(machine: Machine, folder: Path, path: Path) -> ControlClient | 
     found.leave(close=not under_way)
     if under_way:
         raise DriverError(
-            "a program is under way in a control that runs another machine file: start TurnDesk with that "
+            "the control is running a program with another machine file: start TurnDesk with that "
             "machine file"
         )
     return None

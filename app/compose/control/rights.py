@@ -34,10 +34,15 @@ def acquire_rights() -> tuple[Right, ...]:
 
 def check_rights() -> tuple[Right, ...]:
     """Return what a control would be granted; this process gives it back."""
+    policy, priority, nice = (
+        os.sched_getscheduler(0),
+        os.sched_getparam(0),
+        os.getpriority(os.PRIO_PROCESS, 0),
+    )
     rights = (_scheduling(), _nice(), *_autogroup())
-    with suppress(OSError, AttributeError):
-        os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
-        os.setpriority(os.PRIO_PROCESS, 0, 0)
+    os.sched_setscheduler(0, policy, priority)
+    with suppress(OSError):
+        os.setpriority(os.PRIO_PROCESS, 0, nice)
     return rights
 
 

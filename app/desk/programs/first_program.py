@@ -51,6 +51,6 @@ def _show_program_under_way(desk: Desk, named: str | None) -> None:
     if path is None:
         words = "RUNNING PROGRAM {name} NOT FOUND. ITS TEXT IS NOT SHOWN"
     else:
-        words = "SCREEN RESTARTED. {name} IS STILL UNDER WAY"
+        words = "SCREEN RESTARTED. PROGRAM {name} IS NOT FINISHED"
         desk.session.load(path.absolute(), now.block_delete)
     desk.warn(tr(Message(words, name=now.program)))
