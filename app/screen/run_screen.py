@@ -6,17 +6,43 @@ import logging
 import signal
 import sys
 from collections.abc import Callable
+from pathlib import Path
 from types import TracebackType
 
 from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QApplication
 
 from app.desk.desk import Desk
-from app.desk.programs.first_program import begin_with
+from app.desk.translation import tr
 from app.screen import accessible
 from app.screen.look import PALETTES, Look, dress, load_fonts
 from app.screen.window.main_window import MainWindow
 from core.message import Message
+
+
+def begin_with(desk: Desk, named: str | None) -> None:
+    """At the start: the program that was interrupted, or else the one that is ``named``."""
+    found = desk.snapshot().interrupted
+    path = str(Path(named).absolute()) if named is not None else ""
+    if found is None:
+        if named is not None and not desk.choose(path):
+            desk.say(Message("FILE NOT FOUND: {named}", named=named))
+    elif named is not None and Path(named).name == found.program and desk.choose(path):
+        return
+    elif not desk.choose(found.program):
+        desk.say(
+            tr(
+                Message(
+                    "INTERRUPTED PROGRAM {name} NOT FOUND. F2: CHOOSE A PROGRAM",
+                    name=found.program,
+                )
+            )
+        )
+    elif named is not None:
+        desk.say(
+            tr(Message("{name} NOT LOADED: THE INTERRUPTED JOB WAS LOADED INSTEAD", name=Path(named).name))
+        )
+
 
 BuildDesk = Callable[[], Desk]
 _log = logging.getLogger(__name__)

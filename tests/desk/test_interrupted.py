@@ -9,13 +9,13 @@ from pathlib import Path
 import pytest
 
 from app.desk.desk import Desk
-from app.desk.programs.first_program import begin_with
 from app.desk.programs.program_loading import Loaded
 from app.desk.screen_settings import Units
 from app.desk.status import interrupted_notice
 from app.desk.status.formats import wall_time
 from app.programs.copy_rename_delete import RENAME
 from app.programs.program_list import ProgramList
+from app.screen.run_screen import begin_with
 from core.executor.commands import ConfirmStart, LoadJob
 from core.executor.snapshot import CONTROL_LOST, Snapshot, Starts, State
 from core.language.source import Dialect, Source
