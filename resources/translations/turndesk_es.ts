@@ -6984,36 +6984,6 @@
       <translation>{path} tiene más de {most_lines} líneas, demasiadas para este editor; divida el archivo en otro editor</translation>
     </message>
     <message>
-      <location filename="app/editor/edited_path_view.py" />
-      <source>CROSSHAIR NOT ON THE PATH. PRESS AN ARROW KEY TO MOVE IT</source>
-      <translation>LA CRUZ NO ESTÁ EN LA TRAYECTORIA. MUÉVALA CON UNA FLECHA</translation>
-    </message>
-    <message>
-      <location filename="app/editor/edited_path_view.py" />
-      <source>FEED HOLD</source>
-      <translation>RETENCIÓN DE AVANCE</translation>
-    </message>
-    <message>
-      <location filename="app/editor/edited_path_view.py" />
-      <source>PATH TO THE CURSOR</source>
-      <translation>TRAYECTORIA HASTA EL CURSOR</translation>
-    </message>
-    <message>
-      <location filename="app/editor/edited_path_view.py" />
-      <source>VIEW</source>
-      <translation>VISTA</translation>
-    </message>
-    <message>
-      <location filename="app/editor/edited_path_view.py" />
-      <source>ZOOM IN</source>
-      <translation>ACERCAR</translation>
-    </message>
-    <message>
-      <location filename="app/editor/edited_path_view.py" />
-      <source>ZOOM OUT</source>
-      <translation>ALEJAR</translation>
-    </message>
-    <message>
       <location filename="app/editor/editor.py" />
       <source>{document} SAVED</source>
       <translation>{document} GUARDADO</translation>
@@ -7155,8 +7125,18 @@
     </message>
     <message>
       <location filename="app/editor/editor_parts_view.py" />
+      <source>CROSSHAIR NOT ON THE PATH. PRESS AN ARROW KEY TO MOVE IT</source>
+      <translation>LA CRUZ NO ESTÁ EN LA TRAYECTORIA. MUÉVALA CON UNA FLECHA</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_parts_view.py" />
       <source>ERROR</source>
       <translation>ERROR</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_parts_view.py" />
+      <source>FEED HOLD</source>
+      <translation>RETENCIÓN DE AVANCE</translation>
     </message>
     <message>
       <location filename="app/editor/editor_parts_view.py" />
@@ -7175,13 +7155,33 @@
     </message>
     <message>
       <location filename="app/editor/editor_parts_view.py" />
+      <source>PATH TO THE CURSOR</source>
+      <translation>TRAYECTORIA HASTA EL CURSOR</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_parts_view.py" />
       <source>PROVED  ·  {blocks} BLOCKS  ·  CYCLE {time}</source>
       <translation>COMPROBADO  ·  {blocks} BLOQUES  ·  CICLO {time}</translation>
     </message>
     <message>
       <location filename="app/editor/editor_parts_view.py" />
+      <source>VIEW</source>
+      <translation>VISTA</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_parts_view.py" />
       <source>WARNING</source>
       <translation>AVISO</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_parts_view.py" />
+      <source>ZOOM IN</source>
+      <translation>ACERCAR</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_parts_view.py" />
+      <source>ZOOM OUT</source>
+      <translation>ALEJAR</translation>
     </message>
     <message>
       <location filename="app/editor/editor_parts_view.py" />
@@ -23634,16 +23634,6 @@
       <translation>El programa nunca llega a la línea {line}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/restart/mill_approach.py" />
-      <source>TOOL CALL {tool}</source>
-      <translation>TOOL CALL {tool}</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/restart/mill_approach.py" />
-      <source>the axes have no software limits</source>
-      <translation>los ejes no tienen límites por software</translation>
-    </message>
-    <message>
       <location filename="core/interpreter/restart/program_search.py" />
       <source>Line {line} does not exist; the last line of the program is {lines_count}.</source>
       <translation>La línea {line} no existe; la última línea del programa es la {lines_count}.</translation>
@@ -23697,6 +23687,16 @@
       <location filename="core/interpreter/restart/program_search.py" />
       <source>the program has errors before this line</source>
       <translation>el programa tiene errores antes de esta línea</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/restart_approach.py" />
+      <source>TOOL CALL {tool}</source>
+      <translation>TOOL CALL {tool}</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/restart_approach.py" />
+      <source>the axes have no software limits</source>
+      <translation>los ejes no tienen límites por software</translation>
     </message>
     <message>
       <location filename="core/interpreter/restart/restart_approach.py" />
