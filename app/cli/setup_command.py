@@ -3,25 +3,20 @@
 from __future__ import annotations
 
 import argparse
-import os
-import re
 import shlex
-import shutil
 import sys
 from collections.abc import Callable
-from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.cli.store_command import opened_store
 from app.cli.who_changes import add_as_option, note_change, who_may
-from app.desk.command_errors import EXIT_OK, CommandError, cannot_write
+from app.desk.command_errors import EXIT_OK, CommandError
 from core.access.access_table import Act
 from core.message import Message
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
-
 
 SHELLS = ("bash", "zsh", "fish")
 
@@ -95,6 +90,7 @@ def _load(args: argparse.Namespace) -> int:
 
 
 def _desktop(args: argparse.Namespace) -> int:
+    from app.cli.actions.desktop_entry import install, remove
 
     if args.remove and args.autostart:
         raise CommandError(
@@ -138,88 +134,3 @@ ACTIONS: dict[str, Callable[[argparse.Namespace], int]] = {
     "desktop": _desktop,
     "completion": _completion,
 }
-
-
-NAME = "turndesk"
-_RESERVED = re.compile(r"""[\s"'\\><~|&;$*?#()`]""")
-_ENTRY = """[Desktop Entry]
-Type=Application
-Name=TurnDesk
-GenericName=CNC lathe control
-Comment=Operator screen for OmniTurn-style lathes
-Comment[es]=El puesto de mando para tornos tipo OmniTurn
-Exec={command}
-Icon=turndesk
-Categories=Engineering;Science;
-StartupWMClass=turndesk
-Terminal=false
-"""
-
-
-def _under(variable: str, otherwise: str) -> Path:
-    named = os.environ.get(variable, "")
-    try:
-        return Path(named) if named else Path.home() / otherwise
-    except RuntimeError as error:
-        raise CommandError(
-            Message(
-                "this user has no home folder; set the environment variable {variable} to a folder",
-                variable=variable,
-            ),
-            "no-home",
-        ) from error
-
-
-def _places() -> tuple[Path, Path, Path]:
-    """The menu entry, the icon, the autostart."""
-    data, config = _under("XDG_DATA_HOME", ".local/share"), _under("XDG_CONFIG_HOME", ".config")
-    return (
-        data / "applications" / f"{NAME}.desktop",
-        data / "icons" / "hicolor" / "scalable" / "apps" / f"{NAME}.svg",
-        config / "autostart" / f"{NAME}.desktop",
-    )
-
-
-def _command() -> str:
-    """How this very installation is started again."""
-    beside = Path(sys.executable).with_name(NAME)
-    if beside.exists():
-        return _quoted(str(beside))
-    return Message("{executable} -m app.cli.main", executable=_quoted(sys.executable))
-
-
-def _quoted(word: str) -> str:
-    """As an entry's Exec wants a word with blanks or signs, not as a shell does; % stands for itself."""
-    if not _RESERVED.search(word):
-        return word.replace("%", "%%")
-    inside = re.sub(r'(["`$\\])', r"\\\1", word).replace("%", "%%")
-    return '"' + inside.replace("\\", "\\\\") + '"'  # a text of the entry has its own escapes beside
-
-
-def install(*, autostart: bool) -> list[Path]:
-    """Write them; the answer is what was written. Raises CommandError where that is not possible."""
-    entry, icon, start = _places()
-    try:
-        for path in (entry, icon, *((start,) if autostart else ())):
-            path.parent.mkdir(parents=True, exist_ok=True)
-        entry.write_text(_ENTRY.format(command=_command()), encoding="utf-8")
-        shutil.copyfile(str(files("resources") / "desktop" / f"{NAME}.svg"), icon)
-        if autostart:
-            start.write_text(_ENTRY.format(command=f"{_command()} --kiosk"), encoding="utf-8")
-    except OSError as error:
-        raise cannot_write(error.filename, error) from error
-    return [entry, icon, *([start] if autostart else [])]
-
-
-def remove() -> list[Path]:
-    """Take away what is there; the answer is what was. Raises CommandError where that is not possible."""
-    there = [path for path in _places() if path.exists()]
-    for path in there:
-        try:
-            path.unlink()
-        except OSError as error:
-            raise CommandError(
-                Message("{path} cannot be removed: {cause}", path=path, cause=error.strerror),
-                "cannot-remove",
-            ) from error
-    return there

@@ -94,7 +94,7 @@ APART = frozenset(
         *("mtconnect/shop_floor.py", "mtconnect_command.py", "pendant_wire.py"),
         *("office_desk.py", "office_check.py", "page_server.py", "shop_network_tables.py"),
         "profile_command.py",
-        "shapes_command.py",
+        *("shapes_command.py", "shape_steps.py"),
         *("screen/pdf_pages.py", "lines/sinumerik_lines.py"),
         "lines/live_lines.py",
         *(

@@ -23989,21 +23989,6 @@
       <translation>{name} se refiere al subprograma {named}, que no existe</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/cycles/cycle_contour.py" />
-      <source>C and frames are not allowed in a contour</source>
-      <translation>C y los frames no se permiten en un contorno</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/cycle_contour.py" />
-      <source>a contour can contain only G0, G1, G2 and G3</source>
-      <translation>un contorno sólo puede contener G0, G1, G2 y G3</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/cycle_contour.py" />
-      <source>a contour can contain only moves, but this line contains a call or a jump</source>
-      <translation>un contorno sólo puede contener movimientos, pero esta línea contiene una llamada o un salto</translation>
-    </message>
-    <message>
       <location filename="core/interpreter/sinumerik/cycles/cycle_parameters.py" />
       <source>Add this parameter to {call}.</source>
       <translation>Agregue este parámetro a {call}.</translation>
@@ -24450,6 +24435,11 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
+      <source>C and frames are not allowed in a contour</source>
+      <translation>C y los frames no se permiten en un contorno</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
       <source>Check the direction of the contour.</source>
       <translation>Compruebe la dirección del contorno.</translation>
     </message>
@@ -24492,6 +24482,16 @@
       <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
       <source>Write {name}.</source>
       <translation>Escriba {name}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
+      <source>a contour can contain only G0, G1, G2 and G3</source>
+      <translation>un contorno sólo puede contener G0, G1, G2 y G3</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
+      <source>a contour can contain only moves, but this line contains a call or a jump</source>
+      <translation>un contorno sólo puede contener movimientos, pero esta línea contiene una llamada o un salto</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />

@@ -63,6 +63,7 @@ BEHIND_A_RULE = {
     "transfer/line_transfer.py": "asked by serial_command.py and serial_transfer.py",
 }
 NO_CHANGE = {
+    "cli/actions/desktop_entry.py": "the menu of the system's user",
     "cli/json_reference/json_page.py": "a page of the manual",
     "cli/proofs/proof_cache.py": "proofs that can be made again",
     "cli/proofs/report_file.py": "a report, to a file of whoever asks",
