@@ -54,7 +54,7 @@ SENTENCES = (
     ("A box is taken off in passes", "roughing", "core/interpreter/omniturn/cycles/roughing_cycles.py"),
     ("A hole in pecks", "drilling", "core/interpreter/omniturn/cycles/drilling_cycles.py"),
     ("A chamfer where two lines meet", "chamfer", "core/interpreter/omniturn/motion/corners.py"),
-    ("Coarse feeds of G35", "coarse feeds", "core/interpreter/omniturn/motion/coarse_feeds.py"),
+    ("Coarse feeds of G35", "coarse feeds", "core/interpreter/omniturn/motion/feeds.py"),
     ("Milling with XC and ZC", "plane switching", "core/interpreter/omniturn/motion/plane_switching.py"),
     ("The spindle as a rotary axis", "c axis", "core/interpreter/omniturn/motion/c_axis.py"),
     ("A loop of blocks", "loops", "core/interpreter/omniturn/flow/loops_and_subroutines.py"),

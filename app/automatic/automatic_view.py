@@ -175,8 +175,8 @@ class AutomaticPage(Page):
             "Pan right": partial(looked_at.pan, 1, 0),
             "Pan up": partial(looked_at.pan, 0, -1),
             "Pan down": partial(looked_at.pan, 0, 1),
-            "Page up": lambda: self.listing.look_at(-self.listing.rows),
-            "Page down": lambda: self.listing.look_at(self.listing.rows),
+            "Page up": lambda: self.listing.scroll_by(-self.listing.rows),
+            "Page down": lambda: self.listing.scroll_by(self.listing.rows),
             "Follow": self.listing.follow,
         }
 

@@ -1,4 +1,4 @@
-"""The parts of the page EDITOR: the line over the text, which parts are seen when, and where they stand."""
+"""The parts of the page EDITOR: head line, path of the text, findings; which are seen when, and where."""
 
 from __future__ import annotations
 
@@ -11,27 +11,172 @@ from PySide6.QtCore import QRectF
 from PySide6.QtGui import QFontMetricsF, QResizeEvent
 from PySide6.QtWidgets import QWidget
 
+from app.desk.pages.sheet import Key
+from app.desk.status import formats
 from app.desk.translation import tr
 from app.editor.code_help_view import CodeList, CodeStrip
-from app.editor.edited_path_view import EditedPath
 from app.editor.editor import Editor
-from app.editor.findings_view import FindingList
+from app.editor.live_proof import Findings
 from app.editor.question_view import AskLine
-from app.editor.text_view import TextField, TypedText
+from app.editor.text_view import TONES, WORDS, TextField, TypedText
 from app.editor.versions_view import VersionList
+from app.path.path_aspects import Tip
+from app.path.path_view import PathView
 from app.screen.code_choices_view import CODE_LINE
 from app.screen.entry_panel import LetterPad, strike
 from app.screen.look import CENTRE, RIGHT, Look, Painter
 from app.screen.page_base import EditorPanel, HeadKey, Page
 from app.screen.panel import Panel, Shown
+from app.screen.sheet_panel import RowPanel
 from app.screen.window_layout import FINGER, Rect
 from app.working_plane.plane_instant import at_line, plane_words
 from app.working_plane.working_plane_view import WorkingPlaneView
+from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import dialect_of
 from core.message import Message
 
 if TYPE_CHECKING:
+    from app.path.part_player import PartPlayer
+    from app.path.path_pane_view import Pane, Place
     from app.path.path_picture import Picture
+
+
+class EditedPath(PathView):
+    """Keeps what is looked at while the text is typed, unless nobody has zoomed or panned.
+
+    ``go_to`` is told the source line of what is touched.
+    """
+
+    title = "PATH TO THE CURSOR"
+    keeps = True
+
+    def __init__(
+        self, look: Look, go_to: Callable[[int], None], parent: QWidget, player: PartPlayer | None = None
+    ) -> None:
+        super().__init__(look, parent, self._picked_block, player)
+        self._go_to = go_to
+        self._followed: tuple[Picture | None, int] = (None, 0)
+
+    @property
+    def tip(self) -> Tip:
+        """Where the line of the cursor ends."""
+        return self._tip or Tip()
+
+    def follow(self, line: int) -> None:
+        """The tip to the end of a source line, or of the nearest one before it that moves."""
+        picture = self.picture
+        if picture is None or not len(picture.z) or (picture, line) == self._followed:
+            return
+        self._followed = (picture, line)
+        block = picture.block_of_line(line)
+        if not block and self.player is not None:
+            self.player.want(0.0)  # before the first move
+        at = max(0, picture.points_done(block) - 1)
+        self.show_tip(Tip(block, float(picture.z[at]), float(picture.x[at])))
+        self.mark(picture.blocks_of_line(line))
+
+    def line_here(self) -> str:
+        """To the source line of what the cross stands on; answers a sentence where it stands on none."""
+        block = self.ruler.block() if self.ruler is not None else 0
+        if not block:
+            return tr("CROSSHAIR NOT ON THE PATH. PRESS AN ARROW KEY TO MOVE IT")
+        self._picked_block(block)
+        return ""
+
+    def keys(self) -> dict[int, Key]:
+        """The function keys while the keyboard is in the path."""
+        return {
+            2: Key("FEED HOLD", self._hold),
+            4: Key("VIEW", self.next_view),
+            5: Key("FIT", self.fit),
+            6: Key("ZOOM IN", partial(self.zoom, 1)),
+            7: Key("ZOOM OUT", partial(self.zoom, -1)),
+        }
+
+    def _hold(self) -> None:
+        """Measure from where the cross stands."""
+        if self.ruler is not None:
+            self.ruler.hold()
+            self.update()
+
+    def _picked_block(self, block: int) -> None:
+        line = self.picture.line_of_block(block) if self.picture is not None else 0
+        if line:
+            self._go_to(line)
+
+    def _place_in(self, pane: Pane, tip: Tip) -> Place | None:
+        return pane.end_of(tip.block)
+
+
+FOUND = 5.2  # units: two lines of text, at least a fingertip
+
+
+class FindingList(RowPanel):
+    """Rows in the order of lines; the row of the cursor's line is marked and stays visible."""
+
+    notch = 1
+
+    def __init__(self, look: Look, go_to: Callable[[Diagnostic], None], parent: QWidget) -> None:
+        super().__init__(look, parent)
+        self._go_to = go_to
+        self.findings = Findings()
+        self._line = 0
+
+    def show_findings(self, findings: Findings, line: int) -> None:
+        """What was found, and the cursor's line."""
+        if findings is not self.findings or line != self._line:
+            self.findings, self._line = findings, line
+            self.update()
+
+    @property
+    def words(self) -> str:
+        """What the title line of the list says."""
+        found = self.findings
+        if found.trouble:
+            return found.trouble
+        if not found.number:
+            return "PROVING"
+        if not found.diagnostics:
+            time = formats.duration(found.cycle_time)
+            return Message("PROVED  ·  {blocks} BLOCKS  ·  CYCLE {time}", blocks=found.blocks, time=time)
+        return Message(
+            "FINDINGS  ·  {errors}  ·  {warnings}",
+            errors=_many(found.errors, "ERROR"),
+            warnings=_many(found.warnings, "WARNING"),
+        )
+
+    def following(self, line: int) -> Diagnostic | None:
+        """The next error after a line, round the end; without errors the next of what else was found."""
+        placed = [d for d in self.findings.diagnostics if d.line]
+        found = [d for d in placed if d.severity is Severity.ERROR] or placed
+        return next((d for d in found if d.line > line), found[0] if found else None)
+
+    def draw(self, painter: Painter) -> None:
+        u, high, found = self.look.u, self.look.row(FOUND, 9.0, touch=True), self.findings.diagnostics
+        self.frame(painter, self.words)
+        room = QRectF(0.6 * u, 2.3 * u, self.width() - 1.2 * u, self.height() - 2.5 * u)
+        here = next((n for n, each in enumerate(found) if each.line == self._line), -1)
+        room = self.scrolled(painter, room, self.fitting(room, high, len(found)), len(found), here)
+        for number, box in self.boxes(room, high):
+            self._row(painter, box, found[number])
+
+    def _row(self, painter: Painter, box: QRectF, found: Diagnostic) -> None:
+        u = self.look.u
+        if found.line == self._line:
+            painter.fill(box, "here")
+        patch = QRectF(box.x() + 0.4 * u, box.center().y() - 1.6 * u, 3.2 * u, 3.2 * u)
+        painter.fill(patch, TONES[found.severity])
+        painter.write(patch, tr(WORDS[found.severity])[0], 2.0, "on_state", at=CENTRE)
+        line = QRectF(box.x() + 4.4 * u, box.y(), 8 * u, box.height())
+        painter.write(line, str(found.line or "FILE"), 1.8, "text")
+        room = box.adjusted(10.4 * u, 0.4 * u, -0.4 * u, -box.height() / 2)
+        painter.write(room, found.text, 1.8, "text", bold=False, fit=False)
+        painter.write(room.translated(0, room.height()), found.hint, 1.6, "soft", bold=False, fit=False)
+        self.place(box, lambda: self._go_to(found), kind="row", on=found.line == self._line)
+
+
+def _many(count: int, word: str) -> str:
+    return f"{count} {word}" if count == 1 else f"{count} {word}S"
 
 
 KEYS = 14.0  # units: width of the place that shows the keyboard, and of those that open a panel

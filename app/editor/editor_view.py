@@ -21,10 +21,8 @@ from app.desk.status.machine_status import MachineStatus
 from app.desk.status.prompt_line import MOVING
 from app.editor import editor_messages as messages
 from app.editor.code_help_view import CodeList, CodeStrip
-from app.editor.edited_path_view import EditedPath
 from app.editor.editor import Editor, Stage, enter
-from app.editor.editor_parts_view import ASKING, EditorParts, HeadLine, Mode
-from app.editor.findings_view import FindingList
+from app.editor.editor_parts_view import ASKING, EditedPath, EditorParts, FindingList, HeadLine, Mode
 from app.editor.question_view import AskLine, Finder
 from app.editor.text_view import TextField, TypedText
 from app.editor.versions import VersionHistory

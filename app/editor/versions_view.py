@@ -6,14 +6,14 @@ from collections.abc import Callable
 from functools import partial
 
 from PySide6.QtCore import QRectF, Qt
-from PySide6.QtGui import QWheelEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.pages.sheet import Key
 from app.desk.status.formats import local_time
 from app.editor.versions import DifferenceRow, VersionHistory
 from app.screen.look import LEFT, RIGHT, Look, Painter, put, put_raw
-from app.screen.panel import Panel, Shown
+from app.screen.panel import Shown
+from app.screen.sheet_panel import RowPanel
 from core.message import Message
 from core.store.store_rows import VersionRow
 
@@ -23,12 +23,15 @@ LIST = 50.0  # units: the list of versions
 INKS = {"+": "run", "-": "alarm", " ": "soft", "…": "off"}
 
 
-class VersionList(Panel):
-    """Redrawn when the history has another answer; marking one is the history's to do."""
+class VersionList(RowPanel):
+    """Redrawn when the history has another answer; marking one is the history's to do.
+
+    What scrolls are the lines of the comparison. The marked version is in the middle of the versions.
+    """
 
     title = "HISTORY"
+    keyed = False
     _shown: Shown[tuple[object, ...]] = Shown(())
-    _top = Shown(0)  # first line of the comparison
 
     def __init__(self, look: Look, history: VersionHistory, parent: QWidget) -> None:
         super().__init__(look, parent)
@@ -40,22 +43,8 @@ class VersionList(Panel):
         history = self._history
         now = (history.rows, history.marked, history.changes, history.words())
         if now[:3] != self._shown[:3]:
-            self._top = 0
+            self.top = 0
         self._shown = now
-
-    def look_at(self, lines: int) -> None:
-        """Look further down in the comparison."""
-        most = max(0, len(self._history.changes) - self.lines)
-        self._top = max(0, min(most, self._top + lines))
-
-    @property
-    def lines(self) -> int:
-        """How many lines of the comparison fit."""
-        return max(1, int((self.height() - 8.0 * self.look.u) / (LINE * self.look.u)))
-
-    def wheelEvent(self, event: QWheelEvent) -> None:
-        """Three lines a notch."""
-        self.look_at(-round(event.angleDelta().y() / 40))
 
     def draw(self, painter: Painter) -> None:
         u, history = self.look.u, self._history
@@ -64,8 +53,9 @@ class VersionList(Panel):
         first = max(0, min(history.marked - rows // 2, len(history.rows) - rows))
         for place, version in enumerate(history.rows[first : first + rows]):
             box = QRectF(1.2 * u, 3.0 * u + place * high, (LIST - 1.2) * u, high)
-            self._version(painter, box, version, first + place == history.marked)
-            self.place(box, partial(history.mark, first + place))
+            marked = first + place == history.marked
+            self._version(painter, box, version, marked)
+            self.place(box, partial(history.mark, first + place), kind="row", on=marked)
         self._comparison(painter)
 
     def _version(self, painter: Painter, box: QRectF, version: VersionRow, marked: bool) -> None:
@@ -90,10 +80,11 @@ class VersionList(Panel):
         room = QRectF((LIST + 2) * u, 2.8 * u, self.width() - (LIST + 3.4) * u, 3 * u)
         head = history.words() or history.heading()
         painter.write(room, head, 1.8, "text", fit=False)
-        row = QRectF(room.x(), 6.2 * u, room.width(), LINE * u)
-        for change in history.changes[self._top : self._top + self.lines]:
-            self._change(painter, row, change)
-            row.translate(0, LINE * u)
+        room = QRectF(room.x(), 6.2 * u, room.width(), self.height() - 8.0 * u)
+        count = len(history.changes)
+        self.scrolled(painter, room, self.fitting(room, LINE * u, count), count)
+        for number, row in self.boxes(room, LINE * u):
+            self._change(painter, row, history.changes[number])
 
     def _change(self, painter: Painter, row: QRectF, change: DifferenceRow) -> None:
         u = self.look.u
@@ -110,8 +101,8 @@ class VersionList(Panel):
         return {
             4: Key("NEWER", lambda: history.mark(history.marked - 1)),
             5: Key("OLDER", lambda: history.mark(history.marked + 1)),
-            6: Key("UP", lambda: self.look_at(-self.lines)),
-            7: Key("DOWN", lambda: self.look_at(self.lines)),
+            6: Key("UP", lambda: self.scroll_by(-self.rows)),
+            7: Key("DOWN", lambda: self.scroll_by(self.rows)),
         }
 
     def arrows(self) -> dict[int, Callable[[], None]]:

@@ -25,6 +25,7 @@ from app.screen.entry_panel import LINES, LetterPad
 from app.screen.look import RIGHT, Look, Painter
 from app.screen.page_base import Host, KeyActions, ModelPage
 from app.screen.panel import Panel, Press, Shown
+from app.screen.sheet_panel import RowPanel
 from core.executor.snapshot import CYCLE, Snapshot, Starts, State
 from core.interpreter.shared.checkpoint import Checkpoint
 from core.language.diagnostics import Diagnostic, Severity
@@ -91,7 +92,7 @@ class LinePanel(Panel):
 ROW = 3.4  # units
 
 
-class HistoryPanel(Panel):
+class HistoryPanel(RowPanel):
     """``back`` is how far up the line stands that was taken up, 0: none."""
 
     lines: Shown[tuple[str, ...]] = Shown(())  # oldest first
@@ -101,23 +102,24 @@ class HistoryPanel(Panel):
     def __init__(self, look: Look, choose: Callable[[int], None], parent: QWidget) -> None:
         super().__init__(look, parent)
         self._choose = choose
+        self._placed: object = None  # what was shown when the list last went to its end, or to the mark
 
     def draw(self, painter: Painter) -> None:
         self.frame(painter, tr("HISTORY  ·  UP AND DOWN ARROWS"))
-        u, room = self.look.u, self.inside()
-        rows = max(1, int(room.height() / (ROW * u)))
-        refused = dict(self.refused)
-        bottom = max(rows, len(self.lines) - max(0, self.back - rows))
-        for place, number in enumerate(range(max(0, bottom - rows), min(bottom, len(self.lines)))):
-            back = len(self.lines) - number
-            row = QRectF(room.x(), room.y() + place * ROW * u, room.width(), ROW * u)
+        u, room, count = self.look.u, self.inside(), len(self.lines)
+        fits, refused = self.fitting(room, ROW * u, count), dict(self.refused)
+        if (shown := (self.lines, self.back, fits)) != self._placed:
+            self.top, self._placed = count - max(fits, self.back), shown
+        room = self.scrolled(painter, room, fits, count)
+        for number, row in self.boxes(room, ROW * u):
+            back = count - number
             if back == self.back:
                 painter.fill(row, "here")
             line, text = row.adjusted(0.8 * u, 0, -0.8 * u, 0), self.lines[number]
             if text in refused:
                 self._refused(painter, line, text, refused[text])
             painter.write(line, text, 2.2, "text", bold=back == self.back, raw=True, fit=False)
-            self.place(row, partial(self._choose, back))
+            self.place(row, partial(self._choose, back), kind="row", on=back == self.back)
         if not self.lines:
             empty = QRectF(room.x(), room.y(), room.width(), 3 * u)
             painter.write(empty, tr("No lines run yet."), 2.0, "soft", bold=False)

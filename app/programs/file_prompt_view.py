@@ -24,7 +24,7 @@ class FilePrompt(RowPanel):
     """Asks for a program. Typing narrows the list; Return takes the exact name, else the marked row."""
 
     title = ASK_FILE
-    notch = 1
+    notch, centred = 1, True
 
     def __init__(
         self,
@@ -151,7 +151,7 @@ class FilePrompt(RowPanel):
         dress_line(self.edit, self.look, 2.6, 1.0)
 
     def scroll_by(self, rows: int) -> None:
-        """Move the mark: it is always in the middle of the list."""
+        """Move the mark."""
         self._mark(self._row + rows)
 
     def draw(self, painter: Painter) -> None:
@@ -170,7 +170,6 @@ class FilePrompt(RowPanel):
     def _list(self, painter: Painter) -> None:
         u = self.look.u
         fits = max(1, int((self.height() - 10.5 * u) / (ROW * u)))
-        self.top = self._row - fits // 2  # the mark is in the middle
         room = QRectF(1.6 * u, 8.0 * u, self.width() - 3.2 * u, fits * ROW * u)
         room = self.scrolled(painter, room, fits, len(self._entries), self._row)
         for number, box in self.boxes(room, ROW * u):

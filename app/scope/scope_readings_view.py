@@ -7,7 +7,6 @@ from collections.abc import Callable
 from functools import partial
 
 from PySide6.QtCore import QRectF
-from PySide6.QtGui import QWheelEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.status import formats
@@ -15,7 +14,8 @@ from app.scope.scope_curves import Sight
 from app.scope.scope_model import Scope
 from app.scope.signals import Signal
 from app.screen.look import CENTRE, CURVES, RIGHT, Look, Painter
-from app.screen.panel import Panel, Shown
+from app.screen.panel import Shown
+from app.screen.sheet_panel import RowPanel
 from app.screen.window_layout import FINGER
 from core.message import Message
 
@@ -23,17 +23,17 @@ _ROW = 5.6  # units at most
 _READ = 0.1  # s that a live figure stands
 
 
-class Readings(Panel):
+class Readings(RowPanel):
     """A row a curve; a finger marks it."""
 
     title = "VALUES"
+    notch = 1
     mark: Shown[object] = Shown(None)
 
     def __init__(self, look: Look, scope: Scope, choose: Callable[[int], None], parent: QWidget) -> None:
         super().__init__(look, parent)
         self.scope, self._choose = scope, choose
         self.sight = Sight()
-        self._top = 0
         self._known: object = None
         self.figures: tuple[tuple[str, ...], ...] = ()
 
@@ -65,10 +65,9 @@ class Readings(Panel):
         value = latest.get(signal.key, math.nan)
         return (f"{formats.fixed(value, places)} {unit}" if math.isfinite(value) else "",)
 
-    def wheelEvent(self, event: QWheelEvent) -> None:
-        """The next curve, or the one before."""
-        self._choose(max(0, self.scope.marked + (-1 if event.angleDelta().y() > 0 else 1)))
-        event.accept()
+    def scroll_by(self, rows: int) -> None:
+        """Mark the next curves, or the ones before."""
+        self._choose(self.scope.marked + rows)
 
     @property
     def high(self) -> float:
@@ -84,13 +83,13 @@ class Readings(Panel):
             row = QRectF(room.x(), room.y(), room.width(), 3 * u)
             painter.write(row, "Press F4 to select curves.", 1.8, "soft", bold=False)
             return
-        fits = max(1, int(room.height() / self.high))
+        fits = self.fitting(room, self.high, len(shown))
         marked = min(self.scope.marked, len(shown) - 1)
-        self._top = max(0, min(max(self._top, marked - fits + 1), marked, max(0, len(shown) - fits)))
-        for place, number in enumerate(range(self._top, min(len(shown), self._top + fits))):
-            box = QRectF(room.x(), room.y() + place * self.high, room.width(), self.high - 0.4 * u)
-            self._row(painter, box, number, shown[number])
-            self.place(box, partial(self._choose, number))
+        room = self.scrolled(painter, room, fits, len(shown), marked)
+        for number, row in self.boxes(room, self.high):
+            box = row.adjusted(0, 0, 0, -0.4 * u)
+            self._row(painter, box, number, shown[number], here=number == marked)
+            self.place(box, partial(self._choose, number), kind="row", on=number == marked)
 
     def _between(self, painter: Painter, room: QRectF) -> QRectF:
         """What lies between the cursors; the room below."""
@@ -108,10 +107,9 @@ class Readings(Panel):
         painter.write(row, f"1 / (B − A)   {hertz}", 1.8, "soft", raw=True)
         return room.adjusted(0, 5.8 * u, 0, 0)
 
-    def _row(self, painter: Painter, box: QRectF, number: int, signal: Signal) -> None:
+    def _row(self, painter: Painter, box: QRectF, number: int, signal: Signal, *, here: bool) -> None:
         u = self.look.u
         colours = CURVES[self.look.palette.name]
-        here = number == min(self.scope.marked, len(self.scope.shown) - 1)
         painter.fill(box, "here" if here else "key")
         patch = QRectF(box.x(), box.y(), 2.4 * u, box.height())
         painter.fillRect(patch, colours[number % len(colours)])

@@ -10,7 +10,8 @@ from PySide6.QtWidgets import QWidget
 
 from app.desk.pages.code_help import CodeHelp
 from app.screen.look import LEFT, Look, Painter, put_raw
-from app.screen.panel import Panel, Shown
+from app.screen.panel import Shown
+from app.screen.sheet_panel import RowPanel
 from core.language.code_book import Entry
 
 CODE_LINE = 5.2  # units: a finger's height, two lines of text
@@ -20,9 +21,10 @@ WORD_LINE = 2.3  # units: a word of the marked code, with its meaning
 _ONE_COLUMN = 6  # words that stand below each other
 
 
-class CodeChoices(Panel):
+class CodeChoices(RowPanel):
     """The choices, and of the marked one its words and lines that use it. ``take`` writes the marked code."""
 
+    notch, centred, keyed = 1, True, False
     _shown: Shown[tuple[object, ...]] = Shown(())
 
     def __init__(self, look: Look, codes: CodeHelp, take: Callable[[], None], parent: QWidget) -> None:
@@ -73,11 +75,12 @@ class CodeChoices(Panel):
         self.frame(painter, shown.title)
         if shown.chosen is None:
             return
-        rows = max(1, int((self.height() - self._foot() - 3.2 * u) / (CODE_LINE * u)))
-        first = max(0, min(shown.marked - rows // 2, len(shown.choices) - rows))
-        for place, entry in enumerate(shown.choices[first : first + rows]):
-            box = QRectF(0.8 * u, (2.4 + place * CODE_LINE) * u, self.width() - 1.6 * u, CODE_LINE * u)
-            self._row(painter, box, entry, first + place)
+        high = CODE_LINE * u
+        room = QRectF(0.8 * u, 2.4 * u, self.width() - 1.6 * u, self.height() - self._foot() - 3.2 * u)
+        count = len(shown.choices)
+        self.scrolled(painter, room, self.fitting(room, high, count), count, shown.marked)
+        for number, box in self.boxes(room, high):
+            self._row(painter, box, shown.choices[number], number)
         self._write_words(painter)
         lines = shown.chosen.example.splitlines()[:MOST_LINES]
         row = QRectF(1.6 * u, self.height() - (len(lines) * LINE + 1.4) * u, self.width() - 3.2 * u, LINE * u)
@@ -93,7 +96,11 @@ class CodeChoices(Panel):
             painter.fill(box, "lit")
         room = box.adjusted(0.6 * self.look.u, 0.2 * self.look.u, -0.4 * self.look.u, 0)
         write_entry(painter, room, entry, *(("on_lit", "on_lit") if marked else ("accent", "text")))
-        self.place(box, partial(self._press, number))
+        self.place(box, partial(self._press, number), kind="row", on=marked)
+
+    def scroll_by(self, rows: int) -> None:
+        """Move the mark."""
+        self._help.mark(self._help.marked + rows)
 
     def _press(self, number: int) -> None:
         """A finger marks a row; on the marked one it takes it."""

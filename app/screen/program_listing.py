@@ -2,28 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from textwrap import wrap
 
 from PySide6.QtCore import QRectF
-from PySide6.QtGui import QWheelEvent
 
 from app.desk.translation import tr
 from app.screen.look import RIGHT, Painter
-from app.screen.panel import Panel, Shown
+from app.screen.panel import Shown
+from app.screen.sheet_panel import RowPanel
 from core.message import Message
 
 _LETTER = 1.1  # units: one of a sentence, about
 ROW, MM = 2.9, 7.0  # units from line to line, and at most so many millimetres
 
 
-class Listing(Panel):
+class Listing(RowPanel):
     """Paints only the lines that are seen, so its cost does not grow with the program."""
 
+    keyed = False
+    follows = Shown(True)  # it goes along with the run; False: it is scrolled by hand
     _line = Shown(0)
     _block, _next = Shown(""), Shown("")
-    _top: Shown[int | None] = Shown(None)  # first row when scrolled by hand, None while it follows the run
     _bad: Shown[Mapping[int, str]] = Shown({})
     _lines: Sequence[str] = ()
     trouble = Shown("")  # why there is nothing to be shown
@@ -33,7 +34,8 @@ class Listing(Panel):
         """Another program; ``bad`` are messages by line number."""
         if lines is not self._lines or bad != self._bad:
             self._lines, self._bad = lines, dict(bad)
-            self._top = max(0, min(self._bad) - 3) if self._bad else None
+            self.follows = not self._bad
+            self.top = max(0, min(self._bad, default=0) - 3)
             self.update()
 
     def show_run(self, line: int, block: str, following: str) -> None:
@@ -46,11 +48,6 @@ class Listing(Panel):
         self._line, self._block, self._next = line, block, following
 
     @property
-    def rows(self) -> int:
-        """How many lines of the program fit into the window."""
-        return max(1, int((self.height() - 3.2 * self.look.u) / self._high))
-
-    @property
     def _high(self) -> float:
         """From line to line, pixels."""
         return self.look.row(ROW, MM, touch=self.touched is not None)
@@ -61,52 +58,31 @@ class Listing(Panel):
         return min(1.0, self._high / (ROW * self.look.u))  # higher for a finger alone
 
     @property
-    def top(self) -> int:
-        """Number of the first row shown, from 0."""
-        if self._top is not None:
-            return self._top
-        at = max(0, self._line - 1 - self.rows // 3)
-        return max(0, min(at, len(self._lines) + self._extra - self.rows))
-
-    @property
-    def _extra(self) -> int:
-        return (1 if self._block else 0) + (1 if self._block and self._next else 0)
-
-    @property
-    def follows(self) -> bool:
-        """Whether the window goes along with the run."""
-        return self._top is None
+    def _generated(self) -> tuple[str, ...]:
+        """The block and the one after it, which stand under the line that is executed."""
+        return tuple(filter(None, (self._block, self._next))) if self._block else ()
 
     def follow(self) -> None:
         """Go along with the run again."""
-        self._top = None
+        self.follows = True
 
-    def look_at(self, rows: int) -> None:
+    def scroll_by(self, rows: int) -> None:
         """Look elsewhere in the program; the run goes on."""
-        most = max(0, len(self._lines) + self._extra - self.rows)
-        self._top = max(0, min(most, self.top + rows))
-
-    def wheelEvent(self, event: QWheelEvent) -> None:
-        """Three lines a notch."""
-        self.look_at(-round(event.angleDelta().y() / 40))
+        self.follows = False
+        super().scroll_by(rows)
 
     def draw(self, painter: Painter) -> None:
         u = self.look.u
         count = len(self._lines)
         title = Message("PROGRAM  ·  {count} LINES", count=count) if count else "PROGRAM"
         self.frame(painter, title if self.follows else Message("{title}  ·  HOME: CURRENT LINE", title=title))
-        row = QRectF(0.3 * u, 2.5 * u, self.width() - 0.6 * u, self._high)
-        number = self.top + 1
-        for _ in range(self.rows):
-            if number > count:
-                break
-            self._source(painter, row, number)
-            row.translate(0, self._high)
-            if number == self._line and self._block:
-                row = self._generated(painter, row)
-            if row.bottom() > self.height() - 0.4 * u:
-                break
-            number += 1
+        room = QRectF(0.3 * u, 2.5 * u, self.width() - 0.6 * u, self.height() - 3.2 * u)
+        fits = self.fitting(room, self._high, count)
+        if self.follows:
+            self.top = max(0, self._line - 1 - fits // 3)
+        self.scrolled(painter, room, fits, count + len(self._generated))
+        for (_number, row), draw in zip(self.boxes(room, self._high), self._drawn(painter), strict=False):
+            draw(row)
         if not count:
             self._none(painter)
 
@@ -118,14 +94,21 @@ class Listing(Panel):
             painter.write(room, row, 2.0, "text" if self.trouble else "soft", bold=False, raw=True)
             room.translate(0, high)
 
-    def _source(self, painter: Painter, row: QRectF, number: int) -> None:
+    def _drawn(self, painter: Painter) -> Iterator[Callable[[QRectF], None]]:
+        """Yield what draws each row from the first that is shown."""
+        for number in range(self.top + 1, len(self._lines) + 1):
+            yield partial(self._source, painter, number)
+            if number == self._line:
+                for label, text in zip(("BLOCK", "NEXT"), self._generated, strict=False):
+                    yield partial(self._block_row, painter, label, text)
+
+    def _source(self, painter: Painter, number: int, row: QRectF) -> None:
         u = self.look.u
         here, bad = number == self._line, number in self._bad
         if self.touched is not None:
-            self.place(QRectF(row), partial(self.touched, number))
+            self.place(row, partial(self.touched, number), kind="row", on=here)
         if here:
-            painter.fill(row, "here")
-            painter.fill(QRectF(row.x(), row.y(), 0.7 * u, row.height()), "lit")
+            self._mark(painter, row)
         if bad:
             painter.fill(QRectF(row.x(), row.y(), 0.7 * u, row.height()), "alarm")
         scale = self._scale
@@ -135,19 +118,16 @@ class Listing(Panel):
         text, room = self._lines[number - 1].expandtabs(4), row.adjusted(wide + 2.4 * u, 0, -0.8 * u, 0)
         painter.write(room, text, 2.1 * scale, "text", bold=here, raw=True, fit=False)
 
-    def _generated(self, painter: Painter, row: QRectF) -> QRectF:
-        u = self.look.u
-        for text, name in ((self._block, "accent"), (self._next, "soft")):
-            if not text or row.bottom() > self.height() - 0.2 * u:
-                break
-            if name == "accent":
-                painter.fill(row, "here")
-                painter.fill(QRectF(row.x(), row.y(), 0.7 * u, row.height()), "lit")
-            label = "BLOCK" if name == "accent" else "NEXT"
-            painter.write(
-                QRectF(row.x() + 1.2 * u, row.y(), 5.6 * u, row.height()), label, 1.6 * self._scale, name
-            )
-            room = row.adjusted(7.6 * u, 0, -0.8 * u, 0)
-            painter.write(room, text, 2.0 * self._scale, name, bold=name == "accent", raw=True, fit=False)
-            row = row.translated(0, self._high)
-        return row
+    def _block_row(self, painter: Painter, label: str, text: str, row: QRectF) -> None:
+        u, runs = self.look.u, label == "BLOCK"
+        ink = "accent" if runs else "soft"
+        if runs:
+            self._mark(painter, row)
+        head = QRectF(row.x() + 1.2 * u, row.y(), 5.6 * u, row.height())
+        painter.write(head, label, 1.6 * self._scale, ink)
+        room = row.adjusted(7.6 * u, 0, -0.8 * u, 0)
+        painter.write(room, text, 2.0 * self._scale, ink, bold=runs, raw=True, fit=False)
+
+    def _mark(self, painter: Painter, row: QRectF) -> None:
+        painter.fill(row, "here")
+        painter.fill(QRectF(row.x(), row.y(), 0.7 * self.look.u, row.height()), "lit")

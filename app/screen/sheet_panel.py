@@ -26,12 +26,15 @@ class RowPanel(Panel):
     """A list of rows of one height.
 
     A drawing subclass gets the room for its rows from ``scrolled``, and each visible row from ``boxes``.
-    The mark stays visible when it moves or when the room changes. Scrolling does not move the mark.
+    The mark stays visible when it moves or when the room changes. Scrolling does not move the mark, except
+    in a ``centred`` list.
     """
 
     lists = True
     notch = 3  # rows that one notch of the wheel scrolls
     margin = 0  # rows that stay visible on both sides of the mark
+    centred = False  # the mark is in the middle: ``scroll_by`` of the subclass moves it
+    keyed = True  # two keys scroll for a finger if not all rows fit
 
     def __init__(self, look: Look, parent: QWidget) -> None:
         super().__init__(look, parent)
@@ -58,12 +61,14 @@ class RowPanel(Panel):
         ``fits`` is the number of rows that fit; ``marked`` is the row that has the mark, or -1.
         """
         self.rows, self._count = fits, count
-        if (marked, fits) != self._followed and marked >= 0 and fits:
+        if self.centred:
+            self.top = marked - fits // 2
+        elif (marked, fits) != self._followed and marked >= 0 and fits:
             lowest, highest = marked - fits + 1 + self.margin, max(0, marked - self.margin)
             self.top = min(max(self.top, lowest), highest)
         self._followed = (marked, fits)
         self.top = self._limited(self.top)
-        return self._with_keys(painter, room) if 0 < fits < count else room
+        return self._with_keys(painter, room) if self.keyed and 0 < fits < count else room
 
     def boxes(self, room: QRectF, high: float) -> Iterator[tuple[int, QRectF]]:
         """Yield number and box of each visible row; ``high`` is the height of a row in pixels."""
@@ -76,7 +81,7 @@ class RowPanel(Panel):
         The keys that scroll a narrow list are below its rows and take some of the height.
         """
         fits = int(room.height() / high)
-        if fits < count and self.is_narrow(room.width()):
+        if self.keyed and fits < count and self.is_narrow(room.width()):
             fits = int((room.height() - self.key_size[1] - 0.6 * self.look.u) / high)
         return max(1, fits)
 

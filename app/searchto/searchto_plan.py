@@ -16,14 +16,16 @@ from core.executor.job import Job
 from core.executor.snapshot import CONTROL_LOST, Snapshot
 from core.geometry.rotary_axes import Kinematics
 from core.interpreter.restart.cut_record import CutRecord
-from core.interpreter.restart.mill_approach import begin_on_mill, goal_of, why_no_way
 from core.interpreter.restart.restart_approach import (
     Choices,
     MachineNow,
     begin_at,
+    begin_on_mill,
+    goal_of,
     retract_from_work,
     starting,
     way_out,
+    why_no_way,
 )
 from core.interpreter.restart.restart_point import Called, Interruption, LoopPass, RestartPoint
 from core.interpreter.restart.restart_retract import Retract, ToolPlace

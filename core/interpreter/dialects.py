@@ -49,8 +49,8 @@ def line_alone(source: Source, setup: Setup) -> Interpretation:
 
 
 def _omniturn_line(source: Source, setup: Setup) -> Interpretation:
-    from core.interpreter.omniturn.mdi_line import read_single
     from core.interpreter.omniturn.omniturn_interpreter import Interpreter
+    from core.interpreter.omniturn.omniturn_program import read_single
 
     return Interpreter(read_single(source), setup)
 
@@ -63,7 +63,7 @@ def _sinumerik_line(source: Source, setup: Setup) -> Interpretation:
 
 def _klartext_line(source: Source, setup: Setup) -> Interpretation:
     from core.interpreter.klartext.klartext_interpreter import Interpreter
-    from core.interpreter.klartext.mdi_block import read_single
+    from core.interpreter.klartext.klartext_program import read_single
 
     assert setup.kinematics is not None  # else it was refused
     return Interpreter(read_single(source, inch=not setup.metric), setup, setup.kinematics)

@@ -65,7 +65,7 @@ ROOMS = (
     "app/shopfloor",
 )
 # Where much is told to programs or to the console: what is marked alone.
-MARKED_ALONE = ("app/shopfloor/", "app/extras/office/")
+MARKED_ALONE = ("app/shopfloor/", "app/extras/office/", "core/extras/sharing/shared_database.py")
 # Scripts and tables that no screen shows, and what the console is told where there is no screen.
 APART = frozenset(
     {
@@ -85,7 +85,6 @@ APART = frozenset(
         ),
         *("desk/command_errors.py", "desk/toml_file.py", "offsets/offsets_file.py", "screen/display.py"),
         *(
-            "shared_database.py",
             "proof_scheduler.py",
             "sharing/version_record.py",
             "share_command.py",

@@ -5964,49 +5964,19 @@
       <translation>CON ESTE CAMBIO DE CORRECTORES, LA PRÓXIMA PIEZA NO ARRANCARÁ: {why}</translation>
     </message>
     <message>
-      <location filename="app/desk/programs/start_verdict.py" />
+      <location filename="app/desk/programs/start_watch.py" />
       <source>F6, ENTER: RESUME   F6, F4: RETRACT   OR {jog}</source>
       <translation>F6, ENTER: REANUDAR   F6, F4: RETIRAR   O {jog}</translation>
     </message>
     <message>
-      <location filename="app/desk/programs/start_verdict.py" />
+      <location filename="app/desk/programs/start_watch.py" />
       <source>JOG THE TOOL BACK OUT ALONG ITS ENTRY PATH</source>
       <translation>SAQUE LA HERRAMIENTA EN JOG POR SU TRAYECTORIA DE ENTRADA</translation>
     </message>
     <message>
-      <location filename="app/desk/programs/start_verdict.py" />
+      <location filename="app/desk/programs/start_watch.py" />
       <source>JOG {direction} UNTIL THE TOOL IS CLEAR</source>
       <translation>MUEVA {direction} EN JOG HASTA QUE LA HERRAMIENTA QUEDE LIBRE</translation>
-    </message>
-    <message>
-      <location filename="app/desk/programs/start_verdict.py" />
-      <source>THE CHUCK</source>
-      <translation>EL PLATO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/programs/start_verdict.py" />
-      <source>THE FIRST MOVE WOULD TAKE {tool} THROUGH {what}</source>
-      <translation>EL PRIMER MOVIMIENTO HARÍA QUE {tool} ATRAVESARA {what}</translation>
-    </message>
-    <message>
-      <location filename="app/desk/programs/start_verdict.py" />
-      <source>THE PART</source>
-      <translation>LA PIEZA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/programs/start_verdict.py" />
-      <source>THE TAILSTOCK</source>
-      <translation>EL CONTRAPUNTO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/programs/start_verdict.py" />
-      <source>UNKNOWN PART IN CHUCK. CHECK THE FIRST MOVE BEFORE STARTING</source>
-      <translation>PIEZA DESCONOCIDA EN EL PLATO. REVISE EL PRIMER MOVIMIENTO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/programs/start_verdict.py" />
-      <source>{tool} IS INSIDE {what}</source>
-      <translation>{tool} ESTÁ DENTRO DE {what}</translation>
     </message>
     <message>
       <location filename="app/desk/programs/start_watch.py" />
@@ -6015,8 +5985,38 @@
     </message>
     <message>
       <location filename="app/desk/programs/start_watch.py" />
+      <source>THE CHUCK</source>
+      <translation>EL PLATO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/programs/start_watch.py" />
       <source>THE FIRST MOVE COULD NOT BE CHECKED: {why}</source>
       <translation>NO SE PUDO COMPROBAR EL PRIMER MOVIMIENTO: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/programs/start_watch.py" />
+      <source>THE FIRST MOVE WOULD TAKE {tool} THROUGH {what}</source>
+      <translation>EL PRIMER MOVIMIENTO HARÍA QUE {tool} ATRAVESARA {what}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/programs/start_watch.py" />
+      <source>THE PART</source>
+      <translation>LA PIEZA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/programs/start_watch.py" />
+      <source>THE TAILSTOCK</source>
+      <translation>EL CONTRAPUNTO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/programs/start_watch.py" />
+      <source>UNKNOWN PART IN CHUCK. CHECK THE FIRST MOVE BEFORE STARTING</source>
+      <translation>PIEZA DESCONOCIDA EN EL PLATO. REVISE EL PRIMER MOVIMIENTO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/programs/start_watch.py" />
+      <source>{tool} IS INSIDE {what}</source>
+      <translation>{tool} ESTÁ DENTRO DE {what}</translation>
     </message>
     <message>
       <location filename="app/desk/screen_settings.py" />
@@ -7024,36 +7024,6 @@
       <translation>{path} tiene más de {most_lines} líneas, demasiadas para este editor; divida el archivo en otro editor</translation>
     </message>
     <message>
-      <location filename="app/editor/edited_path_view.py" />
-      <source>CROSSHAIR NOT ON THE PATH. PRESS AN ARROW KEY TO MOVE IT</source>
-      <translation>LA CRUZ NO ESTÁ EN LA TRAYECTORIA. MUÉVALA CON UNA FLECHA</translation>
-    </message>
-    <message>
-      <location filename="app/editor/edited_path_view.py" />
-      <source>FEED HOLD</source>
-      <translation>RETENCIÓN DE AVANCE</translation>
-    </message>
-    <message>
-      <location filename="app/editor/edited_path_view.py" />
-      <source>PATH TO THE CURSOR</source>
-      <translation>TRAYECTORIA HASTA EL CURSOR</translation>
-    </message>
-    <message>
-      <location filename="app/editor/edited_path_view.py" />
-      <source>VIEW</source>
-      <translation>VISTA</translation>
-    </message>
-    <message>
-      <location filename="app/editor/edited_path_view.py" />
-      <source>ZOOM IN</source>
-      <translation>ACERCAR</translation>
-    </message>
-    <message>
-      <location filename="app/editor/edited_path_view.py" />
-      <source>ZOOM OUT</source>
-      <translation>ALEJAR</translation>
-    </message>
-    <message>
       <location filename="app/editor/editor.py" />
       <source>{document} SAVED</source>
       <translation>{document} GUARDADO</translation>
@@ -7195,6 +7165,26 @@
     </message>
     <message>
       <location filename="app/editor/editor_parts_view.py" />
+      <source>CROSSHAIR NOT ON THE PATH. PRESS AN ARROW KEY TO MOVE IT</source>
+      <translation>LA CRUZ NO ESTÁ EN LA TRAYECTORIA. MUÉVALA CON UNA FLECHA</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_parts_view.py" />
+      <source>ERROR</source>
+      <translation>ERROR</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_parts_view.py" />
+      <source>FEED HOLD</source>
+      <translation>RETENCIÓN DE AVANCE</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_parts_view.py" />
+      <source>FINDINGS  ·  {errors}  ·  {warnings}</source>
+      <translation>HALLAZGOS  ·  {errors}  ·  {warnings}</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_parts_view.py" />
       <source>KEYBOARD</source>
       <translation>TECLADO</translation>
     </message>
@@ -7202,6 +7192,36 @@
       <location filename="app/editor/editor_parts_view.py" />
       <source>LINE {line} OF {count}  ·  COL {column}</source>
       <translation>LÍNEA {line} DE {count}  ·  COL {column}</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_parts_view.py" />
+      <source>PATH TO THE CURSOR</source>
+      <translation>TRAYECTORIA HASTA EL CURSOR</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_parts_view.py" />
+      <source>PROVED  ·  {blocks} BLOCKS  ·  CYCLE {time}</source>
+      <translation>COMPROBADO  ·  {blocks} BLOQUES  ·  CICLO {time}</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_parts_view.py" />
+      <source>VIEW</source>
+      <translation>VISTA</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_parts_view.py" />
+      <source>WARNING</source>
+      <translation>AVISO</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_parts_view.py" />
+      <source>ZOOM IN</source>
+      <translation>ACERCAR</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_parts_view.py" />
+      <source>ZOOM OUT</source>
+      <translation>ALEJAR</translation>
     </message>
     <message>
       <location filename="app/editor/editor_parts_view.py" />
@@ -7312,26 +7332,6 @@
       <location filename="app/editor/editor_view.py" />
       <source>UNDO</source>
       <translation>DESHACER</translation>
-    </message>
-    <message>
-      <location filename="app/editor/findings_view.py" />
-      <source>ERROR</source>
-      <translation>ERROR</translation>
-    </message>
-    <message>
-      <location filename="app/editor/findings_view.py" />
-      <source>FINDINGS  ·  {errors}  ·  {warnings}</source>
-      <translation>HALLAZGOS  ·  {errors}  ·  {warnings}</translation>
-    </message>
-    <message>
-      <location filename="app/editor/findings_view.py" />
-      <source>PROVED  ·  {blocks} BLOCKS  ·  CYCLE {time}</source>
-      <translation>COMPROBADO  ·  {blocks} BLOQUES  ·  CICLO {time}</translation>
-    </message>
-    <message>
-      <location filename="app/editor/findings_view.py" />
-      <source>WARNING</source>
-      <translation>AVISO</translation>
     </message>
     <message>
       <location filename="app/editor/live_proof.py" />
@@ -10234,91 +10234,6 @@
       <translation>{rpm:g} RPM RECHAZADAS. ESCRIBA MÁS DE 0, HASTA {highest:g} RPM</translation>
     </message>
     <message>
-      <location filename="app/jog/hand_functions_view.py" />
-      <source>CANCEL</source>
-      <translation>CANCELAR</translation>
-    </message>
-    <message>
-      <location filename="app/jog/hand_functions_view.py" />
-      <source>CLOSE COLLET</source>
-      <translation>CERRAR PINZA</translation>
-    </message>
-    <message>
-      <location filename="app/jog/hand_functions_view.py" />
-      <source>COOLANT OFF</source>
-      <translation>REFRIG. NO</translation>
-    </message>
-    <message>
-      <location filename="app/jog/hand_functions_view.py" />
-      <source>COOLANT ON</source>
-      <translation>REFRIG. SÍ</translation>
-    </message>
-    <message>
-      <location filename="app/jog/hand_functions_view.py" />
-      <source>CUT DONE</source>
-      <translation>PASADA HECHA</translation>
-    </message>
-    <message>
-      <location filename="app/jog/hand_functions_view.py" />
-      <source>DIAMETER</source>
-      <translation>DIÁMETRO</translation>
-    </message>
-    <message>
-      <location filename="app/jog/hand_functions_view.py" />
-      <source>FACE</source>
-      <translation>REFRENTADO</translation>
-    </message>
-    <message>
-      <location filename="app/jog/hand_functions_view.py" />
-      <source>FORWARD</source>
-      <translation>ADELANTE</translation>
-    </message>
-    <message>
-      <location filename="app/jog/hand_functions_view.py" />
-      <source>MANUAL FUNCTIONS</source>
-      <translation>FUNCIONES MANUALES</translation>
-    </message>
-    <message>
-      <location filename="app/jog/hand_functions_view.py" />
-      <source>MANUAL FUNCTIONS  ·  PICK, THEN CYCLE START</source>
-      <translation>FUNCIONES MANUALES  ·  ELEGIR, LUEGO ARRANQUE DE CICLO</translation>
-    </message>
-    <message>
-      <location filename="app/jog/hand_functions_view.py" />
-      <source>OPEN COLLET</source>
-      <translation>ABRIR PINZA</translation>
-    </message>
-    <message>
-      <location filename="app/jog/hand_functions_view.py" />
-      <source>REVERSE</source>
-      <translation>EN REVERSA</translation>
-    </message>
-    <message>
-      <location filename="app/jog/hand_functions_view.py" />
-      <source>RPM</source>
-      <translation>RPM</translation>
-    </message>
-    <message>
-      <location filename="app/jog/hand_functions_view.py" />
-      <source>SKIM CUT</source>
-      <translation>PASADA DE MEDIDA</translation>
-    </message>
-    <message>
-      <location filename="app/jog/hand_functions_view.py" />
-      <source>SPEED …</source>
-      <translation>RPM …</translation>
-    </message>
-    <message>
-      <location filename="app/jog/hand_functions_view.py" />
-      <source>SPINDLE TURNING AT {rpm:.0f} RPM</source>
-      <translation>HUSILLO GIRANDO A {rpm:.0f} RPM</translation>
-    </message>
-    <message>
-      <location filename="app/jog/hand_functions_view.py" />
-      <source>TOOL SETTING</source>
-      <translation>AJUSTE DE HERRAMIENTA</translation>
-    </message>
-    <message>
       <location filename="app/jog/held_jog.py" />
       <source>JOG KEY SIGNAL LOST. RELEASE THE KEY, THEN PRESS IT AGAIN</source>
       <translation>SE PERDIÓ LA SEÑAL DE LA TECLA. SUÉLTELA Y PÚLSELA OTRA VEZ</translation>
@@ -10630,13 +10545,93 @@
     </message>
     <message>
       <location filename="app/jog/jog_view.py" />
+      <source>CANCEL</source>
+      <translation>CANCELAR</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_view.py" />
+      <source>CLOSE COLLET</source>
+      <translation>CERRAR PINZA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_view.py" />
+      <source>COOLANT OFF</source>
+      <translation>REFRIG. NO</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_view.py" />
+      <source>COOLANT ON</source>
+      <translation>REFRIG. SÍ</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_view.py" />
+      <source>CUT DONE</source>
+      <translation>PASADA HECHA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_view.py" />
+      <source>DIAMETER</source>
+      <translation>DIÁMETRO</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_view.py" />
       <source>Enter: accept   Esc: cancel</source>
       <translation>Enter: aceptar   Esc: cancelar</translation>
     </message>
     <message>
       <location filename="app/jog/jog_view.py" />
+      <source>FACE</source>
+      <translation>REFRENTADO</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_view.py" />
+      <source>FORWARD</source>
+      <translation>ADELANTE</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_view.py" />
+      <source>MANUAL FUNCTIONS</source>
+      <translation>FUNCIONES MANUALES</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_view.py" />
+      <source>MANUAL FUNCTIONS  ·  PICK, THEN CYCLE START</source>
+      <translation>FUNCIONES MANUALES  ·  ELEGIR, LUEGO ARRANQUE DE CICLO</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_view.py" />
+      <source>OPEN COLLET</source>
+      <translation>ABRIR PINZA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_view.py" />
+      <source>REVERSE</source>
+      <translation>EN REVERSA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_view.py" />
+      <source>RPM</source>
+      <translation>RPM</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_view.py" />
+      <source>SKIM CUT</source>
+      <translation>PASADA DE MEDIDA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_view.py" />
+      <source>SPEED …</source>
+      <translation>RPM …</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_view.py" />
       <source>SPINDLE SPEED, RPM?</source>
       <translation>¿RPM DEL HUSILLO?</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_view.py" />
+      <source>SPINDLE TURNING AT {rpm:.0f} RPM</source>
+      <translation>HUSILLO GIRANDO A {rpm:.0f} RPM</translation>
     </message>
     <message>
       <location filename="app/jog/jog_view.py" />
@@ -10647,6 +10642,11 @@
       <location filename="app/jog/jog_view.py" />
       <source>THIS TOOL ONLY</source>
       <translation>SOLO ESTA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_view.py" />
+      <source>TOOL SETTING</source>
+      <translation>AJUSTE DE HERRAMIENTA</translation>
     </message>
     <message>
       <location filename="app/jog/skim_and_setter.py" />
@@ -11355,8 +11355,48 @@
     </message>
     <message>
       <location filename="app/offsets/offset_effect.py" />
+      <source>AFTER</source>
+      <translation>DESPUÉS</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_effect.py" />
+      <source>BEFORE</source>
+      <translation>ANTERIOR</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_effect.py" />
+      <source>BORE</source>
+      <translation>MANDRINADO</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_effect.py" />
+      <source>BORE SHOULDER</source>
+      <translation>HOMBRO DEL AGUJERO</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_effect.py" />
       <source>DRAWING THE OLD AND NEW PATHS</source>
       <translation>DIBUJANDO LA TRAYECTORIA ANTERIOR Y LA NUEVA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_effect.py" />
+      <source>EFFECT ON THE PART</source>
+      <translation>EFECTO EN LA PIEZA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_effect.py" />
+      <source>FEATURE</source>
+      <translation>MEDIDA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_effect.py" />
+      <source>LINE {line}: FINDING {check} NO LONGER REPORTED</source>
+      <translation>LÍNEA {line}: YA NO SE INFORMA EL HALLAZGO {check}</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_effect.py" />
+      <source>LINE {line}: {what}</source>
+      <translation>LÍNEA {line}: {what}</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_effect.py" />
@@ -11372,6 +11412,11 @@
       <location filename="app/offsets/offset_effect.py" />
       <source>NO DIAMETER OR SHOULDER ON THE PART CHANGES. F6: SHOW TABLE</source>
       <translation>NO CAMBIA NINGÚN DIÁMETRO NI HOMBRO DE LA PIEZA. F6: VER TABLA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_effect.py" />
+      <source>ONLY IN THE OLD OR THE NEW PART</source>
+      <translation>SOLO EN LA PIEZA ANTERIOR O LA NUEVA</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_effect.py" />
@@ -11392,6 +11437,11 @@
       <location filename="app/offsets/offset_effect.py" />
       <source>PATHS DIFFER BY {far} (CIRCLED). F6: CLOSE-UP   ESC: TABLE</source>
       <translation>LAS TRAYECTORIAS DIFIEREN {far} (CÍRCULO). F6: ACERCAR   ESC: TABLA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_effect.py" />
+      <source>SHOULDER</source>
+      <translation>HOMBRO</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_effect.py" />
@@ -11677,56 +11727,6 @@
       <location filename="app/offsets/offsets_view.py" />
       <source>TYPE VALUES IN THE TABLE. ESC: SHOW TABLE</source>
       <translation>ESCRIBA LOS VALORES EN LA TABLA. ESC: VER TABLA</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/part_effect.py" />
-      <source>AFTER</source>
-      <translation>DESPUÉS</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/part_effect.py" />
-      <source>BEFORE</source>
-      <translation>ANTERIOR</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/part_effect.py" />
-      <source>BORE</source>
-      <translation>MANDRINADO</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/part_effect.py" />
-      <source>BORE SHOULDER</source>
-      <translation>HOMBRO DEL AGUJERO</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/part_effect.py" />
-      <source>EFFECT ON THE PART</source>
-      <translation>EFECTO EN LA PIEZA</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/part_effect.py" />
-      <source>FEATURE</source>
-      <translation>MEDIDA</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/part_effect.py" />
-      <source>LINE {line}: FINDING {check} NO LONGER REPORTED</source>
-      <translation>LÍNEA {line}: YA NO SE INFORMA EL HALLAZGO {check}</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/part_effect.py" />
-      <source>LINE {line}: {what}</source>
-      <translation>LÍNEA {line}: {what}</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/part_effect.py" />
-      <source>ONLY IN THE OLD OR THE NEW PART</source>
-      <translation>SOLO EN LA PIEZA ANTERIOR O LA NUEVA</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/part_effect.py" />
-      <source>SHOULDER</source>
-      <translation>HOMBRO</translation>
     </message>
     <message>
       <location filename="app/offsets/secondary_offsets.py" />
@@ -20354,7 +20354,7 @@
       <translation>S{revolutions} es más que el límite de {maximum} rpm de este husillo: introduzca {maximum2} o menos.</translation>
     </message>
     <message>
-      <location filename="core/extras/sharing/connection_string.py" />
+      <location filename="core/extras/sharing/shared_database.py" />
       <source>{named} (TLS certificate not verified)</source>
       <translation>{named} (certificado TLS sin verificar)</translation>
     </message>
@@ -20365,8 +20365,28 @@
     </message>
     <message>
       <location filename="core/extras/sharing/shared_place.py" />
+      <source>[sharing] postgresql is not a valid connection string; put a value that contains spaces in quotation marks, and write / and @ in the password of an address as %2F and %40</source>
+      <translation>[sharing] postgresql no es una cadena de conexión válida; ponga entre comillas un valor que contenga espacios, y escriba / y @ en la contraseña de una dirección como %2F y %40</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/shared_place.py" />
+      <source>[sharing] postgresql needs psycopg, which is not installed; install turndesk[postgresql]</source>
+      <translation>[sharing] postgresql necesita psycopg, que no está instalado; instale turndesk[postgresql]</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/shared_place.py" />
+      <source>the certificate of {place} cannot be verified ({why}); set sslrootcert=FILE in [sharing] postgresql to the certificate of its issuer</source>
+      <translation>el certificado de {place} no se puede verificar ({why}); indique en [sharing] postgresql sslrootcert=FILE con el certificado de su emisor</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/shared_place.py" />
       <source>the database {address}</source>
       <translation>la base de datos {address}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/shared_place.py" />
+      <source>the disk of {place} is full; free up space on that disk</source>
+      <translation>el disco de {place} está lleno; libere espacio en ese disco</translation>
     </message>
     <message>
       <location filename="core/extras/sharing/shared_place.py" />
@@ -20374,72 +20394,52 @@
       <translation>la carpeta {folder}</translation>
     </message>
     <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
-      <source>[sharing] postgresql is not a valid connection string; put a value that contains spaces in quotation marks, and write / and @ in the password of an address as %2F and %40</source>
-      <translation>[sharing] postgresql no es una cadena de conexión válida; ponga entre comillas un valor que contenga espacios, y escriba / y @ en la contraseña de una dirección como %2F y %40</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
-      <source>[sharing] postgresql needs psycopg, which is not installed; install turndesk[postgresql]</source>
-      <translation>[sharing] postgresql necesita psycopg, que no está instalado; instale turndesk[postgresql]</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
-      <source>the certificate of {place} cannot be verified ({why}); set sslrootcert=FILE in [sharing] postgresql to the certificate of its issuer</source>
-      <translation>el certificado de {place} no se puede verificar ({why}); indique en [sharing] postgresql sslrootcert=FILE con el certificado de su emisor</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
-      <source>the disk of {place} is full; free up space on that disk</source>
-      <translation>el disco de {place} está lleno; libere espacio en ese disco</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
+      <location filename="core/extras/sharing/shared_place.py" />
       <source>this user does not have permission for this action in {place} ({why}); ask the administrator for permission</source>
       <translation>este usuario no tiene permiso para esta acción en {place} ({why}); pida el permiso al administrador</translation>
     </message>
     <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
+      <location filename="core/extras/sharing/shared_place.py" />
       <source>{place} accepts only TLS connections ({why}); remove sslmode from [sharing] postgresql</source>
       <translation>{place} solo acepta conexiones TLS ({why}); quite sslmode de [sharing] postgresql</translation>
     </message>
     <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
+      <location filename="core/extras/sharing/shared_place.py" />
       <source>{place} contains no shared programs; check that it is mounted and that its name is right. To set up a new location, run: turndesk share begin</source>
       <translation>{place} no contiene programas compartidos; revise que esté montado y que su nombre sea correcto. Para preparar una ubicación nueva, ejecute: turndesk share begin</translation>
     </message>
     <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
+      <location filename="core/extras/sharing/shared_place.py" />
       <source>{place} does not respond ({why}); this control continues to work, and will share programs again when the connection is restored</source>
       <translation>{place} no responde ({why}); este control sigue trabajando, y volverá a compartir programas cuando se restablezca la conexión</translation>
     </message>
     <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
+      <location filename="core/extras/sharing/shared_place.py" />
       <source>{place} does not support TLS ({why}); turn on TLS at that server, or, on a network where you trust every user, write sslmode=disable in [sharing] postgresql</source>
       <translation>{place} no ofrece TLS ({why}); active TLS en ese servidor o, en una red en la que confía en todos los usuarios, escriba sslmode=disable en [sharing] postgresql</translation>
     </message>
     <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
+      <location filename="core/extras/sharing/shared_place.py" />
       <source>{place} is not set up for shared programs ({why}); specify another location</source>
       <translation>{place} no está preparado para programas compartidos ({why}); indique otra ubicación</translation>
     </message>
     <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
+      <location filename="core/extras/sharing/shared_place.py" />
       <source>{place} rejects the user name or the password ({why}); correct the user name or the password in [sharing] postgresql</source>
       <translation>{place} rechaza el nombre de usuario o la contraseña ({why}); corrija el nombre de usuario o la contraseña en [sharing] postgresql</translation>
     </message>
     <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
+      <location filename="core/extras/sharing/shared_place.py" />
       <source>{place} was not found ({why}); check that it is mounted and that its name is right</source>
       <translation>no se encontró {place} ({why}); revise que esté montado y que su nombre sea correcto</translation>
     </message>
     <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
+      <location filename="core/extras/sharing/shared_place.py" />
       <source>{place} was set up by a newer TurnDesk (format {why}); update TurnDesk on this control</source>
       <translation>{place} fue preparado por un TurnDesk más nuevo (formato {why}); actualice TurnDesk en este control</translation>
     </message>
     <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
+      <location filename="core/extras/sharing/shared_place.py" />
       <source>{place}: another control is also named {why}; give this control a name that no other control uses (desk in [sharing]) or, if the other computer no longer exists, run: turndesk share publish --claim</source>
       <translation>{place}: otro control también se llama {why}; dé a este control un nombre que no use ningún otro (desk en [sharing]) o, si la otra computadora ya no existe, ejecute: turndesk share publish --claim</translation>
     </message>
@@ -21300,8 +21300,23 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/flow/blocks_without_motion.py" />
+      <source>Add the tool to the tool table.</source>
+      <translation>Agregue la herramienta a la tabla de herramientas.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/flow/blocks_without_motion.py" />
       <source>Check the conditions under which the program reaches this block.</source>
       <translation>Compruebe las condiciones con las que el programa llega a este bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/flow/blocks_without_motion.py" />
+      <source>FN 17 SYSWRITE ID50 NR{number} {name}</source>
+      <translation>FN 17 SYSWRITE ID50 NR{number} {name}</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/flow/blocks_without_motion.py" />
+      <source>FN {function} with ID{word} NR{number} IDX{index}</source>
+      <translation>FN {function} con ID{word} NR{number} IDX{index}</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/flow/blocks_without_motion.py" />
@@ -21315,43 +21330,28 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/flow/blocks_without_motion.py" />
+      <source>The tool table has no column {empty}, so FN 18 returns {value} as it does for an empty cell.</source>
+      <translation>La tabla de herramientas no tiene columna {empty}, así que FN 18 devuelve {value} como para una celda vacía.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/flow/blocks_without_motion.py" />
       <source>This jump repeats forever because the loop does not change anything that affects a jump.</source>
       <translation>Este salto se repite sin fin porque el bucle no cambia nada que influya en un salto.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/flow/blocks_without_motion.py" />
+      <source>Tool {tool} is not in the tool table.</source>
+      <translation>La herramienta {tool} no está en la tabla de herramientas.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/flow/blocks_without_motion.py" />
+      <source>Writing {name} of tool {tool} to the tool table with FN 17 (enter the value in the tool table instead)</source>
+      <translation>Escribir {name} de la herramienta {tool} en la tabla de herramientas con FN 17 (introduzca el valor en la tabla)</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/flow/mid_program_startup.py" />
       <source>MIRROR {mirrored}</source>
       <translation>MIRROR {mirrored}</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/flow/system_data.py" />
-      <source>Add the tool to the tool table.</source>
-      <translation>Agregue la herramienta a la tabla de herramientas.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/flow/system_data.py" />
-      <source>FN 17 SYSWRITE ID50 NR{number} {name}</source>
-      <translation>FN 17 SYSWRITE ID50 NR{number} {name}</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/flow/system_data.py" />
-      <source>FN {function} with ID{word} NR{number} IDX{index}</source>
-      <translation>FN {function} con ID{word} NR{number} IDX{index}</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/flow/system_data.py" />
-      <source>The tool table has no column {empty}, so FN 18 returns {value} as it does for an empty cell.</source>
-      <translation>La tabla de herramientas no tiene columna {empty}, así que FN 18 devuelve {value} como para una celda vacía.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/flow/system_data.py" />
-      <source>Tool {tool} is not in the tool table.</source>
-      <translation>La herramienta {tool} no está en la tabla de herramientas.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/flow/system_data.py" />
-      <source>Writing {name} of tool {tool} to the tool table with FN 17 (enter the value in the tool table instead)</source>
-      <translation>Escribir {name} de la herramienta {tool} en la tabla de herramientas con FN 17 (introduzca el valor en la tabla)</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/flow/word_values.py" />
@@ -21465,6 +21465,16 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/klartext_program.py" />
+      <source>/ skips a program block and has no meaning in MDI</source>
+      <translation>/ salta un bloque del programa y no significa nada en MDI</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_program.py" />
+      <source>A jump goes to another block and cannot be used in MDI</source>
+      <translation>Un salto va a otro bloque y no se puede usar en MDI</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_program.py" />
       <source>A program must not call itself.</source>
       <translation>Un programa no puede llamarse a sí mismo.</translation>
     </message>
@@ -21477,6 +21487,21 @@
       <location filename="core/interpreter/klartext/klartext_program.py" />
       <source>BEGIN PGM names {node}, but END PGM names {last}.</source>
       <translation>BEGIN PGM nombra {node}, pero END PGM nombra {last}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_program.py" />
+      <source>BLK FORM defines the blank of a program and cannot be used in MDI</source>
+      <translation>BLK FORM define la pieza en bruto de un programa y no se puede usar en MDI</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_program.py" />
+      <source>CALL LBL jumps to another block and cannot be used in MDI</source>
+      <translation>CALL LBL salta a otro bloque y no se puede usar en MDI</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_program.py" />
+      <source>CALL PGM calls another program and cannot be used in MDI</source>
+      <translation>CALL PGM llama a otro programa y no se puede usar en MDI</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/klartext_program.py" />
@@ -21495,6 +21520,16 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/klartext_program.py" />
+      <source>Cycle 12 selects another program and cannot be used in MDI</source>
+      <translation>El ciclo 12 selecciona otro programa y no se puede usar en MDI</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_program.py" />
+      <source>END PGM ends a program and cannot be used in MDI</source>
+      <translation>END PGM termina un programa y no se puede usar en MDI</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_program.py" />
       <source>END PGM is missing.</source>
       <translation>Falta END PGM.</translation>
     </message>
@@ -21502,6 +21537,11 @@
       <location filename="core/interpreter/klartext/klartext_program.py" />
       <source>End the subprogram with LBL 0.</source>
       <translation>Termine el subprograma con LBL 0.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_program.py" />
+      <source>LBL marks a position in a program and cannot be used in MDI</source>
+      <translation>LBL marca una posición en un programa y no se puede usar en MDI</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/klartext_program.py" />
@@ -21530,6 +21570,16 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/klartext_program.py" />
+      <source>RND and CHF are allowed only between two blocks of a contour</source>
+      <translation>RND y CHF sólo se permiten entre dos bloques de un contorno</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_program.py" />
+      <source>R{compensation} needs a contour of more than one block and cannot be used in MDI</source>
+      <translation>R{compensation} necesita un contorno de más de un bloque y no se puede usar en MDI</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_program.py" />
       <source>Start the program with BEGIN PGM, the program name and the unit.</source>
       <translation>Empiece el programa con BEGIN PGM, el nombre del programa y la unidad.</translation>
     </message>
@@ -21555,73 +21605,23 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/klartext_program.py" />
+      <source>Use this command in a program.</source>
+      <translation>Use esta orden en un programa.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_program.py" />
       <source>Write the same unit in BEGIN PGM and END PGM.</source>
       <translation>Escriba la misma unidad en BEGIN PGM y END PGM.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_program.py" />
+      <source>{form} approaches or departs from a contour and cannot be used in MDI</source>
+      <translation>{form} es la entrada o la salida de un contorno y no se puede usar en MDI</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/klartext_state.py" />
       <source>{what} has no effect on this control.</source>
       <translation>{what} no tiene efecto en este control.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/mdi_block.py" />
-      <source>/ skips a program block and has no meaning in MDI</source>
-      <translation>/ salta un bloque del programa y no significa nada en MDI</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/mdi_block.py" />
-      <source>A jump goes to another block and cannot be used in MDI</source>
-      <translation>Un salto va a otro bloque y no se puede usar en MDI</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/mdi_block.py" />
-      <source>BLK FORM defines the blank of a program and cannot be used in MDI</source>
-      <translation>BLK FORM define la pieza en bruto de un programa y no se puede usar en MDI</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/mdi_block.py" />
-      <source>CALL LBL jumps to another block and cannot be used in MDI</source>
-      <translation>CALL LBL salta a otro bloque y no se puede usar en MDI</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/mdi_block.py" />
-      <source>CALL PGM calls another program and cannot be used in MDI</source>
-      <translation>CALL PGM llama a otro programa y no se puede usar en MDI</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/mdi_block.py" />
-      <source>Cycle 12 selects another program and cannot be used in MDI</source>
-      <translation>El ciclo 12 selecciona otro programa y no se puede usar en MDI</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/mdi_block.py" />
-      <source>END PGM ends a program and cannot be used in MDI</source>
-      <translation>END PGM termina un programa y no se puede usar en MDI</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/mdi_block.py" />
-      <source>LBL marks a position in a program and cannot be used in MDI</source>
-      <translation>LBL marca una posición en un programa y no se puede usar en MDI</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/mdi_block.py" />
-      <source>RND and CHF are allowed only between two blocks of a contour</source>
-      <translation>RND y CHF sólo se permiten entre dos bloques de un contorno</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/mdi_block.py" />
-      <source>R{compensation} needs a contour of more than one block and cannot be used in MDI</source>
-      <translation>R{compensation} necesita un contorno de más de un bloque y no se puede usar en MDI</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/mdi_block.py" />
-      <source>Use this command in a program.</source>
-      <translation>Use esta orden en un programa.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/mdi_block.py" />
-      <source>{form} approaches or departs from a contour and cannot be used in MDI</source>
-      <translation>{form} es la entrada o la salida de un contorno y no se puede usar en MDI</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/motion/feed_rates.py" />
@@ -22289,71 +22289,6 @@
       <translation>{text} haría {count} {what}; el máximo es {most_passes}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/cycles/cycle_contour.py" />
-      <source>Correct the line.</source>
-      <translation>Corrija la línea.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/cycle_contour.py" />
-      <source>G{one_shot} is not allowed in a contour</source>
-      <translation>G{one_shot} no está permitido en un contorno</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/cycle_contour.py" />
-      <source>Nose compensation cannot be turned on or off in a contour</source>
-      <translation>La compensación de punta no se puede activar ni desactivar en un contorno</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/cycle_contour.py" />
-      <source>Program a separate contour for finishing.</source>
-      <translation>Programe un contorno aparte para el acabado.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/cycle_contour.py" />
-      <source>The contour changes modes or coordinates; the previous ones are restored after the cycle.</source>
-      <translation>El contorno cambia modos o coordenadas; después del ciclo se restablecen los valores anteriores.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/cycle_contour.py" />
-      <source>The contour of G{one_shot} does not contain a line or an arc.</source>
-      <translation>El contorno de G{one_shot} no contiene ninguna recta ni arco.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/cycle_contour.py" />
-      <source>The first line of a contour defines its start point and cannot contain an arc or a corner</source>
-      <translation>La primera línea de un contorno define su punto de inicio y no puede contener un arco ni una esquina</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/cycle_contour.py" />
-      <source>This line of the contour cannot be read</source>
-      <translation>Esta línea del contorno no se puede leer</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/cycle_contour.py" />
-      <source>Write only X and Z of the first point.</source>
-      <translation>Escriba sólo la X y la Z del primer punto.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/cycle_contour.py" />
-      <source>Write the contour block by block, with only straight moves, arcs, chamfers and roundings.</source>
-      <translation>Escriba el contorno bloque por bloque, solo con movimientos rectos, arcos, chaflanes y redondeos.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/cycle_contour.py" />
-      <source>Write the points of the contour.</source>
-      <translation>Escriba los puntos del contorno.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/cycle_contour.py" />
-      <source>{line} is not allowed in a contour</source>
-      <translation>{line} no está permitido en un contorno</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/cycles/cycle_contour.py" />
-      <source>{words} and other words that do not belong to a contour are ignored in the contour of G{one_shot}.</source>
-      <translation>{words} y otras palabras que no pertenecen a un contorno se ignoran en el contorno de G{one_shot}.</translation>
-    </message>
-    <message>
       <location filename="core/interpreter/omniturn/cycles/drilling_cycles.py" />
       <source>Correct K, or drill with G81.</source>
       <translation>Corrija K, o taladre con G81.</translation>
@@ -22400,8 +22335,18 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
+      <source>Correct the line.</source>
+      <translation>Corrija la línea.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
       <source>Correct {letter} or the start point.</source>
       <translation>Corrija {letter} o el punto de inicio.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
+      <source>G{one_shot} is not allowed in a contour</source>
+      <translation>G{one_shot} no está permitido en un contorno</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
@@ -22430,8 +22375,18 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
+      <source>Nose compensation cannot be turned on or off in a contour</source>
+      <translation>La compensación de punta no se puede activar ni desactivar en un contorno</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
       <source>On the path from the start point to the contour and back, the tool comes closer to the contour than the distance U.</source>
       <translation>En el recorrido del punto de inicio al contorno y de regreso, la herramienta se acerca al contorno a menos de la distancia U.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
+      <source>Program a separate contour for finishing.</source>
+      <translation>Programe un contorno aparte para el acabado.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
@@ -22460,6 +22415,11 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
+      <source>The contour changes modes or coordinates; the previous ones are restored after the cycle.</source>
+      <translation>El contorno cambia modos o coordenadas; después del ciclo se restablecen los valores anteriores.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
       <source>The contour goes deeper immediately after its first point; start the contour at the lowest X and move up the face first.</source>
       <translation>El contorno baja justo después de su primer punto; empiece el contorno en la X más baja y suba primero por la cara.</translation>
     </message>
@@ -22467,6 +22427,11 @@
       <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
       <source>The contour has {contour_count} lines and arcs; the maximum is {most_elements}.</source>
       <translation>El contorno tiene {contour_count} líneas y arcos; el máximo es {most_elements}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
+      <source>The contour of G{one_shot} does not contain a line or an arc.</source>
+      <translation>El contorno de G{one_shot} no contiene ninguna recta ni arco.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
@@ -22480,8 +22445,33 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
+      <source>The first line of a contour defines its start point and cannot contain an arc or a corner</source>
+      <translation>La primera línea de un contorno define su punto de inicio y no puede contener un arco ni una esquina</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
+      <source>This line of the contour cannot be read</source>
+      <translation>Esta línea del contorno no se puede leer</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
       <source>U must be less than the distance in X from the start point to the programmed X.</source>
       <translation>U debe ser menor que la distancia en X del punto de inicio a la X programada.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
+      <source>Write only X and Z of the first point.</source>
+      <translation>Escriba sólo la X y la Z del primer punto.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
+      <source>Write the contour block by block, with only straight moves, arcs, chamfers and roundings.</source>
+      <translation>Escriba el contorno bloque por bloque, solo con movimientos rectos, arcos, chaflanes y redondeos.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
+      <source>Write the points of the contour.</source>
+      <translation>Escriba los puntos del contorno.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
@@ -22490,8 +22480,18 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
+      <source>{line} is not allowed in a contour</source>
+      <translation>{line} no está permitido en un contorno</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
       <source>{text} cannot find a continuous path along the contour at distance U.</source>
       <translation>{text} no puede hallar una trayectoria continua a lo largo del contorno a la distancia U.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/roughing_cycles.py" />
+      <source>{words} and other words that do not belong to a contour are ignored in the contour of G{one_shot}.</source>
+      <translation>{words} y otras palabras que no pertenecen a un contorno se ignoran en el contorno de G{one_shot}.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
@@ -22734,16 +22734,6 @@
       <translation>cerca de 10^{tens}</translation>
     </message>
     <message>
-      <location filename="core/interpreter/omniturn/mdi_line.py" />
-      <source>/ skips a program line and has no meaning in MDI.</source>
-      <translation>/ salta una línea del programa y no significa nada en MDI.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/mdi_line.py" />
-      <source>{radius} rounds the corner with the next move, but MDI runs only one line.</source>
-      <translation>{radius} redondea la esquina con el movimiento siguiente, pero MDI ejecuta sólo una línea.</translation>
-    </message>
-    <message>
       <location filename="core/interpreter/omniturn/motion/arc_moves.py" />
       <source>Add {letter}.</source>
       <translation>Agregue {letter}.</translation>
@@ -22847,31 +22837,6 @@
       <location filename="core/interpreter/omniturn/motion/c_axis.py" />
       <source>{word} is finer than the resolution of {step} degrees; {count} is used.</source>
       <translation>{word} es más fino que la resolución de {step} grados; se usa {count}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/motion/coarse_feeds.py" />
-      <source>G36 is not at the same position as G35, which was at radius {place}, Z {place2}.</source>
-      <translation>G36 no está en la misma posición que G35, que estaba en radio {place}, Z {place2}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/motion/coarse_feeds.py" />
-      <source>G{code} is not followed by a G92 with X and Z.</source>
-      <translation>A G{code} no le sigue un G92 con X y Z.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/motion/coarse_feeds.py" />
-      <source>Move back to the G35 position before G36.</source>
-      <translation>Regrese a la posición de G35 antes de G36.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/motion/coarse_feeds.py" />
-      <source>The G92 after G{code} does not match the current position, which is radius {position}, Z {position2}.</source>
-      <translation>El G92 después de G{code} no corresponde a la posición actual, que es radio {position}, Z {position2}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/motion/coarse_feeds.py" />
-      <source>Write G92 with the current X and Z on the next line.</source>
-      <translation>Escriba en la línea siguiente G92 con la X y la Z actuales.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/motion/corners.py" />
@@ -22990,8 +22955,18 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/motion/feeds.py" />
+      <source>G36 is not at the same position as G35, which was at radius {place}, Z {place2}.</source>
+      <translation>G36 no está en la misma posición que G35, que estaba en radio {place}, Z {place2}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/motion/feeds.py" />
       <source>G96 is active, but no surface speed is programmed with S.</source>
       <translation>G96 está activo, pero no hay ninguna velocidad de corte programada con S.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/motion/feeds.py" />
+      <source>G{code} is not followed by a G92 with X and Z.</source>
+      <translation>A G{code} no le sigue un G92 con X y Z.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/motion/feeds.py" />
@@ -23002,6 +22977,11 @@
       <location filename="core/interpreter/omniturn/motion/feeds.py" />
       <source>Look for a missing decimal point.</source>
       <translation>Busque un punto decimal que falta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/motion/feeds.py" />
+      <source>Move back to the G35 position before G36.</source>
+      <translation>Regrese a la posición de G35 antes de G36.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/motion/feeds.py" />
@@ -23017,6 +22997,11 @@
       <location filename="core/interpreter/omniturn/motion/feeds.py" />
       <source>Start the spindle with M03 or M04, or use G94.</source>
       <translation>Arranque el husillo con M03 o M04, o use G94.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/motion/feeds.py" />
+      <source>The G92 after G{code} does not match the current position, which is radius {position}, Z {position2}.</source>
+      <translation>El G92 después de G{code} no corresponde a la posición actual, que es radio {position}, Z {position2}.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/motion/feeds.py" />
@@ -23037,6 +23022,11 @@
       <location filename="core/interpreter/omniturn/motion/feeds.py" />
       <source>Write F on this line or an earlier line.</source>
       <translation>Escriba F en esta línea o en una anterior.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/motion/feeds.py" />
+      <source>Write G92 with the current X and Z on the next line.</source>
+      <translation>Escriba en la línea siguiente G92 con la X y la Z actuales.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/motion/nose_compensation.py" />
@@ -23350,6 +23340,11 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/omniturn_program.py" />
+      <source>/ skips a program line and has no meaning in MDI.</source>
+      <translation>/ salta una línea del programa y no significa nada en MDI.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/omniturn_program.py" />
       <source>A comment is inside a loop.</source>
       <translation>Hay un comentario dentro de un bucle.</translation>
     </message>
@@ -23457,6 +23452,11 @@
       <location filename="core/interpreter/omniturn/omniturn_program.py" />
       <source>Write T1 instead of T01.</source>
       <translation>Escriba T1 en vez de T01.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/omniturn_program.py" />
+      <source>{radius} rounds the corner with the next move, but MDI runs only one line.</source>
+      <translation>{radius} redondea la esquina con el movimiento siguiente, pero MDI ejecuta sólo una línea.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/omniturn_statement.py" />
@@ -23654,16 +23654,6 @@
       <translation>El programa nunca llega a la línea {line}.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/restart/mill_approach.py" />
-      <source>TOOL CALL {tool}</source>
-      <translation>TOOL CALL {tool}</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/restart/mill_approach.py" />
-      <source>the axes have no software limits</source>
-      <translation>los ejes no tienen límites por software</translation>
-    </message>
-    <message>
       <location filename="core/interpreter/restart/program_search.py" />
       <source>Line {line} does not exist; the last line of the program is {lines_count}.</source>
       <translation>La línea {line} no existe; la última línea del programa es la {lines_count}.</translation>
@@ -23717,6 +23707,16 @@
       <location filename="core/interpreter/restart/program_search.py" />
       <source>the program has errors before this line</source>
       <translation>el programa tiene errores antes de esta línea</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/restart_approach.py" />
+      <source>TOOL CALL {tool}</source>
+      <translation>TOOL CALL {tool}</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/restart_approach.py" />
+      <source>the axes have no software limits</source>
+      <translation>los ejes no tienen límites por software</translation>
     </message>
     <message>
       <location filename="core/interpreter/restart/restart_approach.py" />
@@ -24007,21 +24007,6 @@
       <location filename="core/interpreter/sinumerik/cycles/cycle_calls.py" />
       <source>{name} refers to subprogram {named}, which does not exist</source>
       <translation>{name} se refiere al subprograma {named}, que no existe</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/cycle_contour.py" />
-      <source>C and frames are not allowed in a contour</source>
-      <translation>C y los frames no se permiten en un contorno</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/cycle_contour.py" />
-      <source>a contour can contain only G0, G1, G2 and G3</source>
-      <translation>un contorno sólo puede contener G0, G1, G2 y G3</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycles/cycle_contour.py" />
-      <source>a contour can contain only moves, but this line contains a call or a jump</source>
-      <translation>un contorno sólo puede contener movimientos, pero esta línea contiene una llamada o un salto</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/cycles/cycle_parameters.py" />
@@ -24470,6 +24455,11 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
+      <source>C and frames are not allowed in a contour</source>
+      <translation>C y los frames no se permiten en un contorno</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
       <source>Check the direction of the contour.</source>
       <translation>Compruebe la dirección del contorno.</translation>
     </message>
@@ -24512,6 +24502,16 @@
       <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
       <source>Write {name}.</source>
       <translation>Escriba {name}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
+      <source>a contour can contain only G0, G1, G2 and G3</source>
+      <translation>un contorno sólo puede contener G0, G1, G2 y G3</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
+      <source>a contour can contain only moves, but this line contains a call or a jump</source>
+      <translation>un contorno sólo puede contener movimientos, pero esta línea contiene una llamada o un salto</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/cycles/stock_removal.py" />
@@ -24949,59 +24949,9 @@
       <translation>{steering} no tiene un inicio correspondiente.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/flow/parameter_passing.py" />
+      <location filename="core/interpreter/sinumerik/flow/subprogram_flow.py" />
       <source>Correct the call, or the PROC line of the subprogram.</source>
       <translation>Corrija la llamada, o la línea PROC del subprograma.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/flow/parameter_passing.py" />
-      <source>Pass a variable or an R parameter.</source>
-      <translation>Pase una variable o un parámetro R.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/flow/parameter_passing.py" />
-      <source>Pass the name of an array without an index.</source>
-      <translation>Pase el nombre de un array sin índice.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/flow/parameter_passing.py" />
-      <source>Use the array sizes given in the PROC line.</source>
-      <translation>Use los tamaños de array indicados en la línea PROC.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/flow/parameter_passing.py" />
-      <source>no parameters</source>
-      <translation>ningún parámetro</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/flow/parameter_passing.py" />
-      <source>{call} accepts {parameters_count}, but the call passes {arguments_count}.</source>
-      <translation>{call} admite {parameters_count}, pero la llamada pasa {arguments_count}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/flow/parameter_passing.py" />
-      <source>{count} parameter</source>
-      <translation>{count} parámetro</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/flow/parameter_passing.py" />
-      <source>{count} parameters</source>
-      <translation>{count} parámetros</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/flow/parameter_passing.py" />
-      <source>{name} has {text} elements, but this size does not match the dimensions of {parameter}.</source>
-      <translation>{name} tiene {text} elementos, pero este tamaño no coincide con las dimensiones de {parameter}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/flow/parameter_passing.py" />
-      <source>{parameter} of {call} is a VAR array, so the call must pass an array.</source>
-      <translation>{parameter} de {call} es un array VAR, así que la llamada debe pasar un array.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/flow/parameter_passing.py" />
-      <source>{parameter} of {call} is a VAR parameter, so the call must pass a variable.</source>
-      <translation>{parameter} de {call} es un parámetro VAR, así que la llamada debe pasar una variable.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/flow/subprogram_flow.py" />
@@ -25015,6 +24965,16 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/flow/subprogram_flow.py" />
+      <source>Pass a variable or an R parameter.</source>
+      <translation>Pase una variable o un parámetro R.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/subprogram_flow.py" />
+      <source>Pass the name of an array without an index.</source>
+      <translation>Pase el nombre de un array sin índice.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/subprogram_flow.py" />
       <source>Put the whole section to be repeated before or after this block.</source>
       <translation>Ponga toda la sección que se repite antes o después de este bloque.</translation>
     </message>
@@ -25025,6 +24985,11 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/flow/subprogram_flow.py" />
+      <source>Use the array sizes given in the PROC line.</source>
+      <translation>Use los tamaños de array indicados en la línea PROC.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/subprogram_flow.py" />
       <source>Write a repeat count from P1 to P{most_passes}.</source>
       <translation>Escriba un número de repeticiones de P1 a P{most_passes}.</translation>
     </message>
@@ -25032,6 +24997,11 @@
       <location filename="core/interpreter/sinumerik/flow/subprogram_flow.py" />
       <source>label {missing}, which {steering} uses, is not in this program.</source>
       <translation>la etiqueta {missing}, que usa {steering}, no está en este programa.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/subprogram_flow.py" />
+      <source>no parameters</source>
+      <translation>ningún parámetro</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/flow/subprogram_flow.py" />
@@ -25052,6 +25022,36 @@
       <location filename="core/interpreter/sinumerik/flow/subprogram_flow.py" />
       <source>this jump repeats forever because nothing in the loop changes the result of a jump condition.</source>
       <translation>este salto se repite sin fin porque nada en el bucle cambia el resultado de una condición de salto.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/subprogram_flow.py" />
+      <source>{call} accepts {parameters_count}, but the call passes {arguments_count}.</source>
+      <translation>{call} admite {parameters_count}, pero la llamada pasa {arguments_count}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/subprogram_flow.py" />
+      <source>{count} parameter</source>
+      <translation>{count} parámetro</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/subprogram_flow.py" />
+      <source>{count} parameters</source>
+      <translation>{count} parámetros</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/subprogram_flow.py" />
+      <source>{name} has {text} elements, but this size does not match the dimensions of {parameter}.</source>
+      <translation>{name} tiene {text} elementos, pero este tamaño no coincide con las dimensiones de {parameter}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/subprogram_flow.py" />
+      <source>{parameter} of {call} is a VAR array, so the call must pass an array.</source>
+      <translation>{parameter} de {call} es un array VAR, así que la llamada debe pasar un array.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/subprogram_flow.py" />
+      <source>{parameter} of {call} is a VAR parameter, so the call must pass a variable.</source>
+      <translation>{parameter} de {call} es un parámetro VAR, así que la llamada debe pasar una variable.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/flow/variables.py" />

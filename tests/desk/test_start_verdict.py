@@ -12,7 +12,7 @@ from app.compose.stored_offsets import read_offsets
 from app.compose.workshop import samples, workshop
 from app.desk.background_work import AbandonedError
 from app.desk.programs.program_loading import Proved
-from app.desk.programs.start_verdict import KnownPart, StartJudge, StartQuestion, with_verdict
+from app.desk.programs.start_watch import KnownPart, StartJudge, StartQuestion, with_verdict
 from core.executor.commands import CROSSES, INSIDE
 from core.executor.job import Proof
 from core.executor.snapshot import ESTOP, InterruptedJob, Starts

@@ -19,7 +19,7 @@ from pytestqt.qtbot import QtBot
 from app.desk.pages.sheet import Row, Sheet
 from app.desk.programs.program_folder import ProgramFolders
 from app.desk.status.machine_status import Tone
-from app.editor.findings_view import FindingList
+from app.editor.editor_parts_view import FindingList
 from app.editor.live_proof import Findings
 from app.offsets.cell_table_view import CellPanel
 from app.offsets.mill_tools import MillTools

@@ -7,10 +7,13 @@ from typing import overload
 
 import pytest
 from PySide6.QtGui import QPixmap
-from pytestqt.qtbot import QtBot
+from PySide6.QtWidgets import QWidget
 
 from app.screen.look import DARK, Look
 from app.screen.program_listing import Listing
+from tests.screen.test_leafing import above
+
+__all__ = ["above"]  # a fixture of this module too
 
 
 class Counted(Sequence[str]):
@@ -32,9 +35,8 @@ class Counted(Sequence[str]):
 
 
 @pytest.fixture
-def listing(qtbot: QtBot) -> Listing:
-    listing = Listing(Look(DARK, 8.0))
-    qtbot.addWidget(listing)
+def listing(above: QWidget) -> Listing:
+    listing = Listing(Look(DARK, 8.0), above)
     listing.resize(400, 250)  # nine rows of 23 pixels
     return listing
 
@@ -56,24 +58,29 @@ def test_the_current_line_is_in_the_window(listing: Listing) -> None:
     listing.show_source([f"X{n}" for n in range(100)], {})
     for line in (1, 2, 50, 99, 100):
         listing.show_run(line, "X1", "X2")
+        painted(listing)
         assert listing.top < line <= listing.top + listing.rows
 
 
 def test_scrolling_stops_the_following_until_it_is_asked_for(listing: Listing) -> None:
     listing.show_source([f"X{n}" for n in range(100)], {})
     listing.show_run(50, "", "")
-    listing.look_at(-1000)
+    painted(listing)
+    listing.scroll_by(-1000)
     assert (listing.top, listing.follows) == (0, False)
     listing.show_run(51, "", "")
+    painted(listing)
     assert listing.top == 0
-    listing.look_at(1000)
+    listing.scroll_by(1000)
     assert listing.top == 100 - listing.rows
     listing.follow()
+    painted(listing)
     assert listing.top < 51 <= listing.top + listing.rows
 
 
 def test_a_refused_program_opens_at_its_first_error(listing: Listing) -> None:
     listing.show_source([f"X{n}" for n in range(100)], {80: "no", 90: "no"})
+    painted(listing)
     assert listing.top < 80 <= listing.top + listing.rows
 
 

@@ -2,25 +2,182 @@
 
 A program that Cycle Start would begin is checked on a worker whenever the axes rest at another position. A
 line of MDI and a restart are checked by the worker that proves them. The executor gets the verdict and
-refuses a start without one.
+refuses a start without one. The geometry is that of ``core/proving/start_check.py``. ``StartJudge`` reads no
+clock and does not wait for the machine: any worker may ask it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field, replace
 from functools import partial
+from threading import Lock
+from typing import TYPE_CHECKING, NamedTuple
 
 from app.desk.background_work import Latest, Watch
 from app.desk.programs.prepared_line import ProveLine
 from app.desk.programs.program_loading import FirstMoveSeen, Loaded, Proved
-from app.desk.programs.start_verdict import KnownPart, StartJudge, StartQuestion, with_verdict
+from app.desk.status.interrupted_notice import may_go_on
 from app.desk.translation import tr
 from app.path.path_aspects import DrawnLeg
-from core.executor.commands import Clearance, Command, GiveClearance
-from core.executor.job import Job
-from core.executor.snapshot import CYCLE, LINES, Snapshot, Starts, State
+from core.executor.commands import CROSSES, INSIDE, Clearance, Command, GiveClearance
+from core.executor.job import Job, interpret
+from core.executor.snapshot import CYCLE, LINES, InterruptedJob, Snapshot, Starts, State
+from core.language.diagnostics import Diagnostic, Severity
 from core.message import Message
+from core.tool_edges import edge_name
+
+if TYPE_CHECKING:
+    from app.path.path_picture import Picture
+    from core.interpreter.shared.elementary_blocks import Block
+    from core.proving.part_history import PartHistory
+    from core.proving.start_check import FirstMove, StartCheck, StartNow
+
+
+class KnownPart(NamedTuple):
+    """The program that has the part in the chuck, and where it was interrupted; None: it was not."""
+
+    job: Job
+    picture: Picture
+    broken: InterruptedJob | None = None
+
+
+class StartQuestion(NamedTuple):
+    """What is checked: what Cycle Start begins, from where, with which tool in work."""
+
+    job: Job
+    starts: Starts
+    at: tuple[float, ...]
+    begun: int
+    tool: int
+    part: KnownPart | None  # None: no program has a part in the chuck, or which one is not known
+    unknown: bool = False  # a part is in the chuck that TurnDesk does not know
+
+    @property
+    def key(self) -> tuple[object, ...]:
+        """What the verdict depends on."""
+        part = self.part
+        known = None if part is None else (id(part.picture), part.job.digest, part.broken)
+        return self.job.digest, self.starts, self.at, self.begun, self.tool, known, self.unknown
+
+
+def with_verdict(proved: Proved, seen: FirstMoveSeen) -> Proved:
+    """Return the proof of a line or of a restart with this verdict: what is refused does not run."""
+    found = seen.clearance
+    if not found.code:
+        return replace(proved, first_move=seen)
+    error = Diagnostic(1, 0, Severity.ERROR, found.code, found.why, "")
+    proof = replace(proved.proof, errors=(*proved.proof.errors, found.why))
+    return replace(proved, proof=proof, diagnostics=(*proved.diagnostics, error), first_move=seen)
+
+
+@dataclass(slots=True)
+class StartJudge:
+    """Gives verdicts; the part that was last made is stored for the next question."""
+
+    _lock: Lock = field(default_factory=Lock)
+    _history: tuple[Picture, PartHistory] | None = None
+
+    def judge(self, asked: StartQuestion, watch: Watch) -> FirstMoveSeen:
+        """Return the verdict on this start. Raises AbandonedError when ``watch`` does."""
+        with self._lock:
+            return self._judge(asked, watch)
+
+    def _judge(self, asked: StartQuestion, watch: Watch) -> FirstMoveSeen:
+        from core.proving.start_check import first_moves, unchecked
+
+        part, passes = asked.part, _passes(asked.job)
+        plain = Clearance(asked.job.digest, asked.at, asked.begun)
+        if part is None or part.picture.part is None:
+            move = unchecked(first_moves(passes, asked.at))
+            unknown = asked.unknown or (part is not None and part.broken is not None)
+            warned = _not_known() if unknown and move.path else ""
+            return FirstMoveSeen((replace(plain, warned=warned),), move.path, move.zero)
+        check, now, go = self._check(part), _now(asked, part), partial(watch, 0.0)
+        found = check.find(passes, now, go)
+        verdicts = [_verdict(plain, found, part)]
+        end = check.history.end
+        if asked.starts is Starts.PROGRAM and end is not None:
+            at = (*end, *asked.at[2:])
+            again = check.find(passes, replace(now, at=at, broken=None, strict=False), go)
+            here = replace(plain, at=at, repeats=True)
+            verdicts.append(_verdict(here, again, part._replace(broken=None)))
+        return FirstMoveSeen(tuple(verdicts), found.path, found.zero)
+
+    def _check(self, part: KnownPart) -> StartCheck:
+        from core.proving.part_history import PartHistory
+        from core.proving.start_check import StartCheck
+
+        moves = part.picture.part
+        assert moves is not None
+        if self._history is None or self._history[0] is not part.picture:
+            self._history = part.picture, PartHistory(moves)
+        return StartCheck(
+            self._history[1],
+            dict(part.job.setup.tools),
+            moves.setting.stock is not None,
+            frozenset(moves.setting.silenced),
+        )
+
+
+def _passes(job: Job) -> Callable[[tuple[float, ...]], Iterable[Block]]:
+    """The blocks of a job from a position of the axes on; inputs are taken to be off."""
+
+    def passes(at: tuple[float, ...]) -> Iterable[Block]:
+        return interpret(job, replace(job.setup, start=at, inputs=lambda _terminal: False)).blocks
+
+    return passes
+
+
+def _now(asked: StartQuestion, part: KnownPart) -> StartNow:
+    from core.proving.start_check import StartNow
+
+    broken = part.broken
+    where = (
+        (broken.block, (broken.where[0], broken.where[1])) if broken is not None and broken.block else None
+    )
+    return StartNow(asked.at, asked.tool, where, strict=asked.starts is Starts.PROGRAM)
+
+
+# --- in words -----------------------------------------------------------------------------------------------
+
+
+def _verdict(plain: Clearance, found: FirstMove, part: KnownPart) -> Clearance:
+    """In words: a refusal where the finding rests on nothing assumed, else an announcement."""
+    if found.met is None:
+        warned = _not_known() if not found.known and found.path else ""
+        return replace(plain, warned=warned)
+    why = _words(found, part)
+    if found.assumed:
+        return replace(plain, warned=why)
+    return replace(plain, code=INSIDE if found.inside else CROSSES, why=why)
+
+
+def _not_known() -> str:
+    return tr("UNKNOWN PART IN CHUCK. CHECK THE FIRST MOVE BEFORE STARTING")
+
+
+def _words(found: FirstMove, part: KnownPart) -> str:
+    from core.proving.start_check import Body
+
+    what = {Body.PART: tr("THE PART"), Body.CHUCK: tr("THE CHUCK"), Body.TAILSTOCK: tr("THE TAILSTOCK")}
+    text = (
+        tr("{tool} IS INSIDE {what}")
+        if found.inside
+        else tr("THE FIRST MOVE WOULD TAKE {tool} THROUGH {what}")
+    )
+    said = tr(Message(text, tool=edge_name(found.tool), what=what[found.met] if found.met else ""))
+    return Message("{text}: {value}", text=said, value=_way_out(found, part))
+
+
+def _way_out(found: FirstMove, part: KnownPart) -> str:
+    jog = tr(Message("JOG {direction} UNTIL THE TOOL IS CLEAR", direction=found.out))
+    if not found.out:
+        jog = tr("JOG THE TOOL BACK OUT ALONG ITS ENTRY PATH")
+    if part.broken is None or not may_go_on(Loaded(source=part.job.source)):
+        return jog
+    return tr(Message("F6, ENTER: RESUME   F6, F4: RETRACT   OR {jog}", jog=jog))
+
 
 _AT_REST = frozenset({State.IDLE, State.DISABLED})
 

@@ -10,8 +10,7 @@ from concurrent.futures import Future, wait
 from typing import TypeVar
 
 from core.extras.sharing.shared_folder import SharedFolder
-from core.extras.sharing.shared_place import SharedPlace
-from core.extras.sharing.sharing_errors import Cause
+from core.extras.sharing.shared_place import Cause, SharedPlace
 from core.message import Message
 
 T = TypeVar("T")

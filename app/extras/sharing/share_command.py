@@ -66,7 +66,7 @@ def run(args: argparse.Namespace) -> int:
     from app.extras.sharing.place_answer import answered
     from app.extras.sharing.sharing import TakeError
     from app.extras.sharing.sharing_desk import sharing_of
-    from core.extras.sharing.sharing_errors import SharingError
+    from core.extras.sharing.shared_place import SharingError
 
     machine, acts = read_machine(args.machine), _acts(args)
     who = who_may(opened_store, args, *acts) if acts else ""

@@ -18,9 +18,8 @@ from pathlib import Path
 from app.desk.programs.program_folder import ENDINGS
 from app.programs.whole_file import FileError, write_new, write_whole
 from core.extras.sharing import shared_versions
-from core.extras.sharing.shared_place import Found, Published, SharedPlace
+from core.extras.sharing.shared_place import Cause, Found, Published, SharedPlace, SharingError
 from core.extras.sharing.shared_versions import Family, SharedVersion, key_of
-from core.extras.sharing.sharing_errors import Cause, SharingError
 from core.extras.sharing.version_record import MOST_BYTES, DeskState, new_version
 from core.input_file import input_bytes
 from core.message import CodedError, Message, error_code

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from app.compose.backends.backend_entry import Answers, Row
 from app.extras.sharing.sharing_desk import place_of
-from core.extras.sharing.sharing_errors import SharingError
+from core.extras.sharing.shared_place import SharingError
 from core.extras.sharing.sharing_table import SharingTable
 from core.machine.machine_model import Machine
 

@@ -51,7 +51,7 @@ class SharedProgramsPage(ListPage):
         self.page_keys()[name].action()
 
     def _scroll(self, pages: int) -> None:
-        self.versions.look_at(pages * self.versions.lines)
+        self.versions.scroll_by(pages * self.versions.rows)
 
     def _chosen(self, row: int) -> None:
         self.model.choose(row)

@@ -6,7 +6,6 @@ from collections.abc import Callable, Sequence
 from functools import partial
 
 from PySide6.QtCore import QRectF, Qt
-from PySide6.QtGui import QWheelEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.status.alarm_log import LoggedStop
@@ -15,6 +14,7 @@ from app.desk.status.prompt_line import exactly
 from app.desk.translation import tr
 from app.screen.look import Look, Painter, draw_sign
 from app.screen.panel import Panel, Shown
+from app.screen.sheet_panel import RowPanel
 from core.alarms import CATALOGUE, Reaction
 from core.executor.snapshot import Alarm
 from core.message import Message, join_messages
@@ -110,13 +110,17 @@ class Notice(Panel):
         painter.wrap(room, flags, text)
 
 
-class AlarmList(Panel):
-    """Every alarm, E-stop and stop, newest on top: when, what, why, what to do."""
+class AlarmList(RowPanel):
+    """Every alarm, E-stop and stop, newest on top: when, what, why, what to do.
+
+    Scrolling keeps the mark in sight: what is opened by a key is what the operator sees.
+    """
 
     title = "ALARMS AND STOPS  ·  ESC: CLOSE  ·  CTRL+ARROWS: SELECT  ·  SHIFT+F10: SHOW SCOPE RECORD"
-    _top, _marked = Shown(0), Shown(0)
+    notch, keyed = 1, False
+    marked = Shown(0)
 
-    def __init__(self, look: Look, open_record: Callable[[str], None], parent: QWidget | None = None) -> None:
+    def __init__(self, look: Look, open_record: Callable[[str], None], parent: QWidget) -> None:
         """``open_record`` shows what was recorded before an entry, by the name of the file."""
         super().__init__(look, parent)
         self._open = open_record
@@ -127,32 +131,22 @@ class AlarmList(Panel):
         """The log as it stands."""
         if entries is not self.entries:
             self.entries = tuple(entries)
-            self._top = self._marked = 0
+            self.top = self.marked = 0
             self.update()
 
-    @property
-    def rows(self) -> int:
-        """Entries that there is room for."""
-        return max(1, int((self.inside().height() - _FOOT * self.look.u) / (_HIGH * self.look.u)))
+    def scroll_by(self, rows: int) -> None:
+        """Show older ones, or newer ones."""
+        super().scroll_by(rows)
+        self.mark(max(self.top, min(self.marked, self.top + self.rows - 1)))
 
-    def look_at(self, by: int) -> None:
-        """Older ones, or newer ones."""
-        self._top = max(0, min(self._top + by, len(self.entries) - self.rows))
-        self._marked = max(self._top, min(self._marked, self._top + self.rows - 1))
-
-    def mark(self, by: int) -> None:
-        """The next entry, or the one before; it stays in sight."""
-        self._marked = max(0, min(self._marked + by, len(self.entries) - 1))
-        self._top = min(max(self._top, self._marked - self.rows + 1), self._marked)
+    def mark(self, number: int) -> None:
+        """Mark an entry, from 0 for the newest; the first and the last are the ends."""
+        self.marked = max(0, min(number, len(self.entries) - 1))
 
     @property
     def record(self) -> str:
         """The name of the marked entry's record; empty: it has none."""
-        return self.entries[self._marked].record if self._marked < len(self.entries) else ""
-
-    def wheelEvent(self, event: QWheelEvent) -> None:
-        """The mouse wheel goes through the entries, as Page up and down do."""
-        self.look_at(-1 if event.angleDelta().y() > 0 else 1)
+        return self.entries[self.marked].record if self.marked < len(self.entries) else ""
 
     def draw(self, painter: Painter) -> None:
         u = self.look.u
@@ -161,12 +155,17 @@ class AlarmList(Panel):
             room.setHeight(3 * u)
             painter.write(room, "No alarms or stops yet.", 2.0, "soft", bold=False)
             return
-        for number, entry in enumerate(self.entries[self._top : self._top + self.rows]):
-            y = room.y() + number * _HIGH * u
-            if self._top + number == self._marked:
-                painter.fill(QRectF(room.x(), y, 0.4 * u, (_HIGH - 0.5) * u), "lit")
-            self._entry(painter, QRectF(room.x(), y, room.width(), _HIGH * u), entry)
-        self._pages(painter, QRectF(room.x(), room.bottom() - _FOOT * u, room.width(), _FOOT * u))
+        foot = QRectF(room.x(), room.bottom() - _FOOT * u, room.width(), _FOOT * u)
+        room.setBottom(foot.top())
+        fits = self.fitting(room, _HIGH * u, len(self.entries))
+        self.scrolled(painter, room, fits, len(self.entries), self.marked)
+        for number, row in self.boxes(room, _HIGH * u):
+            marked = number == self.marked
+            if marked:
+                painter.fill(QRectF(row.x(), row.y(), 0.4 * u, (_HIGH - 0.5) * u), "lit")
+            self._entry(painter, QRectF(row), self.entries[number])
+            self.place(row, partial(self.mark, number), kind="row", on=marked)
+        self._pages(painter, foot)
 
     def _entry(self, painter: Painter, row: QRectF, entry: LoggedStop) -> None:
         u, alarm = self.look.u, entry.alarm
@@ -194,8 +193,8 @@ class AlarmList(Panel):
         """Two places for a finger, where there is more than fits."""
         u = self.look.u
         for number, (label, by) in enumerate((("NEWER", -self.rows), ("OLDER", self.rows))):
-            possible = self._top > 0 if by < 0 else self._top + self.rows < len(self.entries)
+            possible = self.top > 0 if by < 0 else self.top + self.rows < len(self.entries)
             if not possible:
                 continue
             box = QRectF(foot.right() - (2 - number) * 17 * u, foot.y(), 16 * u, foot.height())
-            self.key(painter, box, label, 2.0, partial(self.look_at, by))
+            self.key(painter, box, label, 2.0, partial(self.scroll_by, by))

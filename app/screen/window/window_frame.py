@@ -154,10 +154,10 @@ class Frame(QWidget):
         """Keys that look through the log while it lies over the page."""
         log = self.log
         return {
-            "Page up": lambda: log.look_at(-log.rows),
-            "Page down": lambda: log.look_at(log.rows),
-            "Pan up": lambda: log.mark(-1),
-            "Pan down": lambda: log.mark(1),
+            "Page up": lambda: log.scroll_by(-log.rows),
+            "Page down": lambda: log.scroll_by(log.rows),
+            "Pan up": lambda: log.mark(log.marked - 1),
+            "Pan down": lambda: log.mark(log.marked + 1),
             "Scope": self._open_marked,
         }
 

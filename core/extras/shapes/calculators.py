@@ -7,8 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from core.extras.shapes import cutting_data
-from core.extras.shapes.cutting_data import MATERIALS, Work
-from core.extras.shapes.cutting_depth import rough_depth
+from core.extras.shapes.cutting_data import MATERIALS, Work, rough_depth
 from core.extras.shapes.lines.code_lines import Code, plain
 from core.extras.shapes.shape import Filled, Shape
 from core.extras.shapes.shape_fields import (

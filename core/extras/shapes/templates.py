@@ -7,8 +7,7 @@ from dataclasses import replace
 
 from core.extras.shapes.calculators import SPEED, THREADS
 from core.extras.shapes.contour import Row
-from core.extras.shapes.cutting_data import MATERIALS, Work
-from core.extras.shapes.cutting_depth import finish_depth, rough_depth
+from core.extras.shapes.cutting_data import MATERIALS, Work, finish_depth, rough_depth
 from core.extras.shapes.forms.bar_work import SINUMERIK_LOOP, no_chuck
 from core.extras.shapes.forms.turning import LABEL
 from core.extras.shapes.lines.code_lines import Along, Bars, Code, figure, plain, rounded_up, write_bars

@@ -1,15 +1,21 @@
-"""Programs shared in a PostgreSQL database: rows are added in one transaction, and never changed."""
+"""Programs shared in a PostgreSQL database: rows are added in one transaction, and never changed.
+
+A connection string is read as libpq reads it: it is shown without secrets, and uses TLS to other computers.
+"""
 
 from __future__ import annotations
 
+import importlib.util
+import os
+import ssl
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
+from ipaddress import ip_address
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from core.extras.sharing.connection_string import parsed, shown, with_tls
-from core.extras.sharing.shared_place import Found, Published, database_at
+from core.extras.sharing.shared_place import Cause, Found, Published, SharingError, database_at
 from core.extras.sharing.shared_versions import SharedVersion
-from core.extras.sharing.sharing_errors import Cause, SharingError
 from core.extras.sharing.version_record import (
     FORMAT,
     LONGEST_RECORD,
@@ -22,9 +28,72 @@ from core.extras.sharing.version_record import (
     read_version,
     written,
 )
+from core.message import Message
 
 if TYPE_CHECKING:
     import psycopg
+
+
+_SHOWN = ("service", "user", "host", "hostaddr", "port", "dbname")
+_VERIFIED = {"verify-ca", "verify-full"}
+
+
+def parsed(conninfo: str) -> dict[str, str]:
+    """The parameters that libpq reads. Raises SharingError, which repeats none of them."""
+    if importlib.util.find_spec("psycopg") is None:
+        raise Cause.NO_PSYCOPG.error("")
+    import psycopg  # noqa: PLC0415  optional, and only for those who share so
+    from psycopg.conninfo import conninfo_to_dict  # noqa: PLC0415
+
+    try:
+        found = {key: str(value) for key, value in conninfo_to_dict(conninfo).items() if value}
+    except psycopg.Error:  # its sentence has the words that libpq could not read
+        found = {"port": "?"}
+    # In an address, a sign of the password that is not written as %.. ends up in another parameter.
+    misread = "://" in conninfo and "@" in found.get("host", "") + found.get("dbname", "")
+    if misread or not found.get("port", "0").replace(",", "").isdigit():
+        raise Cause.UNREADABLE.error("")
+    return found
+
+
+def shown(values: Mapping[str, str]) -> str:
+    """The parameters that sentences may name; also whether the server's certificate goes unchecked."""
+    named = " ".join(f"{key}={values[key]}" for key in _SHOWN if key in values)
+    return (
+        named
+        if is_local(values) or values.get("sslmode") in _VERIFIED
+        else Message("{named} (TLS certificate not verified)", named=named)
+    )
+
+
+def with_tls(values: Mapping[str, str]) -> dict[str, str]:
+    """The parameters; a server elsewhere has to prove who it is, unless they or the system say otherwise."""
+    found = dict(values)
+    if is_local(values):
+        return found
+    found.setdefault("sslmode", os.environ.get("PGSSLMODE") or "verify-full")
+    own = Path("~/.postgresql/root.crt").expanduser()
+    if found["sslmode"] in _VERIFIED and not own.exists() and "PGSSLROOTCERT" not in os.environ:
+        found.setdefault("sslrootcert", ssl.get_default_verify_paths().cafile or "system")
+    return found
+
+
+def is_local(values: Mapping[str, str]) -> bool:
+    """Return whether the server is on this computer, as far as the parameters say."""
+    if "service" in values:
+        return False
+    hosts = values.get("hostaddr") or values.get("host") or os.environ.get("PGHOST", "")
+    return all(map(_is_here, hosts.split(",")))
+
+
+def _is_here(host: str) -> bool:
+    if host in {"", "localhost"} or host.startswith(("/", "@")):  # the latter are sockets
+        return True
+    try:
+        return ip_address(host).is_loopback
+    except ValueError:
+        return False
+
 
 _LAYOUT = """
 CREATE SCHEMA IF NOT EXISTS turndesk;

@@ -13,9 +13,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from core.extras.sharing.shared_place import Found, Published, folder_at
+from core.extras.sharing.shared_place import Cause, Found, Published, folder_at, of_system
 from core.extras.sharing.shared_versions import SharedVersion
-from core.extras.sharing.sharing_errors import Cause, of_system
 from core.extras.sharing.version_record import (
     FORMAT,
     LONGEST_RECORD,

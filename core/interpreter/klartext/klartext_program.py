@@ -1,4 +1,7 @@
-"""A Klartext program read once: its lines, labels and unit, and what is wrong with it as text."""
+"""A Klartext program read once: its lines, labels and unit, and what is wrong with it as text.
+
+A block that is typed in MDI is read on its own: what needs other blocks is refused.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +15,8 @@ from core.interpreter.shared.control_flow import ControlFlow, Frame
 from core.interpreter.shared.diagnostic_log import MOST_OF_A_KIND
 from core.interpreter.shared.units import MM_PER_INCH
 from core.interpreter.shared.working_plane import Corners
-from core.language.diagnostics import Diagnostic, Severity
+from core.language.diagnostics import Diagnostic, Severity, refusal
+from core.language.klartext import klartext_nodes as nodes
 from core.language.klartext import read_line
 from core.language.klartext.canonical_text import name_text, written
 from core.language.klartext.klartext_faults import LABEL, LABEL_TWICE, NESTING, NOT_SUPPORTED, fault, syntax
@@ -369,3 +373,60 @@ class Flow(ControlFlow[_Level]):
             self.at = target + 1
         else:
             left.pop(line, None)
+
+
+_HINT = "Use this command in a program."
+_NEEDS_OTHERS: tuple[tuple[type, str], ...] = (
+    (nodes.Begin, "BEGIN PGM begins a program"),
+    (nodes.End, "END PGM ends a program and cannot be used in MDI"),
+    (nodes.BlankForm, "BLK FORM defines the blank of a program and cannot be used in MDI"),
+    (nodes.Label, "LBL marks a position in a program and cannot be used in MDI"),
+    (nodes.Call, "CALL LBL jumps to another block and cannot be used in MDI"),
+    (nodes.Jump, "A jump goes to another block and cannot be used in MDI"),
+    (nodes.ProgramCall, "CALL PGM calls another program and cannot be used in MDI"),
+    (nodes.Corner, "RND and CHF are allowed only between two blocks of a contour"),
+)
+
+
+def read_single(source: Source, *, inch: bool) -> Program:
+    """A block of MDI as a program of one block that needs no frame. Raises nothing.
+
+    Refused is what has no meaning without other blocks, with its column.
+    """
+    line = read_line(1, source.lines[0] if source.lines else "")
+    problem = line.error or _alone(line)
+    return Program(source, [line], end=1, inch=inch, problems=[problem] if problem is not None else [])
+
+
+def _alone(line: nodes.KlartextLine) -> Diagnostic | None:
+    """Why this block means nothing on its own, None where it does."""
+    node = line.node
+    column = getattr(node, "column", 1) or 1
+    if line.skip:
+        return _refuse(1, "/ skips a program block and has no meaning in MDI")
+    for kind, why in _NEEDS_OTHERS:
+        if isinstance(node, kind):
+            return _refuse(column, why)
+    if isinstance(node, nodes.Move):
+        if node.form.startswith(("APPR", "DEP")):
+            return _refuse(
+                column,
+                Message(
+                    "{form} approaches or departs from a contour and cannot be used in MDI", form=node.form
+                ),
+            )
+        if node.compensation in {"L", "R"}:
+            return _refuse(
+                column,
+                Message(
+                    "R{compensation} needs a contour of more than one block and cannot be used in MDI",
+                    compensation=node.compensation,
+                ),
+            )
+    if isinstance(node, nodes.CycleLine) and node.number == 12:
+        return _refuse(column, "Cycle 12 selects another program and cannot be used in MDI")
+    return None
+
+
+def _refuse(column: int, what: str) -> Diagnostic:
+    return refusal(1, column, "not-alone-mdi", Message("{what}.", what=what), _HINT)

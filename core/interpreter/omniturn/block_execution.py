@@ -9,9 +9,8 @@ from core.interpreter.omniturn.codes.code_table import carry_out
 from core.interpreter.omniturn.cycles.canned_cycles import blocks_of_moves, check_ready
 from core.interpreter.omniturn.motion.arc_moves import arc_move
 from core.interpreter.omniturn.motion.c_axis import c_move, lock, positions
-from core.interpreter.omniturn.motion.coarse_feeds import coarse_line
 from core.interpreter.omniturn.motion.corners import read_corner, refuse_radius
-from core.interpreter.omniturn.motion.feeds import feed_words, warn_of_crash_feed
+from core.interpreter.omniturn.motion.feeds import coarse_line, feed_words, warn_of_crash_feed
 from core.interpreter.omniturn.motion.straight_moves import geometry_modes, statement_move
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import ReadyLine, Statement

@@ -10,8 +10,8 @@ from core.interpreter.omniturn.block_execution import execute
 from core.interpreter.omniturn.consequent_faults import Consequences
 from core.interpreter.omniturn.flow.loops_and_subroutines import Flow, takes_call, terminal
 from core.interpreter.omniturn.flow.program_size import refuse_too_large
-from core.interpreter.omniturn.motion.coarse_feeds import looks_ahead
 from core.interpreter.omniturn.motion.corners import ContourModifier
+from core.interpreter.omniturn.motion.feeds import looks_ahead
 from core.interpreter.omniturn.motion.nose_compensation import nose_code, switch
 from core.interpreter.omniturn.motion.straight_moves import go, on_step, plain_move
 from core.interpreter.omniturn.omniturn_program import Program

@@ -1,4 +1,7 @@
-"""A program read once: its lines ready to run, its structure, and what is wrong with it as text."""
+"""A program read once: its lines ready to run, its structure, and what is wrong with it as text.
+
+A line that is typed in MDI is read like a line of a program, without what needs other lines.
+"""
 
 from __future__ import annotations
 
@@ -6,10 +9,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import islice
 
-from core.interpreter.omniturn.codes.code_table import FLOW_CODES
+from core.interpreter.omniturn.codes.code_table import FLOW_CODES, G_CODES
 from core.interpreter.omniturn.consequent_faults import without_follow_ups
 from core.interpreter.omniturn.flow.loops_and_subroutines import Structure, call_target, find_structure
-from core.interpreter.omniturn.motion.plain_moves import ReadyLines, read_lines, read_move
+from core.interpreter.omniturn.motion.plain_moves import Columns, ReadyLines, read_lines, read_move
 from core.interpreter.omniturn.omniturn_statement import (
     PLANE,
     UNREADABLE,
@@ -299,3 +302,72 @@ def _capped(problems: list[Diagnostic]) -> list[Diagnostic]:
         return problems
     by_weight = sorted(problems, key=lambda problem: problem.severity is not Severity.ERROR)
     return sorted(by_weight[:_MOST_PROBLEMS], key=lambda problem: (problem.line, problem.column))
+
+
+_HINT = "Use this command in a program."
+
+
+def read_single(source: Source) -> Program:
+    """A line of MDI as a program of one line that needs no end. Raises nothing.
+
+    Refused is what has no meaning without other lines, with its column.
+    """
+    text = source.lines[0] if source.lines else ""
+    try:
+        statement, problems = read_statement(1, text)
+    except ProgramError as problem:
+        statement, problems = None, [problem.diagnostic]
+    if statement is not None and not problems:
+        refused = _alone(statement)
+        problems = [refused] if refused is not None else []
+    executable = statement is not None and statement.executable
+    unknown = (statement,) if statement is not None and of_machine_file(statement) else ()
+    return Program(
+        source=source,
+        ready=ReadyLines(Columns.empty(1), {0: statement}),
+        structure=Structure({}, {}, {}, {}, 1, {}),
+        diagnostics=tuple(problems),
+        blocks=int(executable),
+        names_units=True,
+        m_codes=unknown,
+    )
+
+
+def _alone(statement: Statement) -> Diagnostic | None:
+    """Why this line means nothing on its own, None where it does."""
+    if statement.flow and statement.flow != UNREADABLE:
+        return _refuse(statement, 1, _steers(statement))
+    if statement.block_delete:
+        return _refuse(statement, 1, "/ skips a program line and has no meaning in MDI.")
+    for code in statement.modal:
+        if G_CODES[code].not_in_mdi:
+            return _refuse(statement, 1, Message(G_CODES[code].not_in_mdi, code=f"G{code}"))
+    if statement.code is not None and statement.entry.not_in_mdi:
+        return _refuse(
+            statement,
+            statement.code.column,
+            Message(statement.entry.not_in_mdi, code=statement.code.text),
+        )
+    radius = statement.words.get("R")
+    if radius is not None and statement.moves and statement.one_shot is None:
+        return _refuse(
+            statement,
+            radius.column,
+            Message(
+                "{radius} rounds the corner with the next move, but MDI runs only one line.",
+                radius=radius.text,
+            ),
+        )
+    return None
+
+
+def _steers(statement: Statement) -> str:
+    if statement.flow == PLANE:
+        plane = FLOW_CODES["~PLXC"]
+        return Message(plane.not_in_mdi, code=statement.text)
+    word = statement.m_word.text if statement.m_word else statement.flow
+    return Message(FLOW_CODES[statement.flow].not_in_mdi, code=word)
+
+
+def _refuse(statement: Statement, column: int, text: str) -> Diagnostic:
+    return refusal(statement.line, column, "not-alone-mdi", text, _HINT)

@@ -10,8 +10,7 @@ import resources
 from app.compose.machine.machine_files import parse_machine
 from app.extras.shapes.shapes_desk import shop_of
 from core.extras.shapes.contour import Row
-from core.extras.shapes.cutting_data import MATERIALS
-from core.extras.shapes.cutting_depth import facing_depth, finish_depth, most_depth, rough_depth
+from core.extras.shapes.cutting_data import MATERIALS, facing_depth, finish_depth, most_depth, rough_depth
 from core.extras.shapes.shape import Filled, filled
 from core.extras.shapes.shape_fields import Setting, Shop, Value
 from core.extras.shapes.shape_table import HELPERS_OF, SHAPES_OF

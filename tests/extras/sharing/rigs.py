@@ -14,8 +14,7 @@ import pytest
 
 from core.extras.sharing.shared_database import SharedDatabase
 from core.extras.sharing.shared_folder import MARK, SharedFolder
-from core.extras.sharing.shared_place import SharedPlace
-from core.extras.sharing.sharing_errors import Cause
+from core.extras.sharing.shared_place import Cause, SharedPlace
 from tests.extras.sharing.postgres_server import PostgresServer, programs
 
 KINDS = ("folder", "postgresql")

@@ -14,9 +14,8 @@ from app.extras.sharing import sharing as sharing_module
 from app.extras.sharing.sharing import Sharing, TakeError
 from app.programs import whole_file
 from app.programs.whole_file import FileError
-from core.extras.sharing.shared_place import Published
+from core.extras.sharing.shared_place import Published, SharingError
 from core.extras.sharing.shared_versions import Family, SharedVersion
-from core.extras.sharing.sharing_errors import SharingError
 from core.extras.sharing.version_record import DeskState
 from tests.coded import raises_code
 from tests.extras.sharing.conftest import MakeDesk

@@ -14,7 +14,7 @@ from typing import TypeVar
 import pytest
 
 from core.extras.sharing.shared_folder import DESKS, MARK, VERSIONS, SharedFolder
-from core.extras.sharing.sharing_errors import Cause
+from core.extras.sharing.shared_place import Cause
 from core.input_file import TooLargeError, input_bytes
 from tests.extras.sharing.test_places import HOME, cause_of, published, state
 

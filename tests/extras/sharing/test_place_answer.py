@@ -13,8 +13,7 @@ import pytest
 from app.extras.sharing import place_answer
 from app.extras.sharing.place_answer import answered
 from core.extras.sharing.shared_folder import MARK, SharedFolder
-from core.extras.sharing.shared_place import SharedPlace
-from core.extras.sharing.sharing_errors import Cause, SharingError
+from core.extras.sharing.shared_place import Cause, SharedPlace, SharingError
 from tests.coded import raises_code
 from tests.texts import text as wording
 

@@ -11,10 +11,8 @@ from pathlib import Path
 import psycopg
 import pytest
 
-from core.extras.sharing.connection_string import parsed, with_tls
-from core.extras.sharing.shared_database import SharedDatabase
-from core.extras.sharing.shared_place import Published, SharedPlace
-from core.extras.sharing.sharing_errors import Cause, SharingError
+from core.extras.sharing.shared_database import SharedDatabase, parsed, with_tls
+from core.extras.sharing.shared_place import Cause, Published, SharedPlace, SharingError
 from core.extras.sharing.version_record import DeskState, new_version
 from tests.extras.sharing.rigs import PostgresRig, PowerCut, Rig, rig_of
 

@@ -9,9 +9,8 @@ import pytest
 from app.compose.machine.machine_files import named_machine
 from app.compose.machine.machine_setup import setup_for
 from core.interpreter.dialects import ReadProgram
-from core.interpreter.restart.mill_approach import begin_on_mill
 from core.interpreter.restart.program_search import ProgramSearch, _is_uncut, _Stand
-from core.interpreter.restart.restart_approach import Choices, MachineNow, begin_at
+from core.interpreter.restart.restart_approach import Choices, MachineNow, begin_at, begin_on_mill
 from core.interpreter.restart.restart_point import Interruption, NoRestart, RestartPoint
 from core.interpreter.shared.actions import ProgramStop, SpindleRun, ToolChange
 from core.interpreter.shared.checkpoint import AxesLeg, Begin, Checkpoint, FunctionStep

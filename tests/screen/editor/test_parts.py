@@ -16,8 +16,7 @@ from app.compose.screen_desk import desk_and_executor
 from app.compose.stored_offsets import NONE
 from app.desk.status.formats import local_time
 from app.editor.editor import Editor, Stage, enter
-from app.editor.editor_parts_view import editor_places
-from app.editor.findings_view import FindingList
+from app.editor.editor_parts_view import FindingList, editor_places
 from app.editor.live_proof import Findings
 from app.editor.text_view import TextField
 from app.screen.look import DARK, LIGHT, Look

@@ -7,8 +7,7 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
 from core.extras.shapes.contour import SAME, Row, contour_refusals, outline, points, row_word
-from core.extras.shapes.cutting_data import Work
-from core.extras.shapes.cutting_depth import facing_depth, finish_depth, most_depth, rough_depth
+from core.extras.shapes.cutting_data import Work, facing_depth, finish_depth, most_depth, rough_depth
 from core.extras.shapes.lines.code_lines import Along, Code
 from core.extras.shapes.shape import Filled, Shape
 from core.extras.shapes.shape_fields import Field, Kind, Refusal, Setting, Value, Values, number, text

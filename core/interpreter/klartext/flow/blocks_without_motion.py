@@ -1,15 +1,26 @@
-"""Blocks that move nothing: labels, jumps and calls, Q parameters, figures of the control."""
+"""Blocks that move nothing: labels, jumps and calls, Q parameters, figures of the control.
+
+FN 18 SYSREAD reads figures of the control, FN 17 SYSWRITE would write them. Groups and numbers are those of
+the control's public manuals. What is not known here is refused by its number; a column that the tool table
+lacks reads as an empty cell, which is said.
+"""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Mapping
 
-from core.interpreter.klartext.flow import system_data, word_values
+from core.interpreter.klartext.flow import word_values
+from core.interpreter.klartext.flow.word_values import OF_THE_CONTROL, keep, value
 from core.interpreter.klartext.klartext_program import Flow
 from core.interpreter.klartext.klartext_state import State
+from core.interpreter.klartext.motion.feed_rates import per_minute
 from core.interpreter.shared.control_flow import ENDLESS, LoopWatch
+from core.interpreter.shared.job_setup import MillTool
+from core.language.diagnostics import ProgramError, Severity
 from core.language.klartext import klartext_nodes as nodes
-from core.language.klartext.klartext_faults import OWN_ERROR
+from core.language.klartext.klartext_faults import OWN_ERROR, TOOL_UNKNOWN, unsupported
+from core.language.klartext.klartext_nodes import SystemRead, SystemWrite
 from core.language.klartext.structure_blocks import MOST_REPEATS
 from core.message import Message
 
@@ -56,9 +67,9 @@ def reckon(state: State, node: Reckoned) -> None:
         case nodes.Assign():
             word_values.keep(state, node.kind, node.q, word_values.value(state, node.formula))
         case nodes.SystemRead():
-            system_data.read_system(state, node)
+            read_system(state, node)
         case nodes.SystemWrite():
-            system_data.write_system(state, node)
+            write_system(state, node)
         case nodes.ErrorMessage():
             text = Message("The program reports its own error {number} and stops.", number=node.number)
             hint = "Check the conditions under which the program reaches this block."
@@ -68,3 +79,197 @@ def reckon(state: State, node: Reckoned) -> None:
         case nodes.GlobalDef():
             for each in node.values:
                 state.q_global[each.q] = word_values.value(state, each.formula)
+
+
+_TOOL_TABLE = 50
+_AXES = {1: "X", 2: "Y", 3: "Z", 4: "A", 5: "B", 6: "C"}
+_LENGTHS = frozenset(range(1, 7))  # columns that are lengths: L R R2 DL DR DR2
+_COLUMNS: dict[int, tuple[str, Callable[[MillTool], float]]] = {
+    1: ("L", lambda row: row.length),
+    2: ("R", lambda row: row.radius),
+    3: ("R2", lambda row: row.corner),
+    4: ("DL", lambda row: row.dl),
+    5: ("DR", lambda row: row.dr),
+    6: ("DR2", lambda row: row.dr2),
+    10: ("TIME2", lambda row: row.life),
+    15: ("CUT", lambda row: row.teeth),
+    32: ("T-ANGLE", lambda row: row.point),
+}
+# Columns of the control that the tool table here has not; the control reads an empty one as 0.
+_EMPTY = {
+    7: "TL", 8: "RT", 9: "TIME1", 12: "PLC", 13: "LCUTS", 14: "ANGLE", 16: "LTOL", 17: "RTOL", 18: "DIRECT",
+    19: "R-OFFS", 20: "L-OFFS", 21: "LBREAK", 22: "RBREAK", 23: "PLC-VAL", 28: "NMAX", 34: "LIFTOFF",
+    35: "R2TOL", 36: "TYPE",
+}  # fmt: skip
+_LOCKED = 7  # TL
+_OFFSET_IN_PLANE = 19  # R-OFFS
+_AS_THE_RADIUS = 99_999.9999  # what the control reads of its preset, R: the tool's radius
+
+
+def read_system(state: State, node: SystemRead) -> None:
+    """FN 18. Raises ProgramError for figures that this control has not."""
+    group, number = int(value(state, node.group)), int(value(state, node.number))
+    index = int(value(state, node.index)) if node.index is not None else 0
+    if group == _TOOL_TABLE:
+        found = _cell(state, node.column, number, index)
+    else:
+        found = _figure(state, node.column, group, number, index)
+    keep(state, node.kind, node.q, found)
+
+
+def write_system(state: State, node: SystemWrite) -> None:
+    """FN 17: nothing of the control is changed by a program here.
+
+    A cell of the tool table that moves nothing is told and read back by the program; one that would change a
+    way is refused unless it holds the same already. Raises ProgramError.
+    """
+    group, number = int(value(state, node.group)), int(value(state, node.number))
+    index = int(value(state, node.index)) if node.index is not None else 0
+    content = value(state, node.content)
+    if group != _TOOL_TABLE or number not in _COLUMNS.keys() | _EMPTY.keys() | {11}:
+        raise _not_here(state, node.column, 17, group, number, index)
+    tool = index or state.modal.tool
+    name = _COLUMNS[number][0] if number in _COLUMNS else _EMPTY.get(number, "")
+    if number in _COLUMNS or number == _LOCKED:
+        before = _cell(state, node.column, number, index) if number in _COLUMNS else 0.0
+        if not math.isclose(before, content, abs_tol=1e-9):
+            raise unsupported(
+                state.line,
+                node.column,
+                Message(
+                    "Writing {name} of tool {tool} to the tool table with FN 17 (enter the value "
+                    "in the tool table instead)",
+                    name=name,
+                    tool=tool,
+                ),
+            )
+    state.tool_cells[tool, number] = content
+    state.unheeded(
+        Message("FN 17 SYSWRITE ID50 NR{number} {name}", number=number, name=name).rstrip(), node.column
+    )
+
+
+def _cell(state: State, column: int, number: int, index: int) -> float:
+    """A cell of the tool table, lengths in the program's unit; index 0: the tool in the spindle."""
+    tool = index or state.modal.tool
+    if (tool, number) in state.tool_cells:
+        return state.tool_cells[tool, number]
+    row = _row(state, tool)
+    if row is None:
+        text = "Tool {tool} is not in the tool table."
+        raise state.refuse(column, TOOL_UNKNOWN, text, "Add the tool to the tool table.", tool=tool)
+    if number in _COLUMNS:
+        return _COLUMNS[number][1](row) / (state.scale if number in _LENGTHS else 1.0)
+    if number not in _EMPTY:
+        raise _not_here(state, column, 18, _TOOL_TABLE, number, index)
+    found = _AS_THE_RADIUS if number == _OFFSET_IN_PLANE else 0.0
+    text = "The tool table has no column {empty}, so FN 18 returns {value} as it does for an empty cell."
+    state.tell_once(
+        column, Severity.WARNING, "tool-table-column", text, empty=_EMPTY[number], value=f"{found:.9g}"
+    )
+    return found
+
+
+def _row(state: State, tool: int) -> MillTool | None:
+    """What is known of a tool: TOOL DEF counts before the table."""
+    row = state.setup.mill_tools.get(tool)
+    if tool in state.tool_defs:
+        length, radius = state.tool_defs[tool]
+        return MillTool(length, radius) if row is None else _defined(row, length, radius)
+    if row is not None:
+        return row
+    if tool == state.modal.tool:  # of an offset alone, or by a name of TOOL DEF
+        longer, thicker = state.oversize
+        return MillTool(state.tool_length - longer, state.tool_radius - thicker)
+    offset = state.setup.tools.get(tool)
+    return None if offset is None else MillTool(offset.z, offset.nose_radius)
+
+
+def _defined(row: MillTool, length: float, radius: float) -> MillTool:
+    return MillTool(length, radius, corner=row.corner, teeth=row.teeth, point=row.point, life=row.life)
+
+
+def _figure(state: State, column: int, group: int, number: int, index: int) -> float:
+    if (group, number) in _PLAIN:
+        return _PLAIN[group, number](state, column)
+    axis = _AXES.get(index, "")
+    if axis in state.at:
+        found = _of_axis(state, group, number, axis)
+        if found is not None:
+            return found / (state.scale if axis in "XYZ" else 1.0)
+    if group == 200 and number in {1, 2, 3} and index in {1, 2, 3}:
+        return _compensation(state, number, index) / state.scale
+    if (group, number) == (210, 4) and index in {1, 2, 3}:
+        return state.figure.factor
+    raise _not_here(state, column, 18, group, number, index)
+
+
+def _not_here(state: State, column: int, function: int, group: int, number: int, index: int) -> ProgramError:
+    return unsupported(
+        state.line,
+        column,
+        Message(
+            "FN {function} with ID{word} NR{number} IDX{index}",
+            function=function,
+            word=group,
+            number=number,
+            index=index,
+        ),
+    )
+
+
+def _feed(state: State, column: int) -> float:
+    return 0.0 if state.feed is None else per_minute(state, state.feed, state.feed_per, column)
+
+
+_PLAIN: Mapping[tuple[int, int], Callable[[State, int], float]] = {
+    (20, 1): lambda state, _: float(state.modal.tool),
+    (20, 3): lambda _state, _: 2.0,
+    (20, 4): lambda state, _: state.modal.rpm,
+    (20, 5): lambda state, _: OF_THE_CONTROL[110](state),
+    (20, 8): lambda state, _: OF_THE_CONTROL[111](state),
+    (20, 9): _feed,
+    (25, 1): lambda _state, _: 1.0,
+    (35, 1): lambda _state, _: 0.0,  # words without I are absolute
+    (60, 1): lambda state, _: float(state.modal.tool),
+    (60, 2): lambda _state, _: 2.0,
+    (60, 3): lambda state, _: state.modal.rpm,
+    (60, 4): lambda state, _: state.oversize[0] / state.scale,
+    (60, 5): lambda state, _: state.oversize[1] / state.scale,
+    (210, 1): lambda state, _: state.kinematics.basic_rotation,
+    (210, 2): lambda state, _: state.figure.rotation,
+    (210, 3): lambda state, _: float(sum(2 ** "XYZ".index(axis) for axis in state.figure.mirrored)),
+    (210, 6): lambda state, _: -1.0 if state.plane is not None else 0.0,
+    (230, 5): lambda _state, _: 0.0,  # the limits of travel are always watched
+    (280, 1): lambda state, _: -1.0 if state.m128 else 0.0,
+}
+
+
+def _of_axis(state: State, group: int, number: int, axis: str) -> float | None:
+    """A figure of one axis, mm or degrees; None where there is none of this number."""
+    linear = axis in "XYZ"
+    if number == 1 and group in {240, 270}:
+        state.place_is_read()
+    if (group, number) == (240, 1):
+        return state.at[axis]
+    if (group, number) == (270, 1):
+        return state.programmed["XYZ".index(axis)] if linear else state.displayed["ABC".index(axis)]
+    if (group, number) == (220, 2) and linear and state.plane is None:
+        return state.origin["XYZ".index(axis)]
+    if group == 230 and number in {2, 3}:
+        bounds = {each.name: (each.low, each.high) for each in state.kinematics.slides}
+        bounds |= {each.name: (each.low, each.high) for each in state.kinematics.rotaries}
+        bound = bounds[axis][number - 2]
+        return bound if math.isfinite(bound) else None
+    return None
+
+
+def _compensation(state: State, number: int, index: int) -> float:
+    """Active radius, length or R2, mm: 1 as in the table, 2 with its oversizes, 3 with those of TOOL CALL."""
+    row = _row(state, state.modal.tool) or MillTool()
+    plain, off, called = {
+        1: (row.radius, row.dr, state.oversize[1]),
+        2: (row.length, row.dl, state.oversize[0]),
+        3: (row.corner, row.dr2, 0.0),
+    }[number]
+    return plain + (off if index > 1 else 0.0) + (called if index > 2 else 0.0)

@@ -123,7 +123,7 @@ _thread = partial(
     },
 )
 _coarse = partial(
-    Code, acts=Acts.MODE, handler="motion.coarse_feeds:coarse_line", group="coarse feed",
+    Code, acts=Acts.MODE, handler="motion.feeds:coarse_line", group="coarse feed",
     not_in_mdi="{code} needs a G92 on the next line, but MDI runs only one line.",
 )
 _COARSE_ALONE = Refusal(

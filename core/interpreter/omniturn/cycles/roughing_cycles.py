@@ -1,16 +1,27 @@
-"""G74, G75 and G78: a box, or the area before a contour, taken off in passes parallel to Z."""
+"""G74, G75 and G78: a box, or the area before a contour, taken off in passes parallel to Z.
+
+Of the lines that describe a contour, only what places the contour counts.
+"""
 
 from __future__ import annotations
 
+import copy
+from collections import deque
 from collections.abc import Sequence
 
 from core.geometry.contour_offset import Area, TrimError
-from core.geometry.lines_and_arcs import Element
-from core.interpreter.omniturn.codes.code_rules import number
+from core.geometry.lines_and_arcs import Element, Point, shifted
+from core.interpreter.omniturn.codes.code_entry import Acts
+from core.interpreter.omniturn.codes.code_rules import check_together, number
+from core.interpreter.omniturn.codes.code_table import LETTERS
 from core.interpreter.omniturn.cycles.canned_cycles import LIFT, check_count, length, name
-from core.interpreter.omniturn.cycles.cycle_contour import read_contour
-from core.interpreter.omniturn.omniturn_state import State
-from core.interpreter.omniturn.omniturn_statement import Statement
+from core.interpreter.omniturn.motion.arc_moves import arc_move
+from core.interpreter.omniturn.motion.corners import ContourCorners, corner_size
+from core.interpreter.omniturn.motion.move_words import WordedMoves
+from core.interpreter.omniturn.motion.straight_moves import geometry_modes, go, on_step
+from core.interpreter.omniturn.omniturn_state import Corner, State
+from core.interpreter.omniturn.omniturn_statement import UNREADABLE, Statement
+from core.interpreter.omniturn.setup.tools_and_offsets import preset
 from core.interpreter.shared.contour_passes import (
     MOST_ELEMENTS,
     MOST_LOOKS,
@@ -22,6 +33,137 @@ from core.interpreter.shared.contour_passes import (
     pass_count,
     view_from,
 )
+from core.interpreter.shared.contour_stage import element_of
+from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.language.diagnostics import Diagnostic, ProgramError, Severity
+from core.language.omniturn import Word
+from core.message import Message, worded
+
+_MODES = "absolute", "metric", "diameter", "preset_x", "preset_z"
+_NOSE = frozenset({40, 41, 42})
+_TURNS = frozenset({"CA", "CI"})
+_CORNERS = frozenset({"C", "R"})
+
+
+def read_contour(state: State, statement: Statement, lines: Sequence[Statement]) -> list[Element]:
+    """The contour from its first point on, in the frame of the cycle's line ``statement``; mm.
+
+    The state in force stays as it is. Raises ProgramError for a line that no contour can hold.
+    """
+    reader = _Reader(state, statement)
+    for each in lines:
+        if not (each.block_delete and state.setup.block_delete):
+            reader.take(each)
+    elements = reader.finish()
+    text = "The contour of G{one_shot} does not contain a line or an arc."
+    hint = "Write the points of the contour."
+    statement.check(elements, "", "cycle-contour-empty", text, hint, one_shot=statement.one_shot)
+    return elements
+
+
+class _Reader:
+    """Goes through the lines on a state of its own, so that what they change ends with the contour."""
+
+    def __init__(self, state: State, statement: Statement) -> None:
+        self._state, self._made = state, statement
+        self._own = copy.copy(state)
+        # A rapid needs no feed and no spindle, which do not count here.
+        self._own.adopt(state.modal._replace(rapid=True))
+        self._own.reported = set()
+        self._own.title_rapid = self._own.tool_line = 0
+        self._begun = False
+        self._reported = False
+        self._moves: list[tuple[Block, Corner | None]] = []
+
+    def take(self, line: Statement) -> None:
+        if line.flow == UNREADABLE:
+            raise _refused(line, 1, "This line of the contour cannot be read", "Correct the line.")
+        idle_corner = not line.moves and not _CORNERS.isdisjoint(line.words)
+        if line.flow or idle_corner or not _TURNS.isdisjoint(line.words):
+            hint = "Write the contour block by block, with only straight moves, arcs, chamfers and roundings."
+            raise _refused(line, 1, "{line} is not allowed in a contour", hint, line=line.text)
+        if line.one_shot is not None and not line.entry.in_contour:
+            column = line.code.column if line.code else 1
+            text = "G{one_shot} is not allowed in a contour"
+            raise _refused(line, column, text, "Remove this text from the program.", one_shot=line.one_shot)
+        if not _NOSE.isdisjoint(line.modal):
+            text = "Nose compensation cannot be turned on or off in a contour"
+            raise _refused(line, 1, text, "Program a separate contour for finishing.", "cycle-nose-comp")
+        self._tell_ignored(line)
+        geometry_modes(self._own, line)
+        if line.one_shot == 92:
+            deque(preset(self._own, line), maxlen=0)
+        elif line.moves:
+            self._move(line)
+
+    def finish(self) -> list[Element]:
+        """The elements. Warns where the modes at the end of the contour are not those of its start."""
+        for mode in _MODES:
+            if getattr(self._own.modal, mode) != getattr(self._state.modal, mode):
+                text = (
+                    "The contour changes modes or coordinates; the previous ones are restored after the "
+                    "cycle."
+                )
+                self._state.log.warn(self._made.line, self._made.code_column, "cycle-modes", text)
+                break
+        state = self._state
+        moves = WordedMoves(state.setup.limits.max_rpm)
+        blocks = ContourCorners(state.log, moves).cut(self._moves)
+        elements = [shifted(element_of(each), *self._shift(each)) for each in blocks]
+        return [element for element in elements if element.length > _SAME]
+
+    def _tell_ignored(self, line: Statement) -> None:
+        words = [line.words[letter] for letter in "TDSF" if letter in line.words and line.one_shot != 4]
+        words += [line.m_word] if line.m_word else []
+        words += [line.code] if line.code and line.one_shot in {4, 10} else []
+        if words and not self._reported:
+            self._reported = True
+            text = Message(
+                "{words} and other words that do not belong to a contour are ignored in the contour "
+                "of G{one_shot}.",
+                words=words[0].text,
+                one_shot=self._made.one_shot,
+            )
+            found = Diagnostic(line.line, words[0].column, Severity.NOTE, "cycle-ignored", text)
+            self._state.log.add(found)
+
+    def _move(self, line: Statement) -> None:
+        arc = line.entry.acts is Acts.ARC
+        word = None if arc else line.words.get("C") or line.words.get("R")
+        if not self._begun:
+            self._begin(line, word)
+            return
+        block, corner = arc_move(self._own, line) if arc else self._line(line), None
+        if word is not None:
+            check_together(line, LETTERS[word.letter])
+            corner = Corner(word.letter, corner_size(self._own, line, word), word.column)
+        if corner is not None or element_of(block).length > _SAME:
+            self._moves.append((block, corner))
+
+    def _begin(self, line: Statement, corner: Word | None) -> None:
+        """The first line is the way from the start point to the first point of the contour."""
+        if line.entry.acts is Acts.ARC or corner is not None:
+            column = corner.column if corner else 1
+            text = "The first line of a contour defines its start point and cannot contain an arc or a corner"
+            raise _refused(line, column, text, "Write only X and Z of the first point.")
+        self._line(line)
+        self._begun = True
+
+    def _line(self, line: Statement) -> Block:
+        own, start = self._own, (self._own.x, self._own.z, self._own.c)
+        go(own, on_step(own, line, "X"), on_step(own, line, "Z"))
+        return own.move(Kind.FEED, line.line, "", start, 0.0)
+
+    def _shift(self, block: Block) -> Point:
+        """From the frame at this place of the contour to that of the cycle's line."""
+        return block.offset_x - self._state.offset_x, block.offset_z - self._state.offset_z
+
+
+def _refused(
+    line: Statement, column: int, what: str, hint: str, code: str = "cycle-contour-line", /, **values: object
+) -> ProgramError:
+    return line.refuse(column, code, "{what}.", hint, what=worded(what, values))
+
 
 _SAME = 1e-6  # mm
 

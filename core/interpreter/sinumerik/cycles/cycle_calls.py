@@ -7,11 +7,15 @@ from dataclasses import replace
 
 from core.geometry.lines_and_arcs import Element
 from core.interpreter.shared.elementary_blocks import Block
-from core.interpreter.sinumerik.cycles.cycle_contour import WRONG_CONTOUR, contour_lines, read_contour
 from core.interpreter.sinumerik.cycles.cycle_parameters import Cycle
 from core.interpreter.sinumerik.cycles.drilling_cycles import bore, drill, lift_off, peck, stop
 from core.interpreter.sinumerik.cycles.grooving_cycles import groove, part_off
-from core.interpreter.sinumerik.cycles.stock_removal import stock_removal
+from core.interpreter.sinumerik.cycles.stock_removal import (
+    WRONG_CONTOUR,
+    contour_lines,
+    read_contour,
+    stock_removal,
+)
 from core.interpreter.sinumerik.cycles.tapping_cycles import compensating, rigid
 from core.interpreter.sinumerik.cycles.thread_cycle import thread_chain, thread_cycle
 from core.interpreter.sinumerik.cycles.undercut_cycles import shoulder_undercut, thread_undercut, undercut
