@@ -135,17 +135,17 @@ class Modbus:
         packed = self._read(read(READ_COILS, address, count), (count + 7) // 8)[3:-2]
         return [bool(int.from_bytes(packed, "little") >> number & 1) for number in range(count)]
 
-    def write_coil(self, address: int, on: bool) -> None:
+    def write_coil(self, address: int, on: bool, tries: int = TRIES) -> None:
         """05."""
-        self._write(write_coil(address, on))
+        self._write(write_coil(address, on), tries)
 
     def write_register(self, address: int, value: int, tries: int = TRIES) -> None:
         """06; ``tries`` 1: what must not be said twice."""
         self._write(write_register(address, value), tries)
 
-    def write_registers(self, address: int, values: Sequence[int]) -> None:
+    def write_registers(self, address: int, values: Sequence[int], tries: int = TRIES) -> None:
         """10."""
-        self._write(write_registers(address, values))
+        self._write(write_registers(address, values), tries)
 
     def _read(self, pdu: bytes, size: int) -> bytes:
         """An answer says nothing of what was asked: after a doubt an echo comes first."""
