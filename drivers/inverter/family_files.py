@@ -92,7 +92,7 @@ def _refusal(path: Path, text: str, findings: Iterable[Finding]) -> DriverError:
 
 
 _HEAD = re.compile(r"\s*(\[\[?)\s*([\w.-]+)\s*\]")
-_KEY = re.compile(r"""\s*["']?([\w-]+)["']?\s*=""")
+_KEY = re.compile(r"""\s*["']?([\w.-]+)["']?\s*=""")
 _LAST = re.compile(r"(\.?[^.\[\]]+|\[\d+\])$")
 
 
@@ -146,7 +146,7 @@ class _Reading:
         self._table("frequency", FrequencyKeys)
         self._table("command", CommandKeys, COMMANDS)
         for name in COMMANDS if self._is_table("command") else ():
-            self._rows(f"command.{name}", WriteKeys, self._data["command"].get(name, []), needed=True)
+            self._rows(f"command.{name}", WriteKeys, self._data["command"].get(name), needed=True)
         self._rows("read", ReadKeys, needed=True)
         self._table("report", (), tuple(_REPORT))
         for name, keys in _REPORT.items() if self._is_table("report") else ():
@@ -171,10 +171,10 @@ class _Reading:
 
     def _rows(self, path: str, keys: type, raw: object = None, *, needed: bool = False) -> None:
         """Read a list of tables; ``needed``: at least one."""
-        raw = self._data.get(path, []) if raw is None else raw
+        raw = (self._data.get(path) if raw is None else raw) or []
         if not isinstance(raw, list) or (needed and not raw):
             text = "expected a list of tables, such as [{ register = 0x2000, value = 1 }]"
-            self.findings.append(Finding(path, written(raw), text, "wrong-value"))
+            self.findings.append(Finding(path, written(raw) if raw else "", text, "wrong-value"))
             return
         for number, row in enumerate(raw, 1):
             self.findings += read_table(row, keys, f"{path}[{number}]", self._values)

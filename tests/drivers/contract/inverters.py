@@ -175,6 +175,12 @@ class HitachiWj200(OnALine):
     family = "hitachi-wj200"
 
 
+class YaskawaV1000(OnALine):
+    """Yaskawa V1000, of which the product has no code."""
+
+    family = "yaskawa-v1000"
+
+
 class HuanyangHy(OnALine):
     """Huanyang HY."""
 

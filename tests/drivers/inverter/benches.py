@@ -14,11 +14,14 @@ from tests.drivers.inverter.inverter_simulators import (
     HitachiMemory,
     HuanyangSlave,
     Inverter,
+    MemobusSlave,
+    Memory,
     RtuSlave,
+    YaskawaMemory,
 )
 from tests.drivers.inverter.wires import BenchWire, Slave
 
-FAMILIES = ("delta-vfdb", "hitachi-wj200", "huanyang")
+FAMILIES = ("delta-vfdb", "hitachi-wj200", "huanyang", "yaskawa-v1000")
 
 
 @dataclass
@@ -27,7 +30,7 @@ class Bench:
 
     clock: StepClock
     inverter: Inverter
-    memory: DeltaMemory | HitachiMemory | HuanyangSlave
+    memory: Memory | HuanyangSlave
     wire: BenchWire
     attendant: Attendant
     spindle: InverterSpindle
@@ -73,10 +76,17 @@ def bench(family: str, *, connect: bool = True) -> Bench:
     return made
 
 
-def far_end(family: str, inverter: Inverter) -> tuple[DeltaMemory | HitachiMemory | HuanyangSlave, Slave]:
+def far_end(family: str, inverter: Inverter) -> tuple[Memory | HuanyangSlave, Slave]:
     """What an inverter of this family knows, and what answers for it on the line."""
     if family == "huanyang":
         huanyang = HuanyangSlave(inverter)
         return huanyang, huanyang
-    memory = HitachiMemory(inverter) if family == "hitachi-wj200" else DeltaMemory(inverter)
-    return memory, RtuSlave(memory)
+    memory = memory_of(family, inverter)
+    return memory, (MemobusSlave if family == "yaskawa-v1000" else RtuSlave)(memory)
+
+
+def memory_of(family: str, inverter: Inverter) -> Memory:
+    """Registers of a family on Modbus."""
+    if family == "hitachi-wj200":
+        return HitachiMemory(inverter)
+    return YaskawaMemory(inverter) if family == "yaskawa-v1000" else DeltaMemory(inverter)

@@ -27,6 +27,10 @@ from tests.drivers.inverter.wires import BenchWire
         ("01 03 02 00 10", "B9 88"),
         # the same, Ver.3-34: write FFFF to 4003h
         ("01 06 40 02 FF FF", "3C 7A"),
+        # Yaskawa's V1000 and J1000 manuals: read four words from 0020h at unit 2, its refusal, loopback
+        ("02 03 00 20 00 04", "45 F0"),
+        ("02 83 03", "F1 31"),
+        ("01 08 00 00 A5 37", "DA 8D"),
     ],
 )
 def test_crc_of_frames_in_manuals(body: str, crc: str) -> None:

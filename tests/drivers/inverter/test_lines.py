@@ -22,8 +22,8 @@ from core.ports import DriverError
 from drivers.inverter.inverter_attendant import PRESS
 from drivers.waiting import RealClock, StepClock
 from tests.coded import raises_code
-from tests.drivers.inverter.benches import FAMILIES
-from tests.drivers.inverter.inverter_simulators import DeltaMemory, HitachiMemory, HuanyangSlave, Inverter
+from tests.drivers.inverter.benches import FAMILIES, memory_of
+from tests.drivers.inverter.inverter_simulators import HuanyangSlave, Inverter
 from tests.drivers.inverter.lines import HuanyangEnd, ModbusServer, Pair, inverter, until
 from tests.late_computer import stalls_told
 from tests.texts import text
@@ -62,8 +62,7 @@ def wired(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Wired]:
         if request.param == "huanyang":
             stack.enter_context(HuanyangEnd(cable.far, HuanyangSlave(one)))
         else:
-            memory = DeltaMemory(one) if request.param == "delta-vfdb" else HitachiMemory(one)
-            stack.enter_context(ModbusServer(cable.far, memory))
+            stack.enter_context(ModbusServer(cable.far, memory_of(request.param, one)))
         path = machine_file(tmp_path, request.param, cable.near)
         yield Wired(load_machine(path), path, cable, one)
 

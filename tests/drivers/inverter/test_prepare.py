@@ -10,7 +10,7 @@ from core.ports import DriverError
 from drivers.inverter.modbus_rtu import NoAnswerError
 from drivers.serial_line import WireError
 from tests.coded import raises_code
-from tests.drivers.inverter.benches import bench
+from tests.drivers.inverter.benches import FAMILIES, bench
 from tests.drivers.inverter.inverter_simulators import DeltaMemory, HitachiMemory, HuanyangSlave
 from tests.texts import begins
 
@@ -46,13 +46,16 @@ def test_huanyang_has_none_and_says_so() -> None:
         ("delta-vfdb", 0x0100, 5000, ["Pr.01-00", "50 Hz", "58.33"]),
         ("hitachi-wj200", 0x1201, 2, ["A002", "2", "3"]),
         ("hitachi-wj200", 0x1203, 500, ["A004", "50 Hz"]),
+        ("yaskawa-v1000", 0x0181, 1, ["b1-02", "1", "2"]),
+        ("yaskawa-v1000", 0x0435, 20, ["H5-09", "20", "15", "1.5 s"]),
+        ("yaskawa-v1000", 0x0303, 500, ["E1-04", "50 Hz"]),
     ],
 )
 def test_settings_of_others_are_told_and_left(
     family: str, register: int, value: int, named: list[str]
 ) -> None:
     one = bench(family, connect=False)
-    assert isinstance(one.memory, DeltaMemory | HitachiMemory)
+    assert not isinstance(one.memory, HuanyangSlave)
     one.memory.settings[register] = value
     one.attendant.connect()
     (warning,) = one.attendant.warnings
@@ -90,7 +93,7 @@ def test_huanyang_is_trusted_after_ten_good_answers() -> None:
     one.spindle.run(100.0)
 
 
-@pytest.mark.parametrize("family", ["delta-vfdb", "hitachi-wj200", "huanyang"])
+@pytest.mark.parametrize("family", FAMILIES)
 @pytest.mark.parametrize(("fault", "kind"), [("silent", NoAnswerError), ("out", WireError)])
 def test_nobody_there_is_one_sentence(family: str, fault: str, kind: type[DriverError]) -> None:
     one = bench(family, connect=False)
@@ -99,7 +102,7 @@ def test_nobody_there_is_one_sentence(family: str, fault: str, kind: type[Driver
         one.attendant.connect()
 
 
-@pytest.mark.parametrize("family", ["delta-vfdb", "hitachi-wj200", "huanyang"])
+@pytest.mark.parametrize("family", FAMILIES)
 def test_a_spindle_that_turns_when_the_control_comes_is_stopped(family: str) -> None:
     one = bench(family, connect=False)
     one.inverter.hz, one.inverter.running = 30.0, True
