@@ -11,7 +11,12 @@ from drivers.inverter.modbus_rtu import NoAnswerError
 from drivers.serial_line import WireError
 from tests.coded import raises_code
 from tests.drivers.inverter.benches import FAMILIES, bench
-from tests.drivers.inverter.inverter_simulators import DeltaMemory, HitachiMemory, HuanyangSlave
+from tests.drivers.inverter.inverter_simulators import (
+    DeltaMemory,
+    HitachiMemory,
+    HuanyangSlave,
+    YaskawaMemory,
+)
 from tests.texts import begins
 
 
@@ -70,6 +75,15 @@ def test_settings_that_an_inverter_does_not_know_are_told() -> None:
     one.attendant.connect()
     assert len(one.attendant.warnings) == 1
     assert "Pr.09-03" in one.attendant.warnings[0]
+
+
+def test_a_highest_frequency_that_cannot_be_read_is_told() -> None:
+    one = bench("yaskawa-v1000", connect=False)
+    assert isinstance(one.memory, YaskawaMemory)
+    del one.memory.settings[0x0303]
+    one.attendant.connect()
+    (warning,) = one.attendant.warnings
+    assert warning.startswith("E1-04 ")
 
 
 def test_huanyang_that_listens_to_its_keypad_is_told() -> None:

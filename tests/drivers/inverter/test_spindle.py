@@ -45,6 +45,22 @@ def test_a_stop_waits_for_one_answer_at_most(turning: Bench) -> None:
     assert first[-3] in (0x08, 0x01, 0x00)  # stop of each family
 
 
+def test_a_stop_that_comes_after_the_frequency_keeps_the_run_command_back(turning: Bench) -> None:
+    send, back = turning.wire.send, set[bool]()
+
+    def overtaken(data: bytes) -> None:
+        turning.spindle.run(0.0)
+        send(data)
+        back.add(turning.inverter.back)
+
+    turning.spindle.run(-900.0)
+    turning.wire.send = overtaken  # type: ignore[method-assign]
+    turning.run(2.0)
+    assert turning.inverter.hz == pytest.approx(15.0)
+    assert back == {False}
+    assert turning.rpm == 0.0
+
+
 def test_an_answer_lost_now_and_then_does_no_harm(turning: Bench) -> None:
     for _ in range(5):
         turning.wire.loses = 1
