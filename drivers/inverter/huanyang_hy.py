@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator
 from core.ports import Clock
 from drivers.inverter.family_table import FamilyTable
 from drivers.inverter.inverter_family import Look, check_parameters
-from drivers.inverter.modbus_rtu import PACE, NoAnswerError, never, sealed, whole
+from drivers.inverter.modbus_rtu import PACE, HeldBackError, NoAnswerError, never, sealed, whole
 from drivers.serial_line import Wire
 
 _READ, _CONTROL, _VALUE, _FREQUENCY = 1, 3, 4, 5
@@ -54,9 +54,8 @@ class HuanyangHy:
         """The frequency first."""
         value = struct.pack(">H", round(abs(hz) * 100.0))
         self._ask(_FREQUENCY, value, value)
-        if not self.hurry():
-            self._word = _RUN_BACK if hz < 0.0 else _RUN
-            self._control()
+        self._word = _RUN_BACK if hz < 0.0 else _RUN
+        self._control()
 
     def looks(self) -> Iterator[Look | None]:
         """State bits: 0 told to run, 2 told to run back, 3 runs, 5 runs back."""
@@ -103,7 +102,7 @@ class HuanyangHy:
             self._good = 0
             if not self.hurry():
                 self._wire.receive(_TIMEOUT)  # one that comes later still is of no use, and must not be taken
-            if left and self.hurry() and function != _CONTROL:
+            if left and self.hurry() and function in (_READ, _VALUE):
                 break
         raise NoAnswerError(
             "the inverter does not respond; check the cable, PD163 (id), PD164 and PD165 (line settings)",
@@ -112,6 +111,8 @@ class HuanyangHy:
 
     def _once(self, function: int, data: bytes, begins: bytes) -> bytes | None:
         self._clock.sleep_until(self._free)
+        if self._can_turn(function) and self.hurry():
+            raise HeldBackError
         self._wire.discard()
         began = self._clock.now()
         self._wire.send(sealed(bytes((self._unit, function, len(data))) + data))
@@ -122,6 +123,10 @@ class HuanyangHy:
             answer = self._found(come, function, begins)
         self._free = max(self._clock.now() + self._gap, began + PACE)
         return answer
+
+    def _can_turn(self, function: int) -> bool:
+        """Whether the next frame can make the motor turn, or turn faster."""
+        return function == _FREQUENCY or (function == _CONTROL and self._word != _HALT)
 
     def _found(self, come: bytes, function: int, begins: bytes) -> bytes | None:
         head = bytes((self._unit, function))

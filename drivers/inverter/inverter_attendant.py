@@ -8,12 +8,13 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 
 from core.message import Message
 from core.ports import Clock, DriverError, Fault, FaultCode
 from drivers.inverter.inverter_family import Family, Look
-from drivers.inverter.modbus_rtu import NoAnswerError, RefusedError
+from drivers.inverter.modbus_rtu import HeldBackError, NoAnswerError, RefusedError
 from drivers.serial_line import WireError
 
 # --- Whether an inverter does what it was told.
@@ -327,8 +328,9 @@ class Attendant:
         self._began_before, self._began = self._began, self._clock.now()
         if self._reset:
             self._clear_now()
-        self._tell()
-        self._look()
+        with suppress(HeldBackError):  # the next exchange says the stop first
+            self._tell()
+            self._look()
 
     def _clear_now(self) -> None:
         """Only what answers can be cleared; a trip that stays comes back with the next look."""
@@ -351,9 +353,8 @@ class Attendant:
         if want == 0.0:
             self._familiar.stop()
         else:
+            self._told = None  # from its first frame on a stop has to be said, and holds back the others
             self._familiar.command(want)
-            if self._stop_waits():
-                return  # it came meanwhile: the next round says it first
         self._told, self._answered = want, self._clock.now()
 
     def _look(self) -> None:
@@ -429,6 +430,7 @@ class AttendantThread:
 
     def close(self) -> None:
         """The last word on the line is a stop."""
+        self._attendant.want = 0.0  # holds back what the thread has not sent yet
         self._ended.set()
         if self.thread.is_alive():
             self.thread.join(_END)

@@ -32,7 +32,8 @@ class Look:
 class Family(Protocol):
     """One kind of inverter on its line. Whatever talks raises NoAnswerError, RefusedError or WireError.
 
-    ``hurry`` is asked between requests: a stop is waiting, so that what is not a stop breaks off.
+    ``hurry`` is asked between requests: a stop is waiting, so that what is not a stop breaks off. It is asked
+    right before each frame that can make the motor turn, which is then not sent: HeldBackError.
     """
 
     warm_up: int  # good answers in a row before it is trusted
@@ -55,11 +56,11 @@ class Family(Protocol):
         ...
 
     def command(self, hz: float) -> None:
-        """Turn; negative against M03."""
+        """Turn; negative against M03. Raises HeldBackError."""
         ...
 
     def looks(self) -> Iterator[Look | None]:
-        """One look, request by request: None between them, the look at last."""
+        """One look, request by request: None between them, the look at last. Raises HeldBackError."""
         ...
 
     def reset(self) -> None:

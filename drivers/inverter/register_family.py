@@ -27,7 +27,7 @@ class RegisterFamily:
 
     @hurry.setter
     def hurry(self, asked: Callable[[], bool]) -> None:
-        """``asked`` tells whether a stop waits, which breaks off what is no stop."""
+        """``asked`` tells whether a stop waits: what is no stop breaks off, and no run command is sent."""
         self._line.hurry = asked
 
     @property
@@ -53,16 +53,15 @@ class RegisterFamily:
         frequency = self._registers.frequency
         words = frequency.words_of(hz)
         if len(words) > 1:
-            self._line.write_registers(frequency.register, words)
+            self._line.write_registers(frequency.register, words, gives_way=True)
         else:
-            self._write(frequency.register, words[0])
+            self._write(frequency.register, words[0], gives_way=True)
         writes = self._registers.commands["reverse" if hz < 0.0 else "forward"]
         if writes == self._said and not self._registers.sending.repeat:
             return
+        self._said = ()  # until all of it is answered
         for each in writes:
-            if self.hurry():
-                return
-            self._send(each)
+            self._send(each, gives_way=True)
         self._said = writes
 
     def looks(self) -> Iterator[Look | None]:
@@ -90,17 +89,17 @@ class RegisterFamily:
         """Let the line go."""
         self._line.wire.close()
 
-    def _send(self, each: WriteKeys, tries: int = TRIES) -> None:
+    def _send(self, each: WriteKeys, tries: int = TRIES, *, gives_way: bool = False) -> None:
         if each.coil == ABSENT:
-            self._write(each.register, each.value, tries)
+            self._write(each.register, each.value, tries, gives_way=gives_way)
         else:
-            self._line.write_coil(each.coil, each.on, tries)
+            self._line.write_coil(each.coil, each.on, tries, gives_way=gives_way)
 
-    def _write(self, register: int, value: int, tries: int = TRIES) -> None:
+    def _write(self, register: int, value: int, tries: int = TRIES, *, gives_way: bool = False) -> None:
         if self._table.line.write_multiple:
-            self._line.write_registers(register, (value,), tries)
+            self._line.write_registers(register, (value,), tries, gives_way=gives_way)
         else:
-            self._line.write_register(register, value, tries)
+            self._line.write_register(register, value, tries, gives_way=gives_way)
 
     def _look(self, words: Mapping[int, int], coils: Mapping[int, bool]) -> Look:
         table = self._registers
