@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 
 from drivers.inverter.inverter_attendant import Attendant
 from drivers.inverter.inverter_spindle import InverterSpindle, attendant
@@ -14,14 +15,16 @@ from tests.drivers.inverter.inverter_simulators import (
     HitachiMemory,
     HuanyangSlave,
     Inverter,
-    MemobusSlave,
     Memory,
+    MyDriveMemory,
+    MyDriveSlave,
     RtuSlave,
-    YaskawaMemory,
 )
 from tests.drivers.inverter.wires import BenchWire, Slave
 
-FAMILIES = ("delta-vfdb", "hitachi-wj200", "huanyang", "yaskawa-v1000")
+FOLDER = Path(__file__).parent  # has the file of an inverter that the product does not know
+OWN = "my-drive.toml"
+FAMILIES = ("delta-vfdb", "hitachi-wj200", "huanyang", OWN)
 
 
 @dataclass
@@ -70,7 +73,7 @@ def bench(family: str, *, connect: bool = True) -> Bench:
     inverter = Inverter(clock)
     memory, slave = far_end(family, inverter)
     wire = BenchWire(slave, clock)
-    one = attendant(config(family), wire.opened, clock)
+    one = attendant(config(family), wire.opened, clock, FOLDER)
     made = Bench(family, clock, inverter, memory, wire, one, InverterSpindle(config(family), one, clock))
     if connect:
         one.connect()
@@ -83,11 +86,11 @@ def far_end(family: str, inverter: Inverter) -> tuple[Memory | HuanyangSlave, Sl
         huanyang = HuanyangSlave(inverter)
         return huanyang, huanyang
     memory = memory_of(family, inverter)
-    return memory, (MemobusSlave if family == "yaskawa-v1000" else RtuSlave)(memory)
+    return memory, (MyDriveSlave if family == OWN else RtuSlave)(memory)
 
 
 def memory_of(family: str, inverter: Inverter) -> Memory:
     """Registers of a family on Modbus."""
     if family == "hitachi-wj200":
         return HitachiMemory(inverter)
-    return YaskawaMemory(inverter) if family == "yaskawa-v1000" else DeltaMemory(inverter)
+    return MyDriveMemory(inverter) if family == OWN else DeltaMemory(inverter)

@@ -216,13 +216,12 @@ class HitachiMemory:
             inverter.obey(run=self.coils[0])
 
 
-class YaskawaMemory(NoCoils):
-    """Registers of a V1000 by its MEMOBUS/Modbus data table; commands can be read back."""
+class MyDriveMemory(NoCoils):
+    """Registers of an invented inverter, whose commands can be read back."""
 
     def __init__(self, inverter: Inverter) -> None:
         self.inverter = inverter
-        self.settings = {0x0180: 2, 0x0181: 2, 0x0182: 0, 0x0183: 0, 0x0303: 600, 0x0502: 0}
-        self.settings |= {0x0428: 0, 0x0429: 1, 0x0435: 15, 0x043D: 0}
+        self.settings = {0x0180: 2, 0x0181: 2, 0x0303: 600, 0x0428: 0, 0x0435: 15}
         self.command = 0
         self._watch()
 
@@ -265,11 +264,10 @@ class YaskawaMemory(NoCoils):
             raise RefusedByDeviceError(2)
 
     def _watch(self) -> None:
-        watched = self.settings[0x0429] == 1 and self.settings[0x0428] == 0
-        self.inverter.patience = self.settings[0x0435] / 10 if watched else 0.0
+        self.inverter.patience = self.settings[0x0435] / 10 if self.settings[0x0428] == 0 else 0.0
 
 
-Memory = DeltaMemory | HitachiMemory | YaskawaMemory
+Memory = DeltaMemory | HitachiMemory | MyDriveMemory
 
 
 class RtuSlave:
@@ -315,8 +313,8 @@ class RtuSlave:
         return bytes((function,)) + data[:4]
 
 
-class MemobusSlave(RtuSlave):
-    """A Yaskawa: three functions, and sixteen registers at most."""
+class MyDriveSlave(RtuSlave):
+    """Three functions, and sixteen registers at most."""
 
     functions = frozenset((3, 8, 16))
 

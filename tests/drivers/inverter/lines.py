@@ -19,10 +19,10 @@ from tests.drivers.inverter.inverter_simulators import (
     HitachiMemory,
     HuanyangSlave,
     Inverter,
-    MemobusSlave,
     Memory,
+    MyDriveMemory,
+    MyDriveSlave,
     RefusedByDeviceError,
-    YaskawaMemory,
 )
 from tests.drivers.ptys import open_pty
 from tests.late_computer import told_late
@@ -137,7 +137,7 @@ class ModbusServer:
         set_values: list[int] | list[bool] | None,
     ) -> ExcCodes | None:
         """Reads show the memory, writes go there; a write's answer is read from what it has left."""
-        if isinstance(self._memory, YaskawaMemory) and function_code not in MemobusSlave.functions:
+        if isinstance(self._memory, MyDriveMemory) and function_code not in MyDriveSlave.functions:
             return ExcCodes.ILLEGAL_FUNCTION
         try:
             if set_values is not None:

@@ -11,7 +11,7 @@ from pymodbus.framer.rtu import FramerRTU
 from drivers.inverter.inverter_attendant import Attendant
 from drivers.inverter.inverter_spindle import attendant
 from drivers.waiting import StepClock
-from tests.drivers.inverter.benches import config
+from tests.drivers.inverter.benches import FOLDER, OWN, config
 
 ECHO = ""  # the answer is the request
 
@@ -86,28 +86,23 @@ HUANYANG_TURNS = """
     03 01 {word} > 03 01 {state}
 """ + HUANYANG_LOOK.format(word="{word}", state="{state}", set="07D0", out="07D0")
 
-YASKAWA_OPENED = """
+OWN_OPENED = """
     10 0001 0001 02 0000 > 10 0001 0001     stop
-    03 0180 0001 > 03 02 0002       b1-01
-    03 0181 0001 > 03 02 0002       b1-02
-    03 0182 0001 > 03 02 0000       b1-03
-    03 0183 0001 > 03 02 0000       b1-04
-    03 0502 0001 > 03 02 0000       o1-03
-    03 0428 0001 > 03 02 0000       H5-04
-    03 0429 0001 > 03 02 0001       H5-05
-    03 0435 0001 > 03 02 000F       H5-09, 1.5 s in tenths
-    03 043D 0001 > 03 02 0000       H5-12
-    03 0303 0001 > 03 02 0258       E1-04, 60 Hz in tenths
+    03 0180 0001 > 03 02 0002       P1-01
+    03 0181 0001 > 03 02 0002       P1-02
+    03 0428 0001 > 03 02 0000       P5-04
+    03 0435 0001 > 03 02 000F       P5-09, 1.5 s in tenths
+    03 0303 0001 > 03 02 0258       P2-04, 60 Hz in tenths
 """
-YASKAWA_LOOK = """
+OWN_LOOK = """
     03 0001 0001 > 03 02 {command}
     03 0020 0007 > 03 0E {status} 0000 0000 {set} {out} 08FC 0019
 """
-YASKAWA_STANDS = YASKAWA_LOOK.format(command="0000", status="0004", set="{set}", out="0000")
-YASKAWA_TURNS = """
+OWN_STANDS = OWN_LOOK.format(command="0000", status="0004", set="{set}", out="0000")
+OWN_TURNS = """
     10 0002 0001 02 07D0 > 10 0002 0001     20 Hz
     10 0001 0001 02 {command} > 10 0001 0001
-""" + YASKAWA_LOOK.format(command="{command}", status="{status}", set="07D0", out="07D0")
+""" + OWN_LOOK.format(command="{command}", status="{status}", set="07D0", out="07D0")
 
 
 def sealed(body: str) -> bytes:
@@ -156,7 +151,7 @@ def talk(family: str, opened: str, stands: str, *turns: tuple[float, str, str]) 
     """Open it, make it turn by each of ``turns`` (Hz, script, word for stop), and stop it."""
     clock = StepClock()
     line = ScriptedLine(clock)
-    one = attendant(config(family), line.opened, clock)
+    one = attendant(config(family), line.opened, clock, FOLDER)
     line.expect(opened)
     for _ in range(2 if family == "huanyang" else 1):  # ten good answers, or one
         line.expect(stands.format(set="0000"))
@@ -200,11 +195,11 @@ def test_huanyang() -> None:
     assert len(one.warnings) == 1
 
 
-def test_yaskawa() -> None:
-    forward = YASKAWA_TURNS.format(command="0001", status="0005")
-    back = YASKAWA_TURNS.format(command="0002", status="0007")
+def test_own_file() -> None:
+    forward = OWN_TURNS.format(command="0001", status="0005")
+    back = OWN_TURNS.format(command="0002", status="0007")
     stop = "10 0001 0001 02 0000 > 10 0001 0001\n"
-    one = talk("yaskawa-v1000", YASKAWA_OPENED, YASKAWA_STANDS, (20.0, forward, stop), (-20.0, back, stop))
+    one = talk(OWN, OWN_OPENED, OWN_STANDS, (20.0, forward, stop), (-20.0, back, stop))
     assert one.warnings == ()
 
 

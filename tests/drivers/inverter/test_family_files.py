@@ -14,9 +14,10 @@ from drivers.inverter.family_files import family_table, read_family
 from drivers.inverter.family_table import FrequencyKeys, StateKeys
 from drivers.inverter.inverter_table import FAMILIES, FOLDER
 from tests.coded import raises_code
+from tests.drivers.inverter import benches
 
 SETUP = Path(__file__).parents[3] / "setup.cfg"
-YASKAWA = (FOLDER / "yaskawa-v1000.toml").read_text(encoding="utf-8")
+MY_DRIVE = (benches.FOLDER / benches.OWN).read_text(encoding="utf-8")
 HUANYANG = (FOLDER / "huanyang.toml").read_text(encoding="utf-8")
 
 
@@ -46,6 +47,12 @@ def test_every_shipped_family_can_be_read(name: str) -> None:
     assert (table.registers is None) is (name == "huanyang")
 
 
+def test_the_documents_show_the_file_that_is_tried_here() -> None:
+    page = (SETUP.parent / "docs/integrator/inverters.md").read_text(encoding="utf-8")
+    shown = [block.partition("```")[0] for block in page.split("```toml\n")[1:]]
+    assert [block for block in shown if block.startswith("name = ")] == [MY_DRIVE]
+
+
 def test_families_are_installed_with_the_product() -> None:
     setup = configparser.ConfigParser()
     setup.read(SETUP, encoding="utf-8")
@@ -55,11 +62,11 @@ def test_families_are_installed_with_the_product() -> None:
 
 
 def test_a_table_says_what_its_file_says() -> None:
-    table = family_table("yaskawa-v1000", Path())
+    table = family_table(benches.OWN, benches.FOLDER)
     assert (table.line.baud, table.line.write_multiple) == ((1200.0, 38400.0), True)
     assert (table.max_hz, table.step) == (400.0, 0.01)
     assert table.registers is not None
-    assert (table.registers.faults[0x0021], len(table.parameters)) == ("communication error (CE)", 9)
+    assert (table.registers.faults[0x0021], len(table.parameters)) == ("communication error", 4)
     assert [each.value for each in table.registers.commands["reset"]] == [8, 0]
 
 
@@ -98,7 +105,7 @@ def test_a_state_is_on_for_each_of_its_values_and_for_no_other() -> None:
 @pytest.mark.parametrize(
     ("old", "new", "key"),
     [
-        ('name = "Yaskawa V1000"', 'name = " "', "name"),
+        ('name = "My drive"', 'name = " "', "name"),
         ('protocol = "modbus"', 'protocol = "profibus"', "protocol"),
         ("baud = [1200, 38400]", "baud = [38400, 1200]", "line.baud"),
         ("baud = [1200, 38400]", "baud = [1200, 38400, 9600]", "line.baud"),
@@ -108,9 +115,9 @@ def test_a_state_is_on_for_each_of_its_values_and_for_no_other() -> None:
         ("write_multiple = true", "write_multiple = 16", "line.write_multiple"),
         ("register = 0x0002\n", "register = 0x10000\n", "frequency.register"),
         ("register = 0x0002\n", 'register = "0x0002"\n', "frequency.register"),
-        ("counts_per_hz = 100   ", "counts_per_hz = 0   ", "frequency.counts_per_hz"),
-        ("counts_per_hz = 100   ", "counts_per_hz = true   ", "frequency.counts_per_hz"),
-        ("counts_per_hz = 100   ", "words = 3   ", "frequency.words"),
+        ("counts_per_hz = 100\n\n", "counts_per_hz = 0\n\n", "frequency.counts_per_hz"),
+        ("counts_per_hz = 100\n\n", "counts_per_hz = true\n\n", "frequency.counts_per_hz"),
+        ("counts_per_hz = 100\n\n", "words = 3\n\n", "frequency.words"),
         ("stop = [{ register = 0x0001, value = 0x0000 }]", "stop = []", "command.stop"),
         ("stop = [{ register = 0x0001, value = 0x0000 }]", "stop = 0x0001", "command.stop"),
         ("0x0001, value = 0x0000 }]", "0x0001 }]", "command.stop[1]"),
@@ -132,43 +139,43 @@ def test_a_state_is_on_for_each_of_its_values_and_for_no_other() -> None:
         ("0x0007 = ", "oC = ", "faults.oC"),
         ("0x0007 = ", "0x10000 = ", "faults.0x10000"),
         ("0x0008 = ", "7 = ", "faults.7"),
-        ('0x0007 = "over-current (oC)"', "0x0007 = 7", "faults.0x0007"),
+        ('0x0007 = "over-current"', "0x0007 = 7", "faults.0x0007"),
         ("register = 0x0181", "register = 0x0180", "parameter[2].register"),
-        ("counts_per_s = 10", "counts_per_s = 10\nvalue = 15", "parameter[8]"),
+        ("counts_per_s = 10", "counts_per_s = 10\nvalue = 15", "parameter[4]"),
         ("register = 0x0303\n", "", "highest.register"),
         ("max_hz = 400", "max_hz = 0", "limits.max_hz"),
         ("max_hz = 400", "min_hz = 10", "limits.min_hz"),
     ],
 )  # fmt: skip
 def test_what_is_wrong_is_told_with_its_key(tmp_path: Path, old: str, new: str, key: str) -> None:
-    why = refused(tmp_path, changed(YASKAWA, old, new))
+    why = refused(tmp_path, changed(MY_DRIVE, old, new))
     assert any(re.match(rf"\d+: {re.escape(key)}[: ]", each) for each in why.split("my.toml, line ")), why
 
 
 @pytest.mark.parametrize(
     ("old", "new", "line"),
     [
-        ('name = "Yaskawa V1000"', "name = 1000", "name = 1000"),
+        ('name = "My drive"', "name = 1000", "name = 1000"),
         ("baud = [1200, 38400]", "baud = 9600", "baud = 9600"),
         ("baud = [1200, 38400]\n", "", "[line]"),
         ("values = [1, 2] }", "values = [1, 4] }", "run = "),
         ("count = 7", "count = 0", "count = 0"),
-        ("register = 0x0020\ncount = 7", "count = 7", "[[read]]                        # drive status"),
+        ("register = 0x0020\ncount = 7", "count = 7", "[[read]]                        # status"),
         ("register = 0x0001, value = 0x0000 }]", "register = 0x0001 }]", "stop = "),
         ('0x0008 = "over', '7 = "over', '\n7 = "over'),
         ("register = 0x0181\n", "register = 0x0180 # twice\n", "register = 0x0180 # twice"),
-        ('"ramp to stop"', '""', 'why = ""'),
+        ('"run command from Modbus"', '""', 'why = ""'),
         ("max_hz = 400", "max_hz = nan", "max_hz = nan"),
     ],
 )
 def test_what_is_wrong_is_told_with_its_line(tmp_path: Path, old: str, new: str, line: str) -> None:
-    text = changed(YASKAWA, old, new)
+    text = changed(MY_DRIVE, old, new)
     assert refused(tmp_path, text).startswith(f"my.toml, line {line_of(text, line)}: ")
 
 
 @pytest.mark.parametrize("table", ["line", "frequency", "command", "report"])
 def test_a_table_that_is_missing_is_told(tmp_path: Path, table: str) -> None:
-    text = changed(YASKAWA, f"[{table}]", f"[not_{table}]")
+    text = changed(MY_DRIVE, f"[{table}]", f"[not_{table}]")
     assert f": {table}: " in refused(tmp_path, text)
 
 
@@ -176,25 +183,25 @@ def test_a_table_that_is_missing_is_told(tmp_path: Path, table: str) -> None:
     "name", ["output", "setpoint", "current", "run", "reverse", "asked_reverse", "fault_code"]
 )
 def test_a_value_that_is_not_reported_is_told(tmp_path: Path, name: str) -> None:
-    head, report, rest = YASKAWA.partition("[report]")
+    head, report, rest = MY_DRIVE.partition("[report]")
     text = head + report + changed(rest, f"\n{name} = ", f"\nno_{name} = ")
     assert f": report.{name}: " in refused(tmp_path, text)
 
 
 @pytest.mark.parametrize("text", ["command = 1", "report = 1", "read = 1", "faults = 1", "parameter = [1]"])
 def test_what_is_no_table_is_told(tmp_path: Path, text: str) -> None:
-    head, _, _ = YASKAWA.partition("[line]")
+    head, _, _ = MY_DRIVE.partition("[line]")
     key = text.split(" ", maxsplit=1)[0]
     assert f"line {head.count(chr(10)) + 1}: {key}" in refused(tmp_path, f"{head}{text}\n")
 
 
 def test_all_that_is_wrong_is_told_at_once(tmp_path: Path) -> None:
-    text = changed(changed(YASKAWA, "count = 7", "count = 700"), "max_hz = 400", "max_hz = 4e9")
+    text = changed(changed(MY_DRIVE, "count = 7", "count = 700"), "max_hz = 400", "max_hz = 4e9")
     assert refused(tmp_path, text).count("my.toml, line ") == 2
 
 
 def test_a_fault_code_outside_the_reads_needs_a_fault_state(tmp_path: Path) -> None:
-    text = changed(YASKAWA, "fault = { register = 0x0020, mask = 0x0008, values = [8] }\n", "")
+    text = changed(MY_DRIVE, "fault = { register = 0x0020, mask = 0x0008, values = [8] }\n", "")
     assert refused(tmp_path, text).startswith(
         f"my.toml, line {line_of(text, 'fault_code')}: report.fault_code:"
     )

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
 
 from drivers.inverter import modbus_rtu
@@ -12,7 +10,7 @@ from drivers.inverter.modbus_rtu import Modbus, NoAnswerError, RefusedError
 from drivers.inverter.register_family import RegisterFamily
 from drivers.waiting import StepClock
 from tests.coded import raises_code
-from tests.drivers.inverter.benches import far_end
+from tests.drivers.inverter.benches import FOLDER, OWN, far_end
 from tests.drivers.inverter.inverter_simulators import DeltaMemory, HitachiMemory, Inverter, RtuSlave
 from tests.drivers.inverter.wires import BenchWire
 
@@ -156,7 +154,7 @@ def on_bench(name: str) -> tuple[RegisterFamily, BenchWire, StepClock]:
     clock = StepClock()
     _, slave = far_end(name, Inverter(clock))
     wire = BenchWire(slave, clock)
-    table = family_table(name, Path())
+    table = family_table(name, FOLDER)
     assert table.registers is not None
     line = Modbus(wire, clock, 1, 10 / 9600)
     return RegisterFamily(table, table.registers, line, clock), wire, clock
@@ -164,7 +162,7 @@ def on_bench(name: str) -> tuple[RegisterFamily, BenchWire, StepClock]:
 
 @pytest.mark.parametrize(
     ("name", "first", "next_speed", "other_way"),
-    [("delta-vfdb", 2, 1, 2), ("hitachi-wj200", 3, 3, 3), ("yaskawa-v1000", 2, 2, 2)],
+    [("delta-vfdb", 2, 1, 2), ("hitachi-wj200", 3, 3, 3), (OWN, 2, 2, 2)],
 )
 def test_a_run_command_is_repeated_where_the_family_wants_it(
     name: str, first: int, next_speed: int, other_way: int
@@ -178,7 +176,7 @@ def test_a_run_command_is_repeated_where_the_family_wants_it(
     assert counts == [first, next_speed, other_way]
 
 
-@pytest.mark.parametrize(("name", "tries"), [("delta-vfdb", 1), ("hitachi-wj200", 3), ("yaskawa-v1000", 3)])
+@pytest.mark.parametrize(("name", "tries"), [("delta-vfdb", 1), ("hitachi-wj200", 3), (OWN, 3)])
 def test_a_reset_is_tried_as_often_as_the_family_says(name: str, tries: int) -> None:
     family, wire, _ = on_bench(name)
     wire.silent = True

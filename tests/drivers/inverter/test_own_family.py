@@ -16,17 +16,17 @@ from core.ports import DriverError
 from core.table_schema import MachineFileError
 from drivers.inverter.inverter_attendant import Attendant
 from drivers.inverter.inverter_spindle import attendant
-from drivers.inverter.inverter_table import FOLDER, InverterTable
+from drivers.inverter.inverter_table import InverterTable
 from drivers.inverter.modbus_rtu import TRIES
 from drivers.waiting import StepClock
 from tests.coded import raises_code
-from tests.drivers.inverter.benches import bench, config
+from tests.drivers.inverter.benches import OWN, bench, config
 from tests.drivers.inverter.inverter_simulators import (
     Inverter,
+    MyDriveMemory,
     NoCoils,
     RefusedByDeviceError,
     RtuSlave,
-    YaskawaMemory,
 )
 from tests.drivers.inverter.lines import ModbusServer, Pair, inverter
 from tests.drivers.inverter.test_lines import machine_file
@@ -173,7 +173,7 @@ def test_what_the_inverter_does_not_support_is_refused(
     assert wire.sent == []
 
 
-@pytest.mark.parametrize("family", ["", "delta", "Delta-VFDB", "yaskawa-v1000.tml", "../my-drive"])
+@pytest.mark.parametrize("family", ["", "delta", "Delta-VFDB", "my-drive.tml", "../my-drive"])
 def test_a_family_that_is_neither_shipped_nor_a_file_is_refused(tmp_path: Path, family: str) -> None:
     text = machine_file(tmp_path, family, "/dev/ttyUSB1").read_text()
     with pytest.raises(MachineFileError) as told:
@@ -187,7 +187,7 @@ def test_a_family_that_is_neither_shipped_nor_a_file_is_refused(tmp_path: Path, 
 class Rejects(RtuSlave):
     """Rejects reads that begin at one address."""
 
-    def __init__(self, memory: YaskawaMemory, address: int) -> None:
+    def __init__(self, memory: MyDriveMemory, address: int) -> None:
         super().__init__(memory)
         self._address = address
 
@@ -198,8 +198,8 @@ class Rejects(RtuSlave):
 
 
 def test_reads_that_the_inverter_rejects_are_no_look() -> None:
-    one = bench("yaskawa-v1000")
-    assert isinstance(one.memory, YaskawaMemory)
+    one = bench(OWN)
+    assert isinstance(one.memory, MyDriveMemory)
     one.wire.slave = Rejects(one.memory, 0x0020)
     assert one.until_fault(4.0) <= 2.5
     assert code_of(one.spindle.fault(), "driver") == "inverter-silent"
@@ -207,8 +207,8 @@ def test_reads_that_the_inverter_rejects_are_no_look() -> None:
 
 @pytest.mark.parametrize("count", [0, 6, 8])
 def test_an_answer_with_another_number_of_registers_makes_no_look(count: int) -> None:
-    one = bench("yaskawa-v1000")
-    assert isinstance(one.memory, YaskawaMemory)
+    one = bench(OWN)
+    assert isinstance(one.memory, MyDriveMemory)
     one.wire.slave = Shortened(one.memory, count)
     assert one.until_fault(4.0) <= 2.5
     assert code_of(one.spindle.fault(), "driver") == "inverter-silent"
@@ -217,7 +217,7 @@ def test_an_answer_with_another_number_of_registers_makes_no_look(count: int) ->
 class Shortened(RtuSlave):
     """Answers a read of seven registers with another number of them."""
 
-    def __init__(self, memory: YaskawaMemory, count: int) -> None:
+    def __init__(self, memory: MyDriveMemory, count: int) -> None:
         super().__init__(memory)
         self._count = count
 
@@ -228,8 +228,8 @@ class Shortened(RtuSlave):
 
 
 def test_a_write_that_is_answered_for_another_register_is_sent_again() -> None:
-    one = bench("yaskawa-v1000")
-    assert isinstance(one.memory, YaskawaMemory)
+    one = bench(OWN)
+    assert isinstance(one.memory, MyDriveMemory)
     one.wire.slave = Elsewhere(one.memory)
     one.wire.sent.clear()
     one.spindle.run(600.0)
@@ -248,11 +248,11 @@ class Elsewhere(RtuSlave):
 
 
 def test_a_trip_whose_code_cannot_be_read_is_still_a_fault() -> None:
-    one = bench("yaskawa-v1000")
+    one = bench(OWN)
     one.spindle.run(600.0)
     one.run(1.5)
     one.inverter.trip_with(7)
-    assert isinstance(one.memory, YaskawaMemory)
+    assert isinstance(one.memory, MyDriveMemory)
     one.wire.slave = Rejects(one.memory, 0x0080)
     assert one.until_fault(4.0) <= 2.5
     one.run(3.0)
@@ -267,9 +267,8 @@ def test_machine_check_reads_a_family_next_to_the_machine_file(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir("/")
-    (tmp_path / "my-drive.toml").write_text((FOLDER / "yaskawa-v1000.toml").read_text())
-    with stalls_told(), Pair() as cable, ModbusServer(cable.far, YaskawaMemory(inverter())):
-        path = machine_file(tmp_path, "my-drive.toml", cable.near)
+    with stalls_told(), Pair() as cable, ModbusServer(cable.far, MyDriveMemory(inverter())):
+        path = machine_file(tmp_path, OWN, cable.near)
         assert main(["machine", "check", str(path), "--json"]) == 0
     report = json.loads(capsys.readouterr().out)
     assert {port["name"]: port["verdict"] for port in report["ports"]}["spindle"] == "ok"
@@ -280,7 +279,7 @@ def test_machine_check_names_the_family_file_that_is_wrong(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], text: str | None
 ) -> None:
     if text is not None:
-        (tmp_path / "my-drive.toml").write_text(text)
-    path = machine_file(tmp_path, "my-drive.toml", "/dev/ttyNONE7")
+        (tmp_path / "other.toml").write_text(text)
+    path = machine_file(tmp_path, "other.toml", "/dev/ttyNONE7")
     assert main(["machine", "check", str(path), "--json"]) != 0
-    assert f"{tmp_path}/my-drive.toml" in capsys.readouterr().out
+    assert f"{tmp_path}/other.toml" in capsys.readouterr().out

@@ -10,12 +10,12 @@ from core.ports import DriverError
 from drivers.inverter.modbus_rtu import NoAnswerError
 from drivers.serial_line import WireError
 from tests.coded import raises_code
-from tests.drivers.inverter.benches import FAMILIES, bench
+from tests.drivers.inverter.benches import FAMILIES, OWN, bench
 from tests.drivers.inverter.inverter_simulators import (
     DeltaMemory,
     HitachiMemory,
     HuanyangSlave,
-    YaskawaMemory,
+    MyDriveMemory,
 )
 from tests.texts import begins
 
@@ -51,9 +51,9 @@ def test_huanyang_has_none_and_says_so() -> None:
         ("delta-vfdb", 0x0100, 5000, ["Pr.01-00", "50 Hz", "58.33"]),
         ("hitachi-wj200", 0x1201, 2, ["A002", "2", "3"]),
         ("hitachi-wj200", 0x1203, 500, ["A004", "50 Hz"]),
-        ("yaskawa-v1000", 0x0181, 1, ["b1-02", "1", "2"]),
-        ("yaskawa-v1000", 0x0435, 20, ["H5-09", "20", "15", "1.5 s"]),
-        ("yaskawa-v1000", 0x0303, 500, ["E1-04", "50 Hz"]),
+        (OWN, 0x0181, 1, ["P1-02", "1", "2"]),
+        (OWN, 0x0435, 20, ["P5-09", "20", "15", "1.5 s"]),
+        (OWN, 0x0303, 500, ["P2-04", "50 Hz"]),
     ],
 )
 def test_settings_of_others_are_told_and_left(
@@ -78,12 +78,12 @@ def test_settings_that_an_inverter_does_not_know_are_told() -> None:
 
 
 def test_a_highest_frequency_that_cannot_be_read_is_told() -> None:
-    one = bench("yaskawa-v1000", connect=False)
-    assert isinstance(one.memory, YaskawaMemory)
+    one = bench(OWN, connect=False)
+    assert isinstance(one.memory, MyDriveMemory)
     del one.memory.settings[0x0303]
     one.attendant.connect()
     (warning,) = one.attendant.warnings
-    assert warning.startswith("E1-04 ")
+    assert warning.startswith("P2-04 ")
 
 
 def test_huanyang_that_listens_to_its_keypad_is_told() -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from core.faults import code_of
-from tests.drivers.inverter.benches import FAMILIES, Bench, bench
+from tests.drivers.inverter.benches import FAMILIES, OWN, Bench, bench
 
 
 def test_a_surface_speed_changes_the_setpoint_all_the_time(turning: Bench) -> None:
@@ -99,7 +99,7 @@ def test_trouble_wants_nothing_any_more(turning: Bench) -> None:
     assert turning.attendant.want == 0.0
 
 
-@pytest.mark.parametrize("family", ["delta-vfdb", "hitachi-wj200", "yaskawa-v1000"])
+@pytest.mark.parametrize("family", ["delta-vfdb", "hitachi-wj200", OWN])
 def test_a_trip_is_told_and_reset_once(family: str) -> None:
     one = bench(family)
     one.spindle.run(1000.0)
