@@ -31,7 +31,6 @@ FAMILIES = ("delta-vfdb", "hitachi-wj200", "huanyang", OWN)
 class Bench:
     """``memory`` of a Modbus inverter, or the Huanyang itself."""
 
-    family: str
     clock: StepClock
     inverter: Inverter
     memory: Memory | HuanyangSlave
@@ -74,7 +73,7 @@ def bench(family: str, *, connect: bool = True) -> Bench:
     memory, slave = far_end(family, inverter)
     wire = BenchWire(slave, clock)
     one = attendant(config(family), wire.opened, clock, FOLDER)
-    made = Bench(family, clock, inverter, memory, wire, one, InverterSpindle(config(family), one, clock))
+    made = Bench(clock, inverter, memory, wire, one, InverterSpindle(config(family), one, clock))
     if connect:
         one.connect()
     return made
