@@ -22,6 +22,7 @@ from core.machine.hardware_model import AnalogModel
 from core.machine.machine_model import InputModel, OutputModel
 from core.page_contents import contents
 from core.table_schema import TableReference
+from drivers.inverter import family_table
 
 _HEAD = """\
 # Machine file reference
@@ -94,6 +95,7 @@ def references() -> Iterator[TableReference]:
     for table in tables_of(DRIVERS):
         yield TableReference(table.path, table.purpose, table.keys)
         yield from table.parts
+    yield from family_table.TABLES
 
 
 def _axes() -> Iterator[TableReference]:

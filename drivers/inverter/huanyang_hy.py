@@ -10,10 +10,10 @@ from __future__ import annotations
 import struct
 from collections.abc import Callable, Iterator
 
-from core.message import Message
 from core.ports import Clock
-from drivers.inverter.inverter_family import Look, number
-from drivers.inverter.modbus_rtu import PACE, NoAnswerError, never, sealed, whole
+from drivers.inverter.family_table import FamilyTable
+from drivers.inverter.inverter_family import Look, check_parameters
+from drivers.inverter.modbus_rtu import PACE, HeldBackError, NoAnswerError, never, sealed, whole
 from drivers.serial_line import Wire
 
 _READ, _CONTROL, _VALUE, _FREQUENCY = 1, 3, 4, 5
@@ -21,16 +21,15 @@ _RUN, _RUN_BACK, _HALT = 0x01, 0x11, 0x08
 _SETPOINT, _OUTPUT, _CURRENT = 0, 1, 2
 _TIMEOUT = 0.5  # s
 _TRIES = 2
-_SOURCES = ((1, "run and stop commands from RS-485"), (2, "frequency command from RS-485"))
 
 
 class HuanyangHy:
     """Its state is told only in the answer to a command, so each look repeats the command in force."""
 
-    name = "Huanyang HY"
     warm_up = 10
 
-    def __init__(self, wire: Wire, clock: Clock, unit: int, character: float) -> None:
+    def __init__(self, table: FamilyTable, wire: Wire, clock: Clock, unit: int, character: float) -> None:
+        self._table = table
         self._wire, self._clock, self._unit = wire, clock, unit
         self._gap = max(3.5 * character, 0.00175)
         self._free = clock.now()
@@ -44,37 +43,7 @@ class HuanyangHy:
 
     def prepare(self, comm_loss: float, highest: float) -> list[str]:
         """It has no time-out of its own. Parameters are read, never written."""
-        known: list[str] = [
-            Message(
-                "{name}: this inverter does not have a communication timeout, so comm_loss_s = "
-                "{comm_loss} has no effect. If the cable is disconnected, the spindle continues to "
-                "turn. Wire the E-stop and a watchdog relay to the run terminal of the inverter",
-                name=self.name,
-                comm_loss=f"{comm_loss:g}",
-            )
-        ]
-        for parameter, why in _SOURCES:
-            there = self._parameter(parameter)
-            if there != 2:
-                known.append(
-                    Message(
-                        "PD{parameter} is {present} but must be 2 ({why})",
-                        parameter=f"{parameter:03d}",
-                        present=there,
-                        why=why,
-                    )
-                )
-        top = self._parameter(5)
-        if top < number(highest):
-            known.append(
-                Message(
-                    "PD005 is {top} Hz, but the maximum spindle speed needs {highest} Hz; change one of "
-                    "these values",
-                    top=f"{top / 100:g}",
-                    highest=f"{highest:g}",
-                )
-            )
-        return known
+        return check_parameters(self._table, comm_loss, highest, self._parameter, _never_written)
 
     def stop(self) -> None:
         """By its ramp, PD026 = 0."""
@@ -83,11 +52,10 @@ class HuanyangHy:
 
     def command(self, hz: float) -> None:
         """The frequency first."""
-        value = struct.pack(">H", number(hz))
+        value = struct.pack(">H", round(abs(hz) * 100.0))
         self._ask(_FREQUENCY, value, value)
-        if not self.hurry():
-            self._word = _RUN_BACK if hz < 0.0 else _RUN
-            self._control()
+        self._word = _RUN_BACK if hz < 0.0 else _RUN
+        self._control()
 
     def looks(self) -> Iterator[Look | None]:
         """State bits: 0 told to run, 2 told to run back, 3 runs, 5 runs back."""
@@ -134,7 +102,7 @@ class HuanyangHy:
             self._good = 0
             if not self.hurry():
                 self._wire.receive(_TIMEOUT)  # one that comes later still is of no use, and must not be taken
-            if left and self.hurry() and function != _CONTROL:
+            if left and self.hurry() and function in (_READ, _VALUE):
                 break
         raise NoAnswerError(
             "the inverter does not respond; check the cable, PD163 (id), PD164 and PD165 (line settings)",
@@ -143,6 +111,8 @@ class HuanyangHy:
 
     def _once(self, function: int, data: bytes, begins: bytes) -> bytes | None:
         self._clock.sleep_until(self._free)
+        if self._can_turn(function) and self.hurry():
+            raise HeldBackError
         self._wire.discard()
         began = self._clock.now()
         self._wire.send(sealed(bytes((self._unit, function, len(data))) + data))
@@ -154,6 +124,10 @@ class HuanyangHy:
         self._free = max(self._clock.now() + self._gap, began + PACE)
         return answer
 
+    def _can_turn(self, function: int) -> bool:
+        """Whether the next frame can make the motor turn, or turn faster."""
+        return function == _FREQUENCY or (function == _CONTROL and self._word != _HALT)
+
     def _found(self, come: bytes, function: int, begins: bytes) -> bytes | None:
         head = bytes((self._unit, function))
         for start in range(len(come) - 5):
@@ -162,3 +136,7 @@ class HuanyangHy:
                 if len(frame) == 5 + come[start + 2] and whole(frame) and frame[3:].startswith(begins):
                     return frame[3:-2]
         return None
+
+
+def _never_written(_parameter: int, _value: int) -> None:
+    """Leave a parameter as it is: which of them the inverter accepts while it waits is not known."""

@@ -8,19 +8,20 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 
 from core.message import Message
 from core.ports import Clock, DriverError, Fault, FaultCode
 from drivers.inverter.inverter_family import Family, Look
-from drivers.inverter.modbus_rtu import NoAnswerError, RefusedError
+from drivers.inverter.modbus_rtu import HeldBackError, NoAnswerError, RefusedError
 from drivers.serial_line import WireError
 
 # --- Whether an inverter does what it was told.
 
 
 OBEYS_WITHIN = 1.0  # s
-_STEP = 0.011  # Hz: the setpoint counts in hundredths
+_ROUNDING = 0.001  # Hz: what rounding to the step of the setpoint may add
 STANDS = 0.5  # Hz
 _FALLS = 0.005  # part of its speed by which it must have fallen at least once a second
 PRESS = "PRESS E-STOP"
@@ -36,9 +37,11 @@ class Obedience:
 
     A look on a slow line is as old as its exchange is long: the second that an inverter has begins behind it,
     and what must fall is compared with the first look behind the command, never with one before it.
+    ``step`` is the resolution of the reported setpoint in Hz.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, step: float = 0.01) -> None:
+        self._within = step + _ROUNDING
         self._since: float | None = None  # when it last did what it was told; None: it does
         self._lowest: float = 0.0  # Hz, on the way down
         self._unseen = False  # no look has come since the command
@@ -87,7 +90,7 @@ class Obedience:
     def _understood(self, look: Look) -> str:
         """Its own words for what it is to do."""
         asked = abs(self._asked)
-        if abs(look.setpoint - asked) > _STEP:
+        if abs(look.setpoint - asked) > self._within:
             return Message(
                 "{requested} Hz was commanded, but the inverter reports a setpoint of {setpoint} Hz",
                 requested=f"{asked:.2f}",
@@ -184,17 +187,23 @@ class Seen:
 class Attendant:
     """``want`` (Hz, signed) may be set by any thread; all else belongs to the one that calls ``round``.
 
-    ``open_line`` makes the family on a freshly opened line; it raises DriverError.
+    ``open_line`` makes the family on a freshly opened line; it raises DriverError. ``step`` is the
+    resolution of the reported setpoint in Hz.
     """
 
     def __init__(
-        self, open_line: Callable[[], Family], clock: Clock, comm_loss: float, highest: float
+        self,
+        open_line: Callable[[], Family],
+        clock: Clock,
+        comm_loss: float,
+        highest: float,
+        step: float = 0.01,
     ) -> None:
         self._open, self._clock = open_line, clock
-        self._comm_loss, self._highest = comm_loss, highest
+        self._comm_loss, self._highest, self._step = comm_loss, highest, step
         self._want = 0.0
         self._told: float | None = None  # None: nothing since the line was opened
-        self._obedience = Obedience()
+        self._obedience = Obedience(self._step)
         self._family: Family | None = None
         self._retry = 0.0
         self._began = self._began_before = clock.now()  # the exchange that is under way, and the last one
@@ -319,14 +328,15 @@ class Attendant:
         self._began_before, self._began = self._began, self._clock.now()
         if self._reset:
             self._clear_now()
-        self._tell()
-        self._look()
+        with suppress(HeldBackError):  # the next exchange says the stop first
+            self._tell()
+            self._look()
 
     def _clear_now(self) -> None:
         """Only what answers can be cleared; a trip that stays comes back with the next look."""
         self._familiar.stop()
         self._told = 0.0
-        self._obedience = Obedience()
+        self._obedience = Obedience(self._step)
         tripped = self.seen is None or bool(self.seen.look.trip)
         self._reset = False
         if tripped:
@@ -343,9 +353,8 @@ class Attendant:
         if want == 0.0:
             self._familiar.stop()
         else:
+            self._told = None  # from its first frame on a stop has to be said, and holds back the others
             self._familiar.command(want)
-            if self._stop_waits():
-                return  # it came meanwhile: the next round says it first
         self._told, self._answered = want, self._clock.now()
 
     def _look(self) -> None:
@@ -421,6 +430,7 @@ class AttendantThread:
 
     def close(self) -> None:
         """The last word on the line is a stop."""
+        self._attendant.want = 0.0  # holds back what the thread has not sent yet
         self._ended.set()
         if self.thread.is_alive():
             self.thread.join(_END)

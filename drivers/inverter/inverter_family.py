@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
 from core.message import Message
-from drivers.inverter.modbus_rtu import Modbus, NoAnswerError, RefusedError
+from drivers.inverter.family_table import ABSENT, FamilyTable, ParameterKeys, TopKeys
+from drivers.inverter.modbus_rtu import NoAnswerError, RefusedError
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,10 +32,10 @@ class Look:
 class Family(Protocol):
     """One kind of inverter on its line. Whatever talks raises NoAnswerError, RefusedError or WireError.
 
-    ``hurry`` is asked between requests: a stop is waiting, so that what is not a stop breaks off.
+    ``hurry`` is asked between requests: a stop is waiting, so that what is not a stop breaks off. It is asked
+    right before each frame that can make the motor turn, which is then not sent: HeldBackError.
     """
 
-    name: str
     warm_up: int  # good answers in a row before it is trusted
     hurry: Callable[[], bool]
 
@@ -55,11 +56,11 @@ class Family(Protocol):
         ...
 
     def command(self, hz: float) -> None:
-        """Turn; negative against M03."""
+        """Turn; negative against M03. Raises HeldBackError."""
         ...
 
     def looks(self) -> Iterator[Look | None]:
-        """One look, request by request: None between them, the look at last."""
+        """One look, request by request: None between them, the look at last. Raises HeldBackError."""
         ...
 
     def reset(self) -> None:
@@ -71,12 +72,11 @@ class Family(Protocol):
         ...
 
 
-def number(hz: float) -> int:
-    """Hundredths of a hertz, as all these families count."""
-    return round(abs(hz) * 100.0)
+# --- Parameters of an inverter that this control needs: read, written where that may be, read back.
 
 
-# --- Settings of an inverter that this control needs: read, written where that may be, read back.
+Read = Callable[[int], int]  # the value of a parameter by its register
+Write = Callable[[int, int], None]
 
 
 class Setting(NamedTuple):
@@ -87,10 +87,10 @@ class Setting(NamedTuple):
     name: str
     why: str
 
-    def differs(self, line: Modbus) -> str:
+    def differs(self, read: Read) -> str:
         """A sentence when it holds something else; it is left as it is. Empty when it is right."""
         try:
-            (there,) = line.registers(self.register)
+            there = read(self.register)
         except RefusedError as error:
             return Message(
                 "{name} cannot be read ({error}); its value must be {value} ({why})",
@@ -110,79 +110,69 @@ class Setting(NamedTuple):
         )
 
 
-class Top(NamedTuple):
-    """The register of the highest output frequency, in how many parts of a hertz, its name at the keypad."""
+def check_parameters(
+    table: FamilyTable, comm_loss: float, highest: float, read: Read, write: Write
+) -> list[str]:
+    """Write what may be written, and return a sentence for each parameter that is not as it must be.
 
-    register: int
-    parts: int
-    name: str
-
-    def below(self, line: Modbus, highest: float) -> str:
-        """A sentence when it ends below ``highest`` Hz; empty when it is enough."""
-        try:
-            (there,) = line.registers(self.register)
-        except RefusedError as error:
-            return Message("{path} cannot be read: {cause}", path=self.name, cause=error)
-        if there * 100 >= number(highest) * self.parts:
-            return ""
-        ends = there / self.parts
-        return Message(
-            "{name} limits the frequency to {ends} Hz, but the maximum spindle speed needs "
-            "{highest} Hz; change one of these values",
-            name=self.name,
-            ends=f"{ends:g}",
-            highest=f"{highest:g}",
-        )
+    ``comm_loss`` is in seconds, ``highest`` in Hz. Raises NoAnswerError, WireError.
+    """
+    known = [] if any(each.counts_per_s for each in table.parameters) else [_no_timeout(table, comm_loss)]
+    known += _settled(_settings(table, comm_loss, write=True), read, write)
+    known += [text for each in _settings(table, comm_loss, write=False) if (text := each.differs(read))]
+    if table.top is not None and (text := _below(table.top, highest, read)):
+        known.append(text)
+    return known
 
 
-def settled(line: Modbus, *wanted: Setting) -> list[str]:
+def _settings(table: FamilyTable, comm_loss: float, *, write: bool) -> list[Setting]:
+    return [_setting(each, comm_loss) for each in table.parameters if each.write is write]
+
+
+def _setting(each: ParameterKeys, comm_loss: float) -> Setting:
+    if each.value != ABSENT:
+        return Setting(each.register, each.value, each.name, each.why)
+    why = Message("communication timeout of {comm_loss} s", comm_loss=f"{comm_loss:g}")
+    return Setting(each.register, round(comm_loss * each.counts_per_s), each.name, why)
+
+
+def _settled(wanted: Iterable[Setting], read: Read, write: Write) -> list[str]:
     """Write what differs, and read it back; a sentence for each that is still not as it must be.
 
     Only what differs is written: such memory wears out.
     """
+    wanted = list(wanted)
     for setting in wanted:
-        if setting.differs(line):
+        if setting.differs(read):
             try:
-                line.write_register(setting.register, setting.value)
+                write(setting.register, setting.value)
             except (RefusedError, NoAnswerError):
                 continue  # told below, by what it holds now
-    return [text for setting in wanted if (text := setting.differs(line))]
+    return [text for setting in wanted if (text := setting.differs(read))]
 
 
-# --- What the families on Modbus share: their line, and the settings they are asked for at each connection.
+def _below(top: TopKeys, highest: float, read: Read) -> str:
+    """A sentence when the inverter ends below ``highest`` Hz; empty when it is enough."""
+    try:
+        there = read(top.register)
+    except RefusedError as error:
+        return Message("{path} cannot be read: {cause}", path=top.name, cause=error)
+    if there * 100 >= round(highest * 100.0) * top.counts_per_hz:
+        return ""
+    return Message(
+        "{name} limits the frequency to {ends} Hz, but the maximum spindle speed needs "
+        "{highest} Hz; change one of these values",
+        name=top.name,
+        ends=f"{there / top.counts_per_hz:g}",
+        highest=f"{highest:g}",
+    )
 
 
-class OnModbus:
-    """The part of ``Family`` that is the line's."""
-
-    warm_up = 1
-
-    def __init__(self, line: Modbus) -> None:
-        self._line = line
-
-    @property
-    def hurry(self) -> Callable[[], bool]:
-        """Whether a stop waits."""
-        return self._line.hurry
-
-    @hurry.setter
-    def hurry(self, asked: Callable[[], bool]) -> None:
-        """``asked`` tells whether a stop waits, which breaks off what is no stop."""
-        self._line.hurry = asked
-
-    @property
-    def good(self) -> int:
-        """Good answers in a row."""
-        return self._line.good
-
-    def close(self) -> None:
-        """Let the line go."""
-        self._line.wire.close()
-
-    def _prepared(
-        self, ours: Sequence[Setting], others: Sequence[Setting], top: Top, highest: float
-    ) -> list[str]:
-        """Write ``ours``, look at the ``others``; what has to be known. Raises NoAnswerError, WireError."""
-        known = settled(self._line, *ours)
-        known += [text for setting in others if (text := setting.differs(self._line))]
-        return [*known, *filter(None, [top.below(self._line, highest)])]
+def _no_timeout(table: FamilyTable, comm_loss: float) -> str:
+    return Message(
+        "{name}: this inverter does not have a communication timeout, so comm_loss_s = "
+        "{comm_loss} has no effect. If the cable is disconnected, the spindle continues to "
+        "turn. Wire the E-stop and a watchdog relay to the run terminal of the inverter",
+        name=table.name,
+        comm_loss=f"{comm_loss:g}",
+    )

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from pathlib import Path
 from typing import Protocol
 
 from core.message import Message
 from core.ports import Clock, DriverError, Fault
-from drivers.inverter.delta_vfdb import DeltaVfdB
-from drivers.inverter.hitachi_wj200 import HitachiWj200
+from drivers.inverter.family_files import family_table
+from drivers.inverter.family_table import FamilyTable
 from drivers.inverter.huanyang_hy import HuanyangHy
 from drivers.inverter.inverter_attendant import DEAD, PRESS, Agreement, Attendant
 from drivers.inverter.inverter_family import Family
 from drivers.inverter.inverter_table import InverterTable
 from drivers.inverter.modbus_rtu import Modbus
+from drivers.inverter.register_family import RegisterFamily
 from drivers.port_parts import demand_estop_released, demand_spindle
 from drivers.serial_line import Wire
 
@@ -177,18 +179,59 @@ class InverterSpindle:
 # --- From a configuration to an inverter that is attended.
 
 
-def attendant(config: InverterTable, open_wire: Callable[[], Wire], clock: Clock) -> Attendant:
-    """Whoever attends this inverter; nothing is opened yet. ``open_wire`` raises WireError."""
+def attendant(
+    config: InverterTable, open_wire: Callable[[], Wire], clock: Clock, folder: Path = Path()
+) -> Attendant:
+    """Whoever attends this inverter; nothing is opened yet. ``open_wire`` raises WireError.
+
+    ``folder`` has the file of a family that is not shipped. Raises DriverError for a family that cannot be
+    read, or does not fit the machine.
+    """
+    table = family_table(config.family, folder)
+    highest = config.rpm_max * config.hz_per_rpm
+    _check_fits(table, config, highest)
 
     def opened() -> Family:
-        return family(config, open_wire(), clock)
+        return _family(table, config, open_wire(), clock)
 
-    return Attendant(opened, clock, config.comm_loss, config.rpm_max * config.hz_per_rpm)
+    return Attendant(opened, clock, config.comm_loss, highest, table.step)
 
 
-def family(config: InverterTable, wire: Wire, clock: Clock) -> Family:
-    """The family that the machine file names, on an open line."""
-    if config.family == "huanyang":
-        return HuanyangHy(wire, clock, config.unit, config.line.character)
+def _check_fits(table: FamilyTable, config: InverterTable, highest: float) -> None:
+    """Raise DriverError for a line or a frequency in Hz that the inverter does not support."""
+    slowest, fastest = table.line.baud
+    if not slowest <= config.baud <= fastest:
+        raise DriverError(
+            "spindle.vfd.baud = {baud}: {name} supports {slowest} to {fastest}; change baud here and at "
+            "the keypad",
+            reason="baud",
+            baud=config.baud,
+            name=table.name,
+            slowest=f"{slowest:g}",
+            fastest=f"{fastest:g}",
+        )
+    if config.parity not in table.line.parity.split():
+        raise DriverError(
+            "spindle.vfd.parity = {parity}: {name} supports {known}; change parity here and at the keypad",
+            reason="parity",
+            parity=config.parity,
+            name=table.name,
+            known=table.line.parity,
+        )
+    if highest > table.max_hz:
+        raise DriverError(
+            "the maximum spindle speed needs {highest} Hz, but {name} has {limit} Hz at most; reduce "
+            "spindle.rpm or check hz_per_rpm",
+            reason="max-hz",
+            highest=f"{highest:g}",
+            name=table.name,
+            limit=f"{table.max_hz:g}",
+        )
+
+
+def _family(table: FamilyTable, config: InverterTable, wire: Wire, clock: Clock) -> Family:
+    """Return the inverter on an open line."""
+    if table.registers is None:
+        return HuanyangHy(table, wire, clock, config.unit, config.line.character)
     line = Modbus(wire, clock, config.unit, config.line.character)
-    return HitachiWj200(line, clock) if config.family == "hitachi-wj200" else DeltaVfdB(line)
+    return RegisterFamily(table, table.registers, line, clock)

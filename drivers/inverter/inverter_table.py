@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import KW_ONLY
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from core.key_declaration import Range, Unit, file_key, key_table
-from core.table_schema import Driver, DriverTable
+from core.message import Message
+from core.table_schema import Driver, DriverTable, FileReading, Finding, written
 
 if TYPE_CHECKING:
     from drivers.serial_line import LineSettings
 
-FAMILIES = ("delta-vfdb", "hitachi-wj200", "huanyang")
+FOLDER = Path(__file__).with_name("families")
+FAMILIES = tuple(sorted(path.stem for path in FOLDER.glob("*.toml")))
 _PATH = "spindle.vfd"
 
 
@@ -23,7 +27,10 @@ class InverterTable:
     """
 
     _: KW_ONLY
-    family: str = file_key(choices=FAMILIES, meaning="Family of the inverter, which determines its protocol.")
+    family: str = file_key(
+        meaning=f"Family of the inverter: {', '.join(f'`{name}`' for name in FAMILIES)}, or the name of a "
+        "TOML file with its registers, such as `my-drive.toml`, in the folder of the machine file."
+    )
     port: str = file_key(meaning="Serial port of the inverter, such as `/dev/serial/by-id/…`.")
     baud: int = file_key(Range(110, 1_000_000), default=9600, meaning="Bit rate of the line.")
     parity: str = file_key(
@@ -65,12 +72,21 @@ class InverterTable:
         return LineSettings(self.port, self.baud, parity=self.parity, stop=self.stop)
 
 
+def _unknown_family(file: FileReading) -> Iterator[Finding]:
+    """A family that is neither shipped nor the name of a file, which is read when the line is opened."""
+    path = f"{_PATH}.family"
+    if file.values.has(path) and (name := file.values.text(path)) not in FAMILIES and name[-5:] != ".toml":
+        text = "expected one of {families}, or the name of a .toml file in the folder of the machine file"
+        yield Finding(path, written(name), Message(text, families=", ".join(FAMILIES)), "wrong-value")
+
+
 DRIVER = Driver(
     tables=(
         DriverTable(
             _PATH,
             InverterTable,
             lambda file: {"rpm_max": file.values.pair("spindle.rpm")[1]},
+            rules=_unknown_family,
             port=f"{_PATH}.port",
             purpose='The inverter of the spindle on a serial line (`driver = "vfd"` of [spindle]).',
         ),

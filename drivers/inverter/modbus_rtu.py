@@ -94,6 +94,10 @@ class RefusedError(DriverError):
     """The device answered that it will not."""
 
 
+class HeldBackError(Exception):
+    """A stop came before the request was sent."""
+
+
 PACE = 0.03  # s between the beginnings of two requests: inverters lose their line when asked more often
 TIMEOUT = 0.2  # s for an answer
 TRIES = 3
@@ -113,7 +117,10 @@ def never() -> bool:
 
 
 class Modbus:
-    """``hurry`` ends retries of a read early: a stop is waiting to go out."""
+    """``hurry`` tells that a stop is waiting to go out, which ends retries of a read early.
+
+    A write that ``gives_way`` is then not sent either: it raises HeldBackError, also in place of a retry.
+    """
 
     def __init__(self, wire: Wire, clock: Clock, unit: int, character: float, pace: float = PACE) -> None:
         self.wire, self._clock, self._unit, self._pace = wire, clock, unit, pace
@@ -135,17 +142,21 @@ class Modbus:
         packed = self._read(read(READ_COILS, address, count), (count + 7) // 8)[3:-2]
         return [bool(int.from_bytes(packed, "little") >> number & 1) for number in range(count)]
 
-    def write_coil(self, address: int, on: bool) -> None:
+    def write_coil(self, address: int, on: bool, tries: int = TRIES, *, gives_way: bool = False) -> None:
         """05."""
-        self._write(write_coil(address, on))
+        self._write(write_coil(address, on), tries, gives_way)
 
-    def write_register(self, address: int, value: int, tries: int = TRIES) -> None:
+    def write_register(
+        self, address: int, value: int, tries: int = TRIES, *, gives_way: bool = False
+    ) -> None:
         """06; ``tries`` 1: what must not be said twice."""
-        self._write(write_register(address, value), tries)
+        self._write(write_register(address, value), tries, gives_way)
 
-    def write_registers(self, address: int, values: Sequence[int]) -> None:
+    def write_registers(
+        self, address: int, values: Sequence[int], tries: int = TRIES, *, gives_way: bool = False
+    ) -> None:
         """10."""
-        self._write(write_registers(address, values))
+        self._write(write_registers(address, values), tries, gives_way)
 
     def _read(self, pdu: bytes, size: int) -> bytes:
         """An answer says nothing of what was asked: after a doubt an echo comes first."""
@@ -162,11 +173,11 @@ class Modbus:
                     raise
         raise NoAnswerError("the inverter's responses do not match the requests")
 
-    def _write(self, pdu: bytes, tries: int = TRIES) -> None:
+    def _write(self, pdu: bytes, tries: int, gives_way: bool) -> None:
         """The answer repeats address and value, or address and count."""
         for left in reversed(range(tries)):
             try:
-                if self._once(pdu)[1:6] == pdu[:5]:
+                if self._once(pdu, gives_way)[1:6] == pdu[:5]:
                     return
                 self._failed()
             except NoAnswerError:
@@ -188,8 +199,10 @@ class Modbus:
             raise NoAnswerError("the inverter responds too late", reason="late")
         self._doubt = False
 
-    def _once(self, pdu: bytes) -> bytes:
+    def _once(self, pdu: bytes, gives_way: bool = False) -> bytes:
         self._clock.sleep_until(self._free)
+        if gives_way and self.hurry():
+            raise HeldBackError
         self.wire.discard()
         began = self._clock.now()
         self.wire.send(sealed(bytes((self._unit,)) + pdu))

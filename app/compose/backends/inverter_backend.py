@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable
 from functools import partial
+from pathlib import Path
 
 from app.compose.backends.serial_ports import open_wire
 from core.machine.machine_model import Machine
@@ -55,7 +56,7 @@ def _attended(
     config = machine.hardware.table(InverterTable)
     assert config is not None  # a rule of the machine file
     line = config.line
-    attended = attendant(config, lambda: open_wire(line), clock)
+    attended = attendant(config, lambda: open_wire(line), clock, Path(machine.source).parent)
     thread = AttendantThread(attended)
     try:
         attended.connect()

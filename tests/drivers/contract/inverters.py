@@ -18,7 +18,7 @@ from tests.drivers.contract.lockstep import LockstepClock
 from tests.drivers.contract.rig import Fault
 from tests.drivers.contract.simulated import Simulated
 from tests.drivers.contract.world import SimWorld
-from tests.drivers.inverter.benches import config, far_end
+from tests.drivers.inverter.benches import FOLDER, OWN, config, far_end
 from tests.drivers.inverter.inverter_simulators import Inverter
 from tests.drivers.inverter.wires import BenchWire
 
@@ -87,7 +87,7 @@ class OnALine(Simulated):
         assert isinstance(self.clock, LockstepClock)
         self.inverter = Inverter(self.clock)
         self.wire = BenchWire(far_end(self.family, self.inverter)[1], self.clock)
-        self.attendant = attendant(config(self.family), self.wire.opened, self.clock)
+        self.attendant = attendant(config(self.family), self.wire.opened, self.clock, FOLDER)
         self.keeper = AttendantThread(self.attendant)
         self.attendant.connect()
         ports = self.ports
@@ -173,6 +173,12 @@ class HitachiWj200(OnALine):
     """Hitachi WJ200."""
 
     family = "hitachi-wj200"
+
+
+class OwnFile(OnALine):
+    """An inverter that only a file of the integrator knows."""
+
+    family = OWN
 
 
 class HuanyangHy(OnALine):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from tests.drivers.contract.can import Canopen, Csp, FedCanopen, FedCsp, Interpolated
 from tests.drivers.contract.grbl import Grblhal
 from tests.drivers.contract.hal import Hal
-from tests.drivers.contract.inverters import DeltaVfdB, HitachiWj200, HuanyangHy
+from tests.drivers.contract.inverters import DeltaVfdB, HitachiWj200, HuanyangHy, OwnFile
 from tests.drivers.contract.rig import Rig
 from tests.drivers.contract.simulated import Fed, Simulated
 from tests.drivers.contract.skeleton import Skeleton
@@ -23,6 +23,7 @@ RIGS: dict[str, type[Simulated | Fed | Canopen | FedCanopen | Grblhal | Hal | Sk
     "delta": DeltaVfdB,
     "hitachi": HitachiWj200,
     "huanyang": HuanyangHy,
+    "own inverter": OwnFile,
     "skeleton": Skeleton,
 }
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 
 from drivers.inverter.inverter_attendant import Attendant
 from drivers.inverter.inverter_spindle import InverterSpindle, attendant
@@ -14,11 +15,16 @@ from tests.drivers.inverter.inverter_simulators import (
     HitachiMemory,
     HuanyangSlave,
     Inverter,
+    Memory,
+    MyDriveMemory,
+    MyDriveSlave,
     RtuSlave,
 )
 from tests.drivers.inverter.wires import BenchWire, Slave
 
-FAMILIES = ("delta-vfdb", "hitachi-wj200", "huanyang")
+FOLDER = Path(__file__).parent  # has the file of an inverter that the product does not know
+OWN = "my-drive.toml"
+FAMILIES = ("delta-vfdb", "hitachi-wj200", "huanyang", OWN)
 
 
 @dataclass
@@ -27,7 +33,7 @@ class Bench:
 
     clock: StepClock
     inverter: Inverter
-    memory: DeltaMemory | HitachiMemory | HuanyangSlave
+    memory: Memory | HuanyangSlave
     wire: BenchWire
     attendant: Attendant
     spindle: InverterSpindle
@@ -66,17 +72,24 @@ def bench(family: str, *, connect: bool = True) -> Bench:
     inverter = Inverter(clock)
     memory, slave = far_end(family, inverter)
     wire = BenchWire(slave, clock)
-    one = attendant(config(family), wire.opened, clock)
+    one = attendant(config(family), wire.opened, clock, FOLDER)
     made = Bench(clock, inverter, memory, wire, one, InverterSpindle(config(family), one, clock))
     if connect:
         one.connect()
     return made
 
 
-def far_end(family: str, inverter: Inverter) -> tuple[DeltaMemory | HitachiMemory | HuanyangSlave, Slave]:
+def far_end(family: str, inverter: Inverter) -> tuple[Memory | HuanyangSlave, Slave]:
     """What an inverter of this family knows, and what answers for it on the line."""
     if family == "huanyang":
         huanyang = HuanyangSlave(inverter)
         return huanyang, huanyang
-    memory = HitachiMemory(inverter) if family == "hitachi-wj200" else DeltaMemory(inverter)
-    return memory, RtuSlave(memory)
+    memory = memory_of(family, inverter)
+    return memory, (MyDriveSlave if family == OWN else RtuSlave)(memory)
+
+
+def memory_of(family: str, inverter: Inverter) -> Memory:
+    """Registers of a family on Modbus."""
+    if family == "hitachi-wj200":
+        return HitachiMemory(inverter)
+    return MyDriveMemory(inverter) if family == OWN else DeltaMemory(inverter)

@@ -33,7 +33,7 @@ class Inverter:
     torque_off: bool = False
     resets: int = 0
     stops: int = 0
-    heard: float = 0.0  # when the last frame has come
+    heard: float = 0.0  # when the last frame has come; its own watch begins with the first
     patience: float = 0.0  # s without one after which it stops by itself; 0: never
 
     def obey(self, *, run: bool) -> None:
@@ -74,7 +74,7 @@ class Inverter:
 
     def watch(self) -> None:
         """Its own watch over the line."""
-        if self.patience and self.running and self.clock.now() > self.heard + self.patience:
+        if self.patience and self.heard and self.running and self.clock.now() > self.heard + self.patience:
             self.running = False
             self.motor.order(self.heard + self.patience, 0.0)
 
@@ -216,8 +216,64 @@ class HitachiMemory:
             inverter.obey(run=self.coils[0])
 
 
+class MyDriveMemory(NoCoils):
+    """Registers of an invented inverter, whose commands can be read back."""
+
+    def __init__(self, inverter: Inverter) -> None:
+        self.inverter = inverter
+        self.settings = {0x0180: 2, 0x0181: 2, 0x0303: 600, 0x0428: 0, 0x0435: 15}
+        self.command = 0
+        self._watch()
+
+    def word(self, address: int) -> int:
+        inverter = self.inverter
+        during_run = inverter.running or inverter.output > 0
+        status = (during_run << 0) + (inverter.turns_back << 1) + (1 << 2) + (bool(inverter.trip) << 3)
+        shown: Mapping[int, int] = {
+            0x0001: self.command if inverter.hz else 0,  # none after a restart
+            0x0020: status,
+            0x0021: 0,
+            0x0022: 0,
+            0x0023: round(inverter.hz * 100),
+            0x0024: inverter.output,
+            0x0025: 2300,
+            0x0026: 31,
+            0x0080: inverter.trip,
+            **self.settings,
+        }
+        if address not in shown:
+            raise RefusedByDeviceError(2)
+        return shown[address]
+
+    def set_word(self, address: int, value: int) -> None:
+        inverter = self.inverter
+        if address in self.settings:
+            self.settings[address] = value
+            self._watch()
+        elif address == 0x0002:
+            inverter.hz = value / 100
+            if inverter.running:
+                inverter.obey(run=True)
+        elif address == 0x0001:
+            self.command = value
+            inverter.back = bool(value & 2) if value & 3 else inverter.back
+            if value & 8 and inverter.trip:
+                inverter.resets, inverter.trip = inverter.resets + 1, 0
+            inverter.obey(run=bool(value & 3))
+        else:
+            raise RefusedByDeviceError(2)
+
+    def _watch(self) -> None:
+        self.inverter.patience = self.settings[0x0435] / 10 if self.settings[0x0428] == 0 else 0.0
+
+
+Memory = DeltaMemory | HitachiMemory | MyDriveMemory
+
+
 class RtuSlave:
     """Answers frames of Modbus RTU out of a memory; written apart from the master's code."""
+
+    functions = frozenset((1, 2, 3, 4, 5, 6, 8, 15, 16))
 
     def __init__(self, memory: Registers, unit: int = 1) -> None:
         self.memory, self.unit = memory, unit
@@ -234,6 +290,8 @@ class RtuSlave:
         return sealed(bytes((self.unit,)) + body)
 
     def _body(self, function: int, data: bytes) -> bytes:
+        if function not in self.functions:
+            raise RefusedByDeviceError(1)
         memory, first, second = self.memory, int.from_bytes(data[:2], "big"), int.from_bytes(data[2:4], "big")
         if function in (3, 4):
             words = [memory.word(first + n).to_bytes(2, "big") for n in range(second)]
@@ -252,9 +310,18 @@ class RtuSlave:
         elif function == 15:
             for n in range(second):
                 memory.set_coil(first + n, bool(data[5 + n // 8] >> n % 8 & 1))
-        elif function != 8:
-            raise RefusedByDeviceError(1)
         return bytes((function,)) + data[:4]
+
+
+class MyDriveSlave(RtuSlave):
+    """Three functions, and sixteen registers at most."""
+
+    functions = frozenset((3, 8, 16))
+
+    def _body(self, function: int, data: bytes) -> bytes:
+        if function != 8 and int.from_bytes(data[2:4], "big") > 16:
+            raise RefusedByDeviceError(3)
+        return super()._body(function, data)
 
 
 class HuanyangSlave:

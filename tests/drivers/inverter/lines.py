@@ -16,10 +16,12 @@ from pymodbus.simulator import DataType, SimData, SimDevice
 
 from drivers.waiting import RealClock
 from tests.drivers.inverter.inverter_simulators import (
-    DeltaMemory,
     HitachiMemory,
     HuanyangSlave,
     Inverter,
+    Memory,
+    MyDriveMemory,
+    MyDriveSlave,
     RefusedByDeviceError,
 )
 from tests.drivers.ptys import open_pty
@@ -86,7 +88,7 @@ class Pair:
 class ModbusServer:
     """pymodbus on one end of a line; its registers are an inverter's memory."""
 
-    def __init__(self, port: str, memory: DeltaMemory | HitachiMemory) -> None:
+    def __init__(self, port: str, memory: Memory) -> None:
         self._port, self._memory = port, memory
         self._loop = asyncio.new_event_loop()
         self._up = threading.Event()
@@ -121,9 +123,9 @@ class ModbusServer:
     def _device(self) -> SimDevice:
         words = [SimData(0, values=0, count=0x3000, datatype=DataType.REGISTERS)]
         bits = [SimData(0, values=False, count=64, datatype=DataType.BITS)]
-        if isinstance(self._memory, DeltaMemory):
-            return SimDevice(1, simdata=words, action=self._act)
-        return SimDevice(1, simdata=(bits, bits, words, words), action=self._act)
+        if isinstance(self._memory, HitachiMemory):
+            return SimDevice(1, simdata=(bits, bits, words, words), action=self._act)
+        return SimDevice(1, simdata=words, action=self._act)
 
     async def _act(
         self,
@@ -135,6 +137,8 @@ class ModbusServer:
         set_values: list[int] | list[bool] | None,
     ) -> ExcCodes | None:
         """Reads show the memory, writes go there; a write's answer is read from what it has left."""
+        if isinstance(self._memory, MyDriveMemory) and function_code not in MyDriveSlave.functions:
+            return ExcCodes.ILLEGAL_FUNCTION
         try:
             if set_values is not None:
                 for n, value in enumerate(set_values):

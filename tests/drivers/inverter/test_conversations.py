@@ -11,7 +11,7 @@ from pymodbus.framer.rtu import FramerRTU
 from drivers.inverter.inverter_attendant import Attendant
 from drivers.inverter.inverter_spindle import attendant
 from drivers.waiting import StepClock
-from tests.drivers.inverter.benches import config
+from tests.drivers.inverter.benches import FOLDER, OWN, config
 
 ECHO = ""  # the answer is the request
 
@@ -86,6 +86,24 @@ HUANYANG_TURNS = """
     03 01 {word} > 03 01 {state}
 """ + HUANYANG_LOOK.format(word="{word}", state="{state}", set="07D0", out="07D0")
 
+OWN_OPENED = """
+    10 0001 0001 02 0000 > 10 0001 0001     stop
+    03 0180 0001 > 03 02 0002       P1-01
+    03 0181 0001 > 03 02 0002       P1-02
+    03 0428 0001 > 03 02 0000       P5-04
+    03 0435 0001 > 03 02 000F       P5-09, 1.5 s in tenths
+    03 0303 0001 > 03 02 0258       P2-04, 60 Hz in tenths
+"""
+OWN_LOOK = """
+    03 0001 0001 > 03 02 {command}
+    03 0020 0007 > 03 0E {status} 0000 0000 {set} {out} 08FC 0019
+"""
+OWN_STANDS = OWN_LOOK.format(command="0000", status="0004", set="{set}", out="0000")
+OWN_TURNS = """
+    10 0002 0001 02 07D0 > 10 0002 0001     20 Hz
+    10 0001 0001 02 {command} > 10 0001 0001
+""" + OWN_LOOK.format(command="{command}", status="{status}", set="07D0", out="07D0")
+
 
 def sealed(body: str) -> bytes:
     """With unit 1 before it and its checksum behind it."""
@@ -133,7 +151,7 @@ def talk(family: str, opened: str, stands: str, *turns: tuple[float, str, str]) 
     """Open it, make it turn by each of ``turns`` (Hz, script, word for stop), and stop it."""
     clock = StepClock()
     line = ScriptedLine(clock)
-    one = attendant(config(family), line.opened, clock)
+    one = attendant(config(family), line.opened, clock, FOLDER)
     line.expect(opened)
     for _ in range(2 if family == "huanyang" else 1):  # ten good answers, or one
         line.expect(stands.format(set="0000"))
@@ -175,6 +193,14 @@ def test_huanyang() -> None:
     stop = "03 01 08 > 03 01 00\n"
     one = talk("huanyang", HUANYANG_OPENED, HUANYANG_STANDS, (20.0, forward, stop), (-20.0, back, stop))
     assert len(one.warnings) == 1
+
+
+def test_own_file() -> None:
+    forward = OWN_TURNS.format(command="0001", status="0005")
+    back = OWN_TURNS.format(command="0002", status="0007")
+    stop = "10 0001 0001 02 0000 > 10 0001 0001\n"
+    one = talk(OWN, OWN_OPENED, OWN_STANDS, (20.0, forward, stop), (-20.0, back, stop))
+    assert one.warnings == ()
 
 
 def test_the_script_itself_notices_another_byte() -> None:

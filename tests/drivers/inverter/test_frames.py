@@ -5,9 +5,12 @@ from __future__ import annotations
 import pytest
 
 from drivers.inverter import modbus_rtu
+from drivers.inverter.family_files import family_table
 from drivers.inverter.modbus_rtu import Modbus, NoAnswerError, RefusedError
+from drivers.inverter.register_family import RegisterFamily
 from drivers.waiting import StepClock
 from tests.coded import raises_code
+from tests.drivers.inverter.benches import FOLDER, OWN, far_end
 from tests.drivers.inverter.inverter_simulators import DeltaMemory, HitachiMemory, Inverter, RtuSlave
 from tests.drivers.inverter.wires import BenchWire
 
@@ -27,6 +30,10 @@ from tests.drivers.inverter.wires import BenchWire
         ("01 03 02 00 10", "B9 88"),
         # the same, Ver.3-34: write FFFF to 4003h
         ("01 06 40 02 FF FF", "3C 7A"),
+        # Yaskawa's V1000 and J1000 manuals: read four words from 0020h at unit 2, its refusal, loopback
+        ("02 03 00 20 00 04", "45 F0"),
+        ("02 83 03", "F1 31"),
+        ("01 08 00 00 A5 37", "DA 8D"),
     ],
 )
 def test_crc_of_frames_in_manuals(body: str, crc: str) -> None:
@@ -140,3 +147,48 @@ def test_a_reset_is_said_once_even_when_nobody_answers() -> None:
     with pytest.raises(NoAnswerError):
         modbus.write_register(0x2000, 0x2000, tries=1)
     assert len(wire.sent) == 1
+
+
+def on_bench(name: str) -> tuple[RegisterFamily, BenchWire, StepClock]:
+    """A family on its line, without anybody who attends it."""
+    clock = StepClock()
+    _, slave = far_end(name, Inverter(clock))
+    wire = BenchWire(slave, clock)
+    table = family_table(name, FOLDER)
+    assert table.registers is not None
+    line = Modbus(wire, clock, 1, 10 / 9600)
+    return RegisterFamily(table, table.registers, line, clock), wire, clock
+
+
+@pytest.mark.parametrize(
+    ("name", "first", "next_speed", "other_way"),
+    [("delta-vfdb", 2, 1, 2), ("hitachi-wj200", 3, 3, 3), (OWN, 2, 2, 2)],
+)
+def test_a_run_command_is_repeated_where_the_family_wants_it(
+    name: str, first: int, next_speed: int, other_way: int
+) -> None:
+    family, wire, _ = on_bench(name)
+    counts = []
+    for hz in (20.0, 30.0, -30.0):
+        wire.sent.clear()
+        family.command(hz)
+        counts.append(len(wire.sent))
+    assert counts == [first, next_speed, other_way]
+
+
+@pytest.mark.parametrize(("name", "tries"), [("delta-vfdb", 1), ("hitachi-wj200", 3), (OWN, 3)])
+def test_a_reset_is_tried_as_often_as_the_family_says(name: str, tries: int) -> None:
+    family, wire, _ = on_bench(name)
+    wire.silent = True
+    with pytest.raises(NoAnswerError):
+        family.reset()
+    assert len(wire.sent) == tries
+
+
+def test_after_a_reset_the_family_says_how_long_to_wait() -> None:
+    waits = {}
+    for name in ("delta-vfdb", "hitachi-wj200"):
+        family, _, clock = on_bench(name)
+        family.reset()
+        waits[name] = clock.now() >= 1.0
+    assert waits == {"delta-vfdb": False, "hitachi-wj200": True}

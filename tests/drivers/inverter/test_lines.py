@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 from collections.abc import Iterator
 from contextlib import ExitStack
 from dataclasses import dataclass
@@ -22,8 +23,8 @@ from core.ports import DriverError
 from drivers.inverter.inverter_attendant import PRESS
 from drivers.waiting import RealClock, StepClock
 from tests.coded import raises_code
-from tests.drivers.inverter.benches import FAMILIES
-from tests.drivers.inverter.inverter_simulators import DeltaMemory, HitachiMemory, HuanyangSlave, Inverter
+from tests.drivers.inverter.benches import FAMILIES, FOLDER, OWN, memory_of
+from tests.drivers.inverter.inverter_simulators import HuanyangSlave, Inverter
 from tests.drivers.inverter.lines import HuanyangEnd, ModbusServer, Pair, inverter, until
 from tests.late_computer import stalls_told
 from tests.texts import text
@@ -42,7 +43,8 @@ class Wired:
 
 
 def machine_file(folder: Path, family: str, port: str) -> Path:
-    """The shipped sample with this inverter."""
+    """The shipped sample with this inverter, and next to it the file of the invented one."""
+    shutil.copy(FOLDER / OWN, folder)
     text = resources.machine_file("gt75-vfd.toml")
     text = text.replace(
         'family = "delta-vfdb", port = "/dev/ttyUSB1"', f'family = "{family}", port = "{port}"'
@@ -62,8 +64,7 @@ def wired(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Wired]:
         if request.param == "huanyang":
             stack.enter_context(HuanyangEnd(cable.far, HuanyangSlave(one)))
         else:
-            memory = DeltaMemory(one) if request.param == "delta-vfdb" else HitachiMemory(one)
-            stack.enter_context(ModbusServer(cable.far, memory))
+            stack.enter_context(ModbusServer(cable.far, memory_of(request.param, one)))
         path = machine_file(tmp_path, request.param, cable.near)
         yield Wired(load_machine(path), path, cable, one)
 

@@ -12,7 +12,7 @@ from app.compose.backends.inverter_backend import SlidesAlone
 from core.ports import FloatArray
 from drivers.inverter.inverter_family import Look
 from drivers.inverter.inverter_spindle import InverterSpindle
-from tests.drivers.inverter.benches import Bench, bench, config
+from tests.drivers.inverter.benches import FAMILIES, Bench, bench, config
 
 
 def rated(family: str, amps: float) -> tuple[Bench, InverterSpindle]:
@@ -29,7 +29,7 @@ def draws(made: Bench, amps: float) -> None:
     made.attendant.seen = dataclasses.replace(seen, look=look)
 
 
-@pytest.mark.parametrize("family", ["delta-vfdb", "hitachi-wj200", "huanyang"])
+@pytest.mark.parametrize("family", FAMILIES)
 def test_the_current_is_told_as_a_share_of_the_plate(family: str) -> None:
     made, spindle = rated(family, 8.0)
     draws(made, 2.0)

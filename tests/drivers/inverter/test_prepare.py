@@ -10,8 +10,13 @@ from core.ports import DriverError
 from drivers.inverter.modbus_rtu import NoAnswerError
 from drivers.serial_line import WireError
 from tests.coded import raises_code
-from tests.drivers.inverter.benches import bench
-from tests.drivers.inverter.inverter_simulators import DeltaMemory, HitachiMemory, HuanyangSlave
+from tests.drivers.inverter.benches import FAMILIES, OWN, bench
+from tests.drivers.inverter.inverter_simulators import (
+    DeltaMemory,
+    HitachiMemory,
+    HuanyangSlave,
+    MyDriveMemory,
+)
 from tests.texts import begins
 
 
@@ -46,13 +51,16 @@ def test_huanyang_has_none_and_says_so() -> None:
         ("delta-vfdb", 0x0100, 5000, ["Pr.01-00", "50 Hz", "58.33"]),
         ("hitachi-wj200", 0x1201, 2, ["A002", "2", "3"]),
         ("hitachi-wj200", 0x1203, 500, ["A004", "50 Hz"]),
+        (OWN, 0x0181, 1, ["P1-02", "1", "2"]),
+        (OWN, 0x0435, 20, ["P5-09", "20", "15", "1.5 s"]),
+        (OWN, 0x0303, 500, ["P2-04", "50 Hz"]),
     ],
 )
 def test_settings_of_others_are_told_and_left(
     family: str, register: int, value: int, named: list[str]
 ) -> None:
     one = bench(family, connect=False)
-    assert isinstance(one.memory, DeltaMemory | HitachiMemory)
+    assert not isinstance(one.memory, HuanyangSlave)
     one.memory.settings[register] = value
     one.attendant.connect()
     (warning,) = one.attendant.warnings
@@ -67,6 +75,15 @@ def test_settings_that_an_inverter_does_not_know_are_told() -> None:
     one.attendant.connect()
     assert len(one.attendant.warnings) == 1
     assert "Pr.09-03" in one.attendant.warnings[0]
+
+
+def test_a_highest_frequency_that_cannot_be_read_is_told() -> None:
+    one = bench(OWN, connect=False)
+    assert isinstance(one.memory, MyDriveMemory)
+    del one.memory.settings[0x0303]
+    one.attendant.connect()
+    (warning,) = one.attendant.warnings
+    assert warning.startswith("P2-04 ")
 
 
 def test_huanyang_that_listens_to_its_keypad_is_told() -> None:
@@ -90,7 +107,7 @@ def test_huanyang_is_trusted_after_ten_good_answers() -> None:
     one.spindle.run(100.0)
 
 
-@pytest.mark.parametrize("family", ["delta-vfdb", "hitachi-wj200", "huanyang"])
+@pytest.mark.parametrize("family", FAMILIES)
 @pytest.mark.parametrize(("fault", "kind"), [("silent", NoAnswerError), ("out", WireError)])
 def test_nobody_there_is_one_sentence(family: str, fault: str, kind: type[DriverError]) -> None:
     one = bench(family, connect=False)
@@ -99,7 +116,7 @@ def test_nobody_there_is_one_sentence(family: str, fault: str, kind: type[Driver
         one.attendant.connect()
 
 
-@pytest.mark.parametrize("family", ["delta-vfdb", "hitachi-wj200", "huanyang"])
+@pytest.mark.parametrize("family", FAMILIES)
 def test_a_spindle_that_turns_when_the_control_comes_is_stopped(family: str) -> None:
     one = bench(family, connect=False)
     one.inverter.hz, one.inverter.running = 30.0, True

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from core.faults import code_of
-from tests.drivers.inverter.benches import FAMILIES, Bench, bench
+from tests.drivers.inverter.benches import FAMILIES, OWN, Bench, bench
 
 
 def test_a_surface_speed_changes_the_setpoint_all_the_time(turning: Bench) -> None:
@@ -41,8 +41,24 @@ def test_a_stop_waits_for_one_answer_at_most(turning: Bench) -> None:
     sent = len(turning.wire.sent)
     turning.attendant.exchange()
     first = turning.wire.sent[sent]
-    assert first[1] in (3, 5, 6)
+    assert first[1] in (3, 5, 6, 16)
     assert first[-3] in (0x08, 0x01, 0x00)  # stop of each family
+
+
+def test_a_stop_that_comes_after_the_frequency_keeps_the_run_command_back(turning: Bench) -> None:
+    send, back = turning.wire.send, set[bool]()
+
+    def overtaken(data: bytes) -> None:
+        turning.spindle.run(0.0)
+        send(data)
+        back.add(turning.inverter.back)
+
+    turning.spindle.run(-900.0)
+    turning.wire.send = overtaken  # type: ignore[method-assign]
+    turning.run(2.0)
+    assert turning.inverter.hz == pytest.approx(15.0)
+    assert back == {False}
+    assert turning.rpm == 0.0
 
 
 def test_an_answer_lost_now_and_then_does_no_harm(turning: Bench) -> None:
@@ -83,7 +99,7 @@ def test_trouble_wants_nothing_any_more(turning: Bench) -> None:
     assert turning.attendant.want == 0.0
 
 
-@pytest.mark.parametrize("family", ["delta-vfdb", "hitachi-wj200"])
+@pytest.mark.parametrize("family", ["delta-vfdb", "hitachi-wj200", OWN])
 def test_a_trip_is_told_and_reset_once(family: str) -> None:
     one = bench(family)
     one.spindle.run(1000.0)

@@ -65,6 +65,11 @@ class BenchWire:
         self.clock.sleep_until(until)
         return b""
 
+    @property
+    def waits(self) -> bool:
+        """Whether an answer is on its way."""
+        return bool(self._coming)
+
     def discard(self) -> None:
         self._look()
         while self._coming and self._coming[0][0] <= self.clock.now():

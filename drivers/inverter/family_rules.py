@@ -1,0 +1,127 @@
+"""What must agree between the keys of a family of inverters: each address read once, each value reported."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+
+from core.message import Message
+from core.table_schema import Finding
+from drivers.inverter.family_table import (
+    ABSENT,
+    FamilyTable,
+    ParameterKeys,
+    ReadKeys,
+    RegisterTable,
+    StateKeys,
+    WriteKeys,
+)
+
+_PARITIES = {"N", "E", "O"}
+_SHOWN = re.compile(r"[^{}]*\{code(:0?\d?[dX])?\}[^{}]*")
+Address = tuple[str, int]  # "register" or "coil", and its number
+
+
+def broken(table: FamilyTable) -> Iterator[Finding]:
+    """Yield what is wrong with a table of which every key has a value of the right kind."""
+    said = table.line.parity.split()
+    if not said or not set(said) <= _PARITIES:
+        yield _finding("line.parity", 'expected one or more of "N", "E" and "O"')
+    yield from _parameters(table.parameters)
+    if table.registers is not None:
+        yield from _registers(table.registers)
+
+
+def _finding(path: str, text: str) -> Finding:
+    return Finding(path, "", text, "broken-rule")
+
+
+def _parameters(parameters: Iterable[ParameterKeys]) -> Iterator[Finding]:
+    taken: dict[int, str] = {}
+    for number, each in enumerate(parameters, 1):
+        path = f"parameter[{number}]"
+        if (each.value == ABSENT) is (each.counts_per_s == 0.0):
+            yield _finding(path, "expected either value or counts_per_s; use one of them")
+        if each.value != ABSENT and not each.why.strip():
+            yield _finding(f"{path}.why", "this value is missing; say what the value does")
+        first = taken.setdefault(each.register, path)
+        if first != path:
+            yield _used(f"{path}.register", each.register, first)
+
+
+def _used(path: str, register: int, first: str) -> Finding:
+    text = "register {register} is already in {first}; use each register once"
+    return _finding(path, Message(text, register=f"0x{register:04X}", first=first))
+
+
+def _registers(table: RegisterTable) -> Iterator[Finding]:
+    read: dict[Address, str] = {}
+    for number, each in enumerate(table.reads, 1):
+        yield from _read(each, f"read[{number}]", read)
+    written = {table.frequency.register + n: "frequency" for n in range(table.frequency.words)}
+    for name, writes in table.commands.items():
+        for number, write in enumerate(writes, 1):
+            yield from _write(write, f"command.{name}[{number}]", written)
+    for name, state in table.states.items():
+        yield from _state(state, f"report.{name}", read)
+    yield from _reported(table, read)
+    yield from _code(table)
+
+
+def _one_kind(each: ReadKeys | WriteKeys | StateKeys, path: str) -> Iterator[Finding]:
+    if (each.register == ABSENT) is (each.coil == ABSENT):
+        yield _finding(path, "expected either register or coil; use one of them")
+
+
+def _addresses(each: ReadKeys | StateKeys, count: int = 1) -> list[Address]:
+    kind, first = ("coil", each.coil) if each.register == ABSENT else ("register", each.register)
+    return [(kind, first + n) for n in range(count)]
+
+
+def _read(each: ReadKeys, path: str, read: dict[Address, str]) -> Iterator[Finding]:
+    yield from _one_kind(each, path)
+    addresses = _addresses(each, each.count)
+    if addresses[-1][1] > 0xFFFF:
+        yield _finding(f"{path}.count", "the last address is above 0xFFFF; use a smaller count")
+    if twice := [address for address in addresses if address in read]:
+        yield _used(path, twice[0][1], read[twice[0]])
+    read |= dict.fromkeys(addresses, path)
+
+
+def _write(each: WriteKeys, path: str, written: dict[int, str]) -> Iterator[Finding]:
+    yield from _one_kind(each, path)
+    if (each.register == ABSENT) is not (each.value == ABSENT):
+        yield _finding(path, "a register needs a value, and a coil needs on; correct the keys")
+    if each.register in written:
+        yield _used(path, each.register, written[each.register])
+
+
+def _state(state: StateKeys, path: str, read: dict[Address, str]) -> Iterator[Finding]:
+    yield from _one_kind(state, path)
+    if state.register != ABSENT and not state.values:
+        yield _finding(f"{path}.values", "this value is missing; list the values for which the state is on")
+    if [value for value in state.values if value != int(value) & state.mask]:
+        yield _finding(f"{path}.values", "a value has bits outside mask; correct mask or values")
+    yield from _unread(path, _addresses(state), read)
+
+
+def _reported(table: RegisterTable, read: dict[Address, str]) -> Iterator[Finding]:
+    for name, each in (("output", table.output), ("setpoint", table.setpoint)):
+        addresses = [("register", each.register + n) for n in range(each.words)]
+        yield from _unread(f"report.{name}", addresses, read)
+    yield from _unread("report.current", [("register", table.current.register)], read)
+
+
+def _unread(path: str, addresses: Iterable[Address], read: dict[Address, str]) -> Iterator[Finding]:
+    for kind, address in addresses:
+        if address != ABSENT and (kind, address) not in read:
+            text = "{kind} {address} is not in any read; add it to a [[read]] table"
+            yield _finding(path, Message(text, kind=kind, address=f"0x{address:04X}"))
+
+
+def _code(table: RegisterTable) -> Iterator[Finding]:
+    if not _SHOWN.fullmatch(table.code.shown):
+        yield _finding("report.fault_code.shown", "expected text with one {code}, {code:02d} or {code:04X}")
+    if "fault" not in table.states and not table.code_is_polled:
+        text = "a fault code that is not in any read needs report.fault; add the fault state or the read"
+        yield _finding("report.fault_code", text)

@@ -1,0 +1,318 @@
+"""Family of inverters as a table: line, registers, commands, reported values, fault codes and parameters.
+
+``family_files.py`` reads these tables from TOML files, whose keys are declared here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from core.key_declaration import Pair, Range, Unit, Words, file_key, key_table
+from core.table_schema import TableReference
+
+MODBUS, HUANYANG = "modbus", "huanyang"
+_ADDRESS = Range(0, 0xFFFF)
+_COUNTS = Range(0.01, 10_000.0)
+ABSENT = -1  # in the place of an address or of a value that the file does not have
+
+
+@key_table
+class FamilyKeys:
+    """What the inverter is called, and the frames that it understands."""
+
+    name: str = file_key(meaning="Name of the inverter, for messages.")
+    manual: str = file_key(meaning="Manual from which the registers come, with its number or date.")
+    protocol: str = file_key(
+        choices=(MODBUS, HUANYANG), meaning="Frames on the line: Modbus RTU, or those of a Huanyang HY."
+    )
+
+
+@key_table
+class LineKeys:
+    """What the inverter can use on its serial line."""
+
+    baud: Pair = file_key(Range(110, 1_000_000), meaning="Lowest and highest bit rate.")
+    parity: Words = file_key(meaning="Parities: `N`, `E` and `O`.")
+    write_multiple: bool = file_key(
+        default=False, meaning="Registers are written with function 16. Default: function 6."
+    )
+
+
+@key_table
+class FrequencyKeys:
+    """A frequency in one or two registers."""
+
+    register: int = file_key(_ADDRESS, meaning="Address of the register in the frame.")
+    counts_per_hz: float = file_key(_COUNTS, meaning="Register value for 1 Hz.")
+    words: int = file_key(
+        Range(1, 2), default=1, meaning="Number of registers; of two, the first has the high word."
+    )
+    signed: bool = file_key(default=False, meaning="A negative value is the reverse direction.")
+
+    @property
+    def highest(self) -> float:
+        """Return the highest frequency in Hz that the registers can hold."""
+        bits = 16 * self.words - self.signed
+        return float((1 << bits) - 1) / self.counts_per_hz
+
+    def words_of(self, hz: float) -> tuple[int, ...]:
+        """Return the register values of a frequency in Hz; without ``signed`` its sign is left out."""
+        counts = round((hz if self.signed else abs(hz)) * self.counts_per_hz)
+        return tuple(counts >> 16 * place & 0xFFFF for place in reversed(range(self.words)))
+
+    def hertz(self, words: Mapping[int, int]) -> float:
+        """Return the frequency in Hz, never negative, from register values by address."""
+        counts = 0
+        for address in range(self.register, self.register + self.words):
+            counts = counts << 16 | words[address]
+        if self.signed and counts >> 16 * self.words - 1:
+            counts = (1 << 16 * self.words) - counts
+        return counts / self.counts_per_hz
+
+
+@key_table
+class CurrentKeys:
+    """The output current in a register."""
+
+    register: int = file_key(_ADDRESS, meaning="Address of the register.")
+    counts_per_a: float = file_key(_COUNTS, meaning="Register value for 1 A.")
+
+
+@key_table
+class StateKeys:
+    """One fact about the inverter: a coil that is on, or a register with one of some values."""
+
+    register: int = file_key(_ADDRESS, default=ABSENT, meaning="Address of the register.")
+    coil: int = file_key(_ADDRESS, default=ABSENT, meaning="Address of the coil, if not a register.")
+    mask: int = file_key(_ADDRESS, default=0xFFFF, meaning="Bits of the register that matter.")
+    values: tuple[float, ...] = file_key(
+        _ADDRESS, default=(), meaning="One to four values of these bits for which the state is on."
+    )
+
+    def applies(self, words: Mapping[int, int], coils: Mapping[int, bool]) -> bool:
+        """Return whether the state is on, from register values and coils by address."""
+        if self.coil != ABSENT:
+            return coils[self.coil]
+        return words[self.register] & self.mask in self.values
+
+
+@key_table
+class CodeKeys:
+    """The register with the number of a fault; 0 is no fault."""
+
+    register: int = file_key(_ADDRESS, meaning="Address of the register.")
+    mask: int = file_key(_ADDRESS, default=0xFFFF, meaning="Bits of the register that matter.")
+    shown: str = file_key(
+        default="{code}",
+        meaning="How the manual writes the number: `{code:04X}H` (0021H), `E{code:02d}` (E33).",
+    )
+
+
+@key_table
+class ReadKeys:
+    """One read request of each poll."""
+
+    register: int = file_key(_ADDRESS, default=ABSENT, meaning="Address of the first register.")
+    coil: int = file_key(_ADDRESS, default=ABSENT, meaning="Address of the first coil, if not a register.")
+    count: int = file_key(Range(1, 125), default=1, meaning="Number of registers or coils.")
+
+
+@key_table
+class WriteKeys:
+    """One write request of a command."""
+
+    register: int = file_key(_ADDRESS, default=ABSENT, meaning="Address of the register.")
+    value: int = file_key(_ADDRESS, default=ABSENT, meaning="Value for the register.")
+    coil: int = file_key(_ADDRESS, default=ABSENT, meaning="Address of the coil, if not a register.")
+    on: bool = file_key(default=False, meaning="Whether the coil is switched on.")
+
+
+@key_table
+class CommandKeys:
+    """How the commands are sent."""
+
+    repeat: bool = file_key(
+        default=True,
+        meaning="Every frequency is followed by the run command. false: only after a change.",
+    )
+    reset_tries: int = file_key(
+        Range(1, 3), default=3, meaning="Number of times that a reset is sent without a response."
+    )
+    reset_pause: float = file_key(
+        Range(0.0, 3.0, Unit.SECONDS),
+        name="reset_pause_s",
+        default=0.0,
+        meaning="Time after a reset in which the inverter does not respond.",
+    )
+
+
+@key_table
+class ParameterKeys:
+    """A parameter that TurnDesk checks whenever it connects."""
+
+    name: str = file_key(meaning="Number of the parameter at the keypad.")
+    register: int = file_key(_ADDRESS, meaning="Address of the register.")
+    value: int = file_key(_ADDRESS, default=ABSENT, meaning="Value that the parameter must have.")
+    counts_per_s: float = file_key(
+        Range(0.1, 1000.0),
+        default=0.0,
+        meaning="In place of a value: this is the communication timeout, which must be `comm_loss_s`.",
+    )
+    why: str = file_key(default="", meaning="What the value does, for the message.")
+    write: bool = file_key(
+        default=False, meaning="TurnDesk writes the value if it differs. false: TurnDesk only reports it."
+    )
+
+
+@key_table
+class TopKeys:
+    """The parameter that limits the output frequency."""
+
+    name: str = file_key(meaning="Number of the parameter at the keypad.")
+    register: int = file_key(_ADDRESS, meaning="Address of the register.")
+    counts_per_hz: float = file_key(_COUNTS, meaning="Register value for 1 Hz.")
+
+
+@key_table
+class LimitKeys:
+    """What the inverter cannot exceed whatever its parameters are."""
+
+    max_hz: float = file_key(
+        Range(1.0, 5000.0), default=0.0, meaning="Highest output frequency. Default: that of the register."
+    )
+
+
+STATES = ("run", "reverse", "asked_reverse", "fault")
+COMMANDS = ("stop", "forward", "reverse", "reset")
+
+
+def _table(path: str, keys: type, *, purpose: str) -> TableReference:
+    return TableReference(f"{path} of a family file", purpose, keys)
+
+
+# Tables of a family file, for the reference of the machine file.
+TABLES = (
+    _table(
+        "(top)",
+        purpose="The keys before the first table. A family file describes the registers of an "
+        "inverter; `spindle.vfd.family` names it.",
+        keys=FamilyKeys,
+    ),
+    _table(
+        "line",
+        purpose="The serial line. The machine file selects the settings.",
+        keys=LineKeys,
+    ),
+    _table(
+        "frequency",
+        purpose="The register for the commanded frequency. This and the next tables are for Modbus.",
+        keys=FrequencyKeys,
+    ),
+    _table(
+        "command",
+        purpose="The commands. `stop`, `forward`, `reverse` and `reset` are lists of writes, as the "
+        "next table describes them.",
+        keys=CommandKeys,
+    ),
+    _table(
+        "command.stop",
+        purpose="One write of a command; `forward`, `reverse` and `reset` are alike.",
+        keys=WriteKeys,
+    ),
+    _table(
+        "read",
+        purpose="One read, `[[read]]`. TurnDesk sends all reads in their order, one request for each.",
+        keys=ReadKeys,
+    ),
+    _table(
+        "report.output",
+        purpose="The output frequency; `setpoint` has the same keys and is the frequency command as "
+        "the inverter reports it.",
+        keys=FrequencyKeys,
+    ),
+    _table(
+        "report.current",
+        purpose="The output current.",
+        keys=CurrentKeys,
+    ),
+    _table(
+        "report.run",
+        purpose="The run command as the inverter reports it, off from the stop command on. The same "
+        "keys are for `reverse` (the motor turns in reverse), `asked_reverse` (reverse is "
+        "commanded) and `fault` (the inverter has tripped; optional).",
+        keys=StateKeys,
+    ),
+    _table(
+        "report.fault_code",
+        purpose="The fault code. If it is not in a read, TurnDesk reads it when `fault` is on. The "
+        'optional table `[faults]` has a text for each code, such as `0x07 = "over-current"`.',
+        keys=CodeKeys,
+    ),
+    _table(
+        "parameter",
+        purpose="One parameter, `[[parameter]]`, that TurnDesk checks when it connects. Optional.",
+        keys=ParameterKeys,
+    ),
+    _table(
+        "highest",
+        purpose="The parameter with the highest output frequency. Optional.",
+        keys=TopKeys,
+    ),
+    _table(
+        "limits",
+        purpose="Limits of the inverter itself. Optional.",
+        keys=LimitKeys,
+    ),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class RegisterTable:
+    """Registers and coils of an inverter on Modbus; ``commands`` by name, ``faults`` are texts by code."""
+
+    frequency: FrequencyKeys
+    sending: CommandKeys
+    commands: Mapping[str, tuple[WriteKeys, ...]]
+    reads: tuple[ReadKeys, ...]
+    output: FrequencyKeys
+    setpoint: FrequencyKeys
+    current: CurrentKeys
+    states: Mapping[str, StateKeys]
+    code: CodeKeys
+    faults: Mapping[int, str]
+
+    @property
+    def code_is_polled(self) -> bool:
+        """Whether the fault code is in the reads. Otherwise it is read only when the inverter has tripped."""
+        return any(
+            each.register <= self.code.register < each.register + each.count
+            for each in self.reads
+            if each.register != ABSENT
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class FamilyTable:
+    """A family of inverters; ``registers`` is None for one that does not use Modbus."""
+
+    name: str
+    protocol: str
+    line: LineKeys
+    parameters: tuple[ParameterKeys, ...] = ()
+    top: TopKeys | None = None
+    limits: LimitKeys = field(default_factory=LimitKeys)
+    registers: RegisterTable | None = None
+
+    @property
+    def max_hz(self) -> float:
+        """Return the highest output frequency in Hz that can be commanded."""
+        own = self.registers.frequency.highest if self.registers else 0xFFFF / 100.0
+        return min(own, self.limits.max_hz or own)
+
+    @property
+    def step(self) -> float:
+        """Return the resolution of the reported setpoint in Hz."""
+        if self.registers is None:
+            return 0.01
+        return 1.0 / min(self.registers.frequency.counts_per_hz, self.registers.setpoint.counts_per_hz)
