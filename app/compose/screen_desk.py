@@ -282,7 +282,7 @@ def _desk(
     def left() -> Modal:
         return executor.snapshot.modal
 
-    kept = partial(kept_part, keep.setting)
+    kept = partial(kept_part, keep.read_setting)
     changed = file_changes(machine, keep, partial(say, "machine"))
     desk = Desk(
         post=guarded(executor.post, changed, partial(say, "refused")),

@@ -27,7 +27,7 @@ class Persistence:
     settings: dict[str, object] = field(default_factory=dict)
     who: Callable[[], str] = str  # has signed in; empty: there are no levels
 
-    def setting(self, key: str) -> object:
+    def read_setting(self, key: str) -> object:
         """What was kept under this name; None: nothing."""
         return self.settings.get(key)
 

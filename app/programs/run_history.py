@@ -14,7 +14,7 @@ from app.desk.translation import tr
 from core.executor.commands import Command, PartsMade, SetSwitch
 from core.executor.snapshot import Snapshot, State
 from core.message import Message
-from core.store.store import Store
+from core.store.production.run_records import RunRecords
 from core.store.store_errors import StoreError
 
 COMPLETE, UNCOUNTED, GIVEN_UP, ESTOP = "COMPLETE", "NOT COUNTED", "GIVEN UP", "E-STOP"
@@ -96,9 +96,11 @@ def _outcome(snapshot: Snapshot) -> str:
     return GIVEN_UP
 
 
-def note_cut_off_runs(store: Store) -> None:
+def note_cut_off_runs(runs: RunRecords) -> None:
     """At the start, when nothing runs yet: a run without an end is one that the control did not outlive."""
-    told = store.runs_cut_off(CUT_OFF, "{program}: the control shut down during the last run of this program")
+    told = runs.end_cut_off_runs(
+        CUT_OFF, "{program}: the control shut down during the last run of this program"
+    )
     with suppress(StoreError):  # a disk that is full gets it later
         told.result()
 
@@ -182,7 +184,7 @@ class PartCounter:
             return
         try:
             self.count = self.persistence.parts(name)
-            kept = self.persistence.setting(_key(name))
+            kept = self.persistence.read_setting(_key(name))
         except StoreError:
             return  # the desk says by itself that nothing is kept
         self.target = kept if isinstance(kept, int) and 0 < kept <= MOST else 0

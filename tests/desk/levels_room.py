@@ -79,7 +79,7 @@ class Room:
 
     def log(self, kind: str) -> list[tuple[str, str]]:
         self.settle()
-        return [(row.text, row.who) for row in self.store.events(kinds={kind})][::-1]
+        return [(row.text, row.who) for row in self.store.events.read_events(kinds={kind})][::-1]
 
 
 class NoPins(Session):

@@ -99,7 +99,7 @@ def test_without_a_store_nothing_is_backed_up_or_restored(tmp_path: Path) -> Non
     with pytest.raises(StoreError):
         journal.restore(tmp_path / "x.db")
     journal.save_setting("a", 1)
-    assert journal.setting("a") is None
+    assert journal.read_setting("a") is None
     assert journal.parts("pin.nc") == 0
     journal.close()
 
@@ -111,8 +111,8 @@ def test_without_a_store_nothing_is_backed_up_or_restored(tmp_path: Path) -> Non
 def away(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Journal]:
     """Begun while the disk was full; the store holds a job that was interrupted before."""
     with Store.open(tmp_path / "home") as store:
-        store.set_tool(3, "test", x=1.25).result(60)
-        store.set_setting(UNDER_WAY, plain(broken_off(line=8))).result(60)
+        store.offsets.tools.change_row(3, "test", {"x": 1.25}).result(60)
+        store.settings.save_setting(UNDER_WAY, plain(broken_off(line=8))).result(60)
     full = Cause.FULL.error(tmp_path / "home" / "turndesk.db", "")
     monkeypatch.setattr("app.compose.runs.journal.AGAIN", 1e6)  # the test opens it
     with monkeypatch.context() as disk:
@@ -195,11 +195,11 @@ def test_a_store_that_could_not_be_read_at_the_start_is_read_by_the_second_try(
 ) -> None:
     """The first try had opened it: its lock must be free again, and what happened meanwhile is written."""
     with Store.open(tmp_path / "home") as store:
-        store.set_setting(UNDER_WAY, plain(broken_off(line=8))).result(60)
+        store.settings.save_setting(UNDER_WAY, plain(broken_off(line=8))).result(60)
     locked = Cause.LOCKED.error(tmp_path / "home" / "turndesk.db", "")
     monkeypatch.setattr("app.compose.runs.journal.AGAIN", 1e6)  # the test tries again
     with monkeypatch.context() as disk:
-        disk.setattr(Store, "damaged", raising(locked))
+        disk.setattr(Store, "find_damaged_rows", raising(locked))
         journal = Journal(tmp_path / "home")
         assert shows(journal.trouble, "desk.locked")
         assert journal.waiting
@@ -223,7 +223,7 @@ def test_a_store_too_damaged_to_be_read_is_left_to_a_restore(
 ) -> None:
     damaged = Cause.DAMAGED.error(tmp_path / "home" / "turndesk.db", "a page is torn")
     with monkeypatch.context() as disk:
-        disk.setattr(Store, "damaged", raising(damaged))
+        disk.setattr(Store, "find_damaged_rows", raising(damaged))
         journal = Journal(tmp_path / "home")
     assert shows(journal.trouble, "desk.damaged")
     assert not journal.waiting  # no try will read it
@@ -268,14 +268,14 @@ def test_what_a_second_instance_cannot_keep_names_the_first(tmp_path: Path) -> N
 def test_a_second_instance_shows_the_offsets_of_the_first(tmp_path: Path) -> None:
     """It showed every tool as not set."""
     first = Journal(tmp_path / "home")
-    first.opened().set_tool(3, "test", x=-12.5).result(60)
+    first.opened().offsets.tools.change_row(3, "test", {"x": -12.5}).result(60)
     second = Journal(tmp_path / "home")
     book = second.book()
     assert second.trouble
     assert book.locked
     assert book.tools[3].x == -12.5
     assert book.change(Kind.TOOL, 3, {"x": 1.0}, "test") == book.locked
-    first.opened().set_tool(3, "test", x=-13.0).result(60)
+    first.opened().offsets.tools.change_row(3, "test", {"x": -13.0}).result(60)
     second._open_again()  # as its thread does every few seconds
     book.poll()
     assert (book.tools[3].x, book.changes) == (-13.0, 1)
