@@ -46,7 +46,7 @@ SERVICES = {Act.MACHINE_FILE, Act.RESTORE, Act.SHARED_PLACE, Act.PEOPLE}
 WRITES = re.compile(
     r"\.(save_setting|keep_settings|save_version|add_parts|reset_parts|import_all|change_row)\("
     r"|\.(save_person|remove_person|remove_all_people|keep_loaded_version|renamed|set_input|unlink)\("
-    r"|\.(keep_person|remove_people|correct_parts|rename|write_text)\("
+    r"|\.(rename|write_text)\("
     r"|\b(write_whole|write_new|write_out|write_in_place|store_new|ForceOutput|SpindleLimit)\("
 )
 BEHIND_A_RULE = {
@@ -368,7 +368,7 @@ def test_an_accepted_machine_file_has_the_name(room: Room) -> None:
 def test_who_is_taken_away_is_not_in_force_any_more(room: Room) -> None:
     room.enter_people()
     room.sign_in("BEN")
-    room.journal.remove_person("BEN")
+    room.journal.opened().people.remove_person("BEN").result()
     room.access.reload()
     assert room.access.words == "OPERATOR"
 
@@ -383,9 +383,9 @@ def test_a_second_desk_has_the_levels_of_the_first(room: Room, tmp_path: Path) -
 def test_one_of_service_stays(room: Room) -> None:
     room.enter_people()
     with pytest.raises(StoreError, match=pattern("desk.service-stays")):
-        room.journal.remove_person("ANNA")
+        room.journal.opened().people.remove_person("ANNA").result()
     for name in ("BEN", "CARLA", "ANNA"):
-        room.journal.remove_person(name)
+        room.journal.opened().people.remove_person(name).result()
     room.access.reload()
     assert not room.access.people.on
 

@@ -115,7 +115,7 @@ def test_a_run_without_an_end_is_told_at_the_next_start(tmp_path: Path) -> None:
         store.runs.record_end("whole.nc", "COMPLETE")
         store.runs.add_parts("counted.nc")
     journal = Journal(tmp_path)
-    ended = {run.program: run.outcome for run in journal.runs()}
+    ended = {run.program: run.outcome for run in journal.opened().runs.read_records()}
     journal.close()
     assert ended == {"cut.nc": "CUT OFF", "whole.nc": "COMPLETE", "counted.nc": ""}
 

@@ -145,7 +145,7 @@ def test_no_number_of_parts(hands: Hands, typed: str) -> None:
 def test_a_target_below_what_is_made_is_refused(hands: Hands, journal: Journal) -> None:
     for event in (Event(0.0, "load", "pin.nc"), *(Event(0.0, "part", "part"),) * 3):
         journal.hear(event)
-    hands.sees(lambda: journal.parts("pin.nc") == 3)
+    hands.sees(lambda: journal.runs.count_parts("pin.nc") == 3)
     hands.load("pin")
     open_function(hands, 2)
     hands.sees(lambda: hands.desk.counter.count == 3)
@@ -321,7 +321,7 @@ def test_a_restore_leaves_the_levels_on(hands: Hands, journal: Journal) -> None:
     folder = backups.places[0].path
     folder.mkdir(parents=True, exist_ok=True)
     journal.backup(folder / "2026-11-23-before.turndesk.db")
-    journal.keep_person(PersonRow("ANNA", 3, b"salt", b"hash"))
+    journal.opened().people.save_person(PersonRow("ANNA", 3, b"salt", b"hash")).result()
     access = hands.desk.access
     access.reload()
     hands.key(Key.Key_F4)
@@ -427,7 +427,7 @@ def test_the_count_is_corrected_by_hand(hands: Hands, journal: Journal) -> None:
     hands.key(Key.Key_F2)
     hands.key(Key.Key_F3)
     hands.sees(lambda: cells(page, 0) == ("PARTS MADE", "1"))
-    hands.sees(lambda: journal.parts("pin.nc") == 1)
+    hands.sees(lambda: journal.runs.count_parts("pin.nc") == 1)
 
 
 def test_the_count_of_no_program_is_not_corrected(hands: Hands) -> None:

@@ -139,7 +139,7 @@ def test_a_control_that_comes_up_with_a_full_disk_keeps_its_parts_later(
     while journal.trouble:
         tick.wait(0.01)
     journal.save_version("pin.nc", b"M30", "so that all is written")
-    assert journal.parts("pin.nc") == 20
+    assert journal.runs.count_parts("pin.nc") == 20
     journal.close()
 
 

@@ -26,7 +26,7 @@ def load(journal: Journal, path: Path) -> None:
 def made(journal: Journal, path: Path, parts: int, seconds: float) -> None:
     """Load, prove and run it."""
     load(journal, path)
-    journal.program_proved(path.name, "PROVED", seconds, load_source(path).text)
+    journal.runs.record_proof(path.name, "PROVED", seconds, load_source(path).text)
     store = journal.opened()
     for _ in range(parts):
         store.runs.add_parts(path.name)
@@ -54,12 +54,12 @@ def test_another_text_under_the_same_name_has_no_proof_count_or_time(own: Path, 
     path.write_text(BAD)
     run = listed(journal, own)["pin.nc"].run
     assert (run.proof, run.parts, run.best, run.started) == ("", 0, None, None)
-    assert journal.parts("pin.nc") == 3  # of the text that is still loaded
+    assert journal.runs.count_parts("pin.nc") == 3  # of the text that is still loaded
     load(journal, path)
-    assert journal.parts("pin.nc") == 0
+    assert journal.runs.count_parts("pin.nc") == 0
     path.write_text(GOOD)  # the first text again
     load(journal, path)
-    assert journal.parts("pin.nc") == 3
+    assert journal.runs.count_parts("pin.nc") == 3
     journal.close()
 
 
@@ -72,9 +72,9 @@ def test_a_copy_and_a_renamed_program_retain_them(own: Path, tmp_path: Path) -> 
     journal.renamed("pin.nc", "bolt.nc")
     for program in listed(journal, own).values():
         assert (program.run.proof, program.run.parts, program.run.best) == ("PROVED", 2, 9.0)
-    assert journal.parts("bolt.nc") == 2
+    assert journal.runs.count_parts("bolt.nc") == 2
     load(journal, own / "copy.nc")
-    assert journal.parts("copy.nc") == 2
+    assert journal.runs.count_parts("copy.nc") == 2
     journal.close()
 
 
@@ -82,7 +82,7 @@ def test_a_proof_of_another_text_is_not_that_of_the_loaded_one(own: Path, tmp_pa
     journal, path = Journal(tmp_path / "store"), own / "pin.nc"
     path.write_text(GOOD)
     made(journal, path, 1, 9.0)
-    journal.program_proved("pin.nc", "1 ERRORS: Q", None, BAD)
+    journal.runs.record_proof("pin.nc", "1 ERRORS: Q", None, BAD)
     journal.opened().settings.save_setting("done", 1).result(60)
     assert listed(journal, own)["pin.nc"].run.proof == "PROVED"
     path.write_text(BAD)

@@ -10,7 +10,7 @@ from contextlib import closing
 from pathlib import Path
 
 from app.desk.data_folder import data_folder
-from app.desk.persistence import Persistence
+from app.desk.persistence import NoRunRecords, Persistence
 from app.offsets.offset_book import OffsetBook, OffsetRows, rows_of_store
 from app.production.cycle_recorder import CycleRecorder
 from app.production.parts_book import PartsBook
@@ -18,19 +18,21 @@ from app.programs.run_history import note_cut_off_runs
 from core.executor.snapshot import Event, InterruptedJob, of_plain, plain
 from core.language.source import Source
 from core.message import Message
-from core.store import backup, people, store_connection
+from core.store import backup, store_connection
 from core.store.backup import Verdict, verdict
 from core.store.damaged_rows import OF_PROGRAMS
-from core.store.people import People, PersonRow
+from core.store.people import People
+from core.store.production.run_records import RunRecords
 from core.store.store import Store
 from core.store.store_access import Backlog
 from core.store.store_errors import StoreError
 from core.store.store_file import FILE_NAME, has_store
-from core.store.store_rows import EventRow, Kind, RunRow, ToolRow, VersionRow
+from core.store.store_rows import EventRow, Kind, ToolRow, VersionRow
 
 _log = logging.getLogger(__name__)
 HELD = 10_000  # events that are kept back while there is no store
 UNDER_WAY = "under_way"  # setting: what a power cut would leave interrupted
+CLOSED = "the data store is closed"
 AGAIN = 5.0  # s between two tries to open a store
 
 
@@ -228,6 +230,12 @@ class Journal(Persistence):
             _log.warning("access: %s (%s)", text, who)
         self._post(lambda store: store.events.log_event("access", text, who=who))
 
+    @property
+    def runs(self) -> RunRecords | NoRunRecords:
+        """Return the run records of the store that is open now."""
+        store = self._store
+        return store.runs if store is not None else NoRunRecords(self._trouble or CLOSED)
+
     def people(self) -> People:
         """Who works at the machine, also by a store that another process writes. Raises StoreError."""
         store = self._store
@@ -236,64 +244,15 @@ class Journal(Persistence):
         with Store.open(self._folder, read_only=True) as other:
             return other.people.read_people()
 
-    def keep_person(self, row: PersonRow) -> None:
-        """Back when it is on the disk. Raises StoreError."""
-        self.opened().write(lambda c: people.keep_person(c, row)).result()
-
-    def remove_person(self, name: str) -> None:
-        """Back when it is on the disk. Raises StoreError."""
-        self.opened().write(lambda c: people.remove_person(c, name)).result()
-
-    def remove_people(self) -> None:
-        """Back when it is on the disk. Raises StoreError."""
-        self.opened().write(people.remove_all).result()
-
-    def parts(self, program: str) -> int:
-        """Parts counted of this program."""
-        store = self._store
-        return store.runs.count_parts(program) if store else 0
-
-    def correct_parts(self, program: str, by: int) -> None:
-        """Post parts added or taken away by hand."""
-        self._post(lambda store: store.runs.add_parts(program, by))
-
-    def reset_parts(self, program: str) -> None:
-        """Post its count to nought."""
-        self._post(lambda store: store.runs.reset_parts(program))
-
     def events(self, search: str, kinds: Collection[str], limit: int) -> tuple[EventRow, ...]:
         """The log, newest first."""
         return self.opened().events.read_events(search, limit, kinds)
-
-    def runs(self) -> tuple[RunRow, ...]:
-        """What each program has done."""
-        return self.opened().runs.read_records()
-
-    def runs_by_text(self) -> Mapping[str, RunRow]:
-        """Return what each program text has done, by its record key."""
-        return self.opened().runs.read_records_by_text()
 
     def tools_of_last_run(self, program: str) -> tuple[str, dict[int, ToolRow]]:
         """When it was started last (UTC), and its tools as they were then; on a worker. Raises StoreError."""
         store = self.opened()
         started = next((row.started for row in store.runs.read_records() if row.program == program), None)
         return (started, store.offsets.tools.read_rows_at(started)) if started is not None else ("", {})
-
-    def run_started(self, program: str) -> None:
-        """Post that a run begins."""
-        self._post(lambda store: store.runs.record_start(program))
-
-    def run_ended(self, program: str, outcome: str) -> None:
-        """Post how it ended."""
-        self._post(lambda store: store.runs.record_end(program, outcome))
-
-    def cycle_finished(self, program: str, seconds: float) -> None:
-        """Post one whole cycle."""
-        self._post(lambda store: store.runs.record_cycle(program, seconds))
-
-    def program_proved(self, program: str, result: str, planned: float | None, text: str) -> None:
-        """Post what proving found."""
-        self._post(lambda store: store.runs.record_proof(program, result, planned, text))
 
     def renamed(self, old: str, new: str) -> None:
         """Versions, count and record go with the program; back when that is on the disk."""
@@ -382,7 +341,7 @@ class Journal(Persistence):
         """The store of this moment: another after a restore. Raises StoreError while there is none."""
         store = self._store
         if store is None:
-            raise StoreError(self._trouble or "the data store is closed")
+            raise StoreError(self._trouble or CLOSED)
         return store
 
     def close(self) -> str:

@@ -70,7 +70,8 @@ class SignIn:
         right = is_pin(pin, kept)
         if right and is_outdated(kept):
             with suppress(StoreError):  # the next time that a PIN is entered it is tried again
-                self.access.persistence.keep_person(PersonRow(row.name, row.level, *hashed(pin)))
+                renewed = PersonRow(row.name, row.level, *hashed(pin))
+                self.access.persistence.opened().people.save_person(renewed).result()
         return right
 
     def _tried(self, row: PersonRow, right: bool) -> None:
