@@ -1,4 +1,4 @@
-"""The data store: one SQLite file that is read at once and written by its own thread."""
+"""The data store: one SQLite file, read from any thread and written by a thread of its own."""
 
 from __future__ import annotations
 
@@ -160,7 +160,7 @@ class Store:
         return self._writer
 
     def keep_latest(self, key: tuple[str, str], operation: Operation[object]) -> Future[None]:
-        """Do the same with an operation that replaces a waiting operation under the same ``key``."""
+        """Store an operation as ``keep`` does. It replaces a waiting operation under the same ``key``."""
         return self.keep(lambda unwritten: unwritten.latest(key, operation))
 
 

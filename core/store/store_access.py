@@ -21,16 +21,15 @@ Operation = Callable[[sqlite3.Connection], T]
 
 @dataclass(frozen=True, slots=True)
 class Backlog:
-    """The number of entries that wait in memory for the disk, and the reason in ``why``."""
+    """The numbers of entries that wait in memory for the disk, and the reason (``why``)."""
 
     why: str
     events: int = 0
     parts: int = 0
     others: int = 0
     dropped: int = 0  # events for which there was no room in memory either
-    counts: Mapping[str, tuple[bool, int]] = field(
-        default_factory=dict
-    )  # by program: put to nought first, and so many more
+    # By program: whether the count is set to zero first, and the parts to add.
+    counts: Mapping[str, tuple[bool, int]] = field(default_factory=dict)
 
     @property
     def words(self) -> str:
@@ -100,4 +99,4 @@ class StoreAccess(Protocol):
         """
 
     def keep_latest(self, key: tuple[str, str], operation: Operation[object]) -> Future[None]:
-        """Do the same with an operation that replaces a waiting operation under the same ``key``."""
+        """Store an operation as ``keep`` does. It replaces a waiting operation under the same ``key``."""
