@@ -260,7 +260,7 @@ def changed(machine: Machine) -> tuple[Change, ...]:
     from app.compose.machine.accepted_machine import differences
 
     with opened_store(read_only=True) as store:
-        return differences(machine, store) or ()
+        return differences(machine, store.settings) or ()
 
 
 def demand_accepted(machine: Machine) -> None:
@@ -309,11 +309,11 @@ def accept(file: str, args: argparse.Namespace) -> int:
 
     machine = read_machine(file)
     with opened_store() as store:
-        told, who = differences(machine, store), who_changes(store, args, Act.MACHINE_FILE)
-        store.set_setting(key_of(machine), record_of(machine)).result()
+        told, who = differences(machine, store.settings), who_changes(store, args, Act.MACHINE_FILE)
+        store.settings.save_setting(key_of(machine), record_of(machine)).result()
         said = "; ".join(str(change) for change in told or ())
         by = "" if who == COMMAND_LINE else f" by {who}"
-        store.log_event(
+        store.events.log_event(
             "machine",
             Message(
                 "machine file {source} accepted{name}{ending}{text}",

@@ -50,7 +50,7 @@ def demand_meant(store: Store, args: argparse.Namespace, changes: Changes) -> No
     The store refuses values out of their range itself.
     """
     travel = _machine_travel(store, args)
-    tables = {kind: store.offsets(kind) for kind in changes}
+    tables = {kind: store.offsets.table(kind).read_rows() for kind in changes}
     found = {kind: suspicions_of(kind, tables[kind], rows, travel) for kind, rows in changes.items()}
     beyond = {kind: _only_travel(each) for kind, each in found.items() if _only_travel(each)}
     if beyond:
@@ -81,7 +81,7 @@ def _machine_travel(store: Store, args: argparse.Namespace) -> Travel:
     """Return the travel of the machine of this command, mm. Raises CommandError for a bad machine file."""
     from app.compose.machine.machine_setup import machine_in_use, read_machine
 
-    return travel_of(read_machine(args.machine) if args.machine else machine_in_use(store))
+    return travel_of(read_machine(args.machine) if args.machine else machine_in_use(store.settings))
 
 
 def _described(found: Mapping[Kind, tuple[Suspicion, ...]], tools: Iterable[int]) -> str:

@@ -20,7 +20,7 @@ from core.message import Message
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
     from core.store.store import Store
-    from core.store.store_rows import SecondaryRow, ToolRow
+    from core.store.store_rows import Row, Value
 
 
 def add_parser(subparsers: SubParsers) -> None:
@@ -118,6 +118,7 @@ def _export(args: argparse.Namespace) -> int:
 def _import(args: argparse.Namespace) -> int:
     from app.offsets.offsets_file import read_rows, read_shape_rows
     from core.store import store_export
+    from core.store.offsets.offset_tables import Reason
     from core.store.store_rows import Kind
 
     folder = Path(args.path)
@@ -127,10 +128,17 @@ def _import(args: argparse.Namespace) -> int:
     with opened_store() as store:
         programs = store_export.program_files(folder)
         mill, why = store_export.mill_rows(folder), Message("import from {folder}", folder=folder.name)
+        offsets: Changes = {
+            Kind.TOOL: _values_of(tools),
+            Kind.SECONDARY: _values_of(secondary),
+            Kind.ZERO: _values_of(zero),
+            Kind.SHAPE: _values_of(shapes),
+            **mill,
+        }
         named = who_changes(store, args, Act.RESTORE)
-        demand_meant(store, args, {**_values_of(tools, secondary), **mill})
+        demand_meant(store, args, {kind: offsets[kind] for kind in (Kind.TOOL, Kind.SECONDARY, *mill)})
         who = "import" if named == COMMAND_LINE else named
-        store.import_all(programs, tools, secondary, why, zero, shapes, mill, who=who).result()
+        store.write(lambda c: store_export.import_all(c, programs, offsets, Reason(why, who))).result()
     counts: str = Message(
         "{programs_count}, tool offsets: {tools_count}, secondary offsets: {secondary_count}",
         programs_count=len(programs),
@@ -147,14 +155,9 @@ def _import(args: argparse.Namespace) -> int:
     return EXIT_OK
 
 
-def _values_of(tools: Mapping[int, ToolRow], secondary: Mapping[int, SecondaryRow]) -> Changes:
+def _values_of(rows: Mapping[int, Row]) -> dict[int, Mapping[str, Value]]:
     """Return the imported rows as changes of all their fields."""
-    from core.store.store_rows import Kind
-
-    return {
-        Kind.TOOL: {number: row._asdict() for number, row in tools.items()},
-        Kind.SECONDARY: {number: row._asdict() for number, row in secondary.items()},
-    }
+    return {number: row._asdict() for number, row in rows.items()}
 
 
 def _upgrade(_args: argparse.Namespace) -> int:

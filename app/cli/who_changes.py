@@ -42,7 +42,7 @@ def who_changes(store: Store, args: argparse.Namespace, *acts: Act) -> str:
 
     Raises CommandError where levels are on and his is too low for one of it, or the PIN wrong.
     """
-    people, act = store.people(), max(acts, key=level_for)
+    people, act = store.people.read_people(), max(acts, key=level_for)
     if not people.on:
         return args.as_name or COMMAND_LINE
     name, needed = args.as_name or getpass.getuser(), level_for(act)
@@ -95,7 +95,7 @@ def _demand_pin(store: Store, row: PersonRow) -> None:
     """Raises CommandError for a wrong one, and where this TurnDesk cannot check PINs."""
     from app.compose.extra import extras
 
-    remedy = _remedy(store.people(), Level.SERVICE)
+    remedy = _remedy(store.people.read_people(), Level.SERVICE)
     if not any(extra.demand_pin(store, row, remedy) for extra in extras().values()):
         raise CommandError(
             Message(
@@ -124,7 +124,7 @@ def who_may(opened: Opened, args: argparse.Namespace, *acts: Act) -> str:
 
     try:
         with Store.open(data_folder(), read_only=True) as store:
-            on = store.people().on
+            on = store.people.read_people().on
     except StoreError as error:
         if error_code(error) != "older-version":
             return _by_service_reset(error, acts)
@@ -172,4 +172,4 @@ def note_change(opened: Opened, who: str, text: str) -> None:
     """A line in the log of the store that is in place now, where it is known by whom."""
     if who:
         with opened() as store:
-            store.log_event("change", text, who=who).result()
+            store.events.log_event("change", text, who=who).result()

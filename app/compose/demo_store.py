@@ -16,10 +16,12 @@ from app.desk.screen_settings import KEY as SCREEN
 from app.offsets.offsets_file import read_rows
 from core.language.source import Dialect, dialect_of
 from core.message import Message
+from core.store.offsets.offset_tables import Reason
 from core.store.store import Store
 from core.store.store_errors import StoreError
+from core.store.store_export import import_all
 from core.store.store_file import has_store
-from core.store.store_rows import Kind
+from core.store.store_rows import Kind, Value
 
 FOLDER = "demo"  # within the data folder
 _WHY = "offsets of the sample programs"
@@ -65,7 +67,7 @@ def demo_program(machine_file: str | None) -> str:
 def _last_program() -> Path | None:
     """Return the program that the demo loaded last, if its file exists. Its store is in the data folder."""
     with suppress(StoreError, OSError), Store.open(data_folder(), read_only=True) as store:
-        stored = store.setting(LAST_PROGRAM)
+        stored = store.settings.read_setting(LAST_PROGRAM)
         if isinstance(stored, str) and Path(stored).is_file():
             return Path(stored)
     return None
@@ -73,14 +75,17 @@ def _last_program() -> Path | None:
 
 def _seed(folder: Path) -> None:
     tools, secondary, zero = read_rows(samples() / "offsets.toml")
+    lengths = {n: row for n, row in tools.items() if row.x == 0.0 and row.z > 0.0}  # of the mills' tools
+    offsets: dict[Kind, dict[int, dict[str, Value]]] = {
+        Kind.TOOL: {number: row._asdict() for number, row in tools.items()},
+        Kind.SECONDARY: {number: row._asdict() for number, row in secondary.items()},
+        Kind.ZERO: {code: row._asdict() for code, row in zero.items()},
+        Kind.MILL_TOOL: {n: {"length": row.z, "radius": row.nose_radius} for n, row in lengths.items()},
+    }
     try:
         with Store.open(folder) as store:
-            store.import_all({}, tools, secondary, _WHY, zero).result()
-            for number, row in tools.items():
-                if row.x == 0.0 and row.z > 0.0:  # a length: the file has mills' tools so
-                    values = {"length": row.z, "radius": row.nose_radius}
-                    store.set_offset(Kind.MILL_TOOL, number, _WHY, values).result()
-            store.set_setting(SCREEN, {"first_job": True}).result()
+            store.write(lambda c: import_all(c, {}, offsets, Reason(_WHY, "import"))).result()
+            store.settings.save_setting(SCREEN, {"first_job": True}).result()
     except StoreError as error:
         raise CommandError(
             Message("the data folder of the demo cannot be used: {error}", error=error), "no-demo-store"

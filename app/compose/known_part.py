@@ -22,7 +22,7 @@ from core.proving.program_tools import PartSetting
 from core.store.store_file import has_store
 
 if TYPE_CHECKING:
-    from core.store.store import Store
+    pass
 
 OF_MACHINE = "set by the machine file"
 
@@ -95,7 +95,7 @@ def kept_with_all(programs: Iterable[str]) -> dict[str, KeptPart]:
     from core.store.store import Store, StoreError
 
     with as_command_error(StoreError), Store.open(folder, read_only=True) as store:
-        found = {program: kept_part(store.setting, program) for program in programs}
+        found = {program: kept_part(store.settings.read_setting, program) for program in programs}
     return {program: kept for program, kept in found.items() if kept != NOTHING_KEPT}
 
 
@@ -104,11 +104,7 @@ def keep_stock(program: str, text: str, stick_out: float | None) -> None:
     from core.store.store import Store, StoreError
 
     with as_command_error(StoreError), Store.open(data_folder()) as store:
-        kept = replace(kept_part(store.setting, program), stock=text)
-        write(store, program, kept if stick_out is None else replace(kept, stick_out=stick_out))
-
-
-def write(store: Store, program: str, kept: KeptPart) -> None:
-    """Keep it, to the disk. Raises StoreError."""
-    for key, value in kept.settings(program).items():
-        store.set_setting(key, value).result()
+        kept = replace(kept_part(store.settings.read_setting, program), stock=text)
+        kept = kept if stick_out is None else replace(kept, stick_out=stick_out)
+        for key, value in kept.settings(program).items():
+            store.settings.save_setting(key, value).result()

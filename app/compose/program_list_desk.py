@@ -30,7 +30,7 @@ def program_list(
             else "PROVED"
         )
         planned = None if errors else proved.proof.cycle_time
-        persistence.program_proved(path.name, result, planned, job.source.text)
+        persistence.runs.record_proof(path.name, result, planned, job.source.text)
         return errors[0] if errors else ""
 
     worker = Latest("editing-programs")

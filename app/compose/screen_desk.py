@@ -415,7 +415,7 @@ def _desk(
     def left() -> Modal:
         return control.snapshot().modal
 
-    kept = partial(kept_part, keep.setting)
+    kept = partial(kept_part, keep.read_setting)
     changed = file_changes(machine, keep, partial(say, "machine"))
     desk = Desk(
         post=guarded(control.post, changed, partial(say, "refused")),

@@ -88,7 +88,7 @@ def stored_offsets() -> Offsets:
     from core.store.store import Store, StoreError
 
     with as_command_error(StoreError), Store.open(folder, read_only=True) as store:
-        damaged = store.damaged(OF_PROGRAMS, {PRESET, R_PARAMETERS})
+        damaged = store.find_damaged_rows(OF_PROGRAMS, {PRESET, R_PARAMETERS})
         if damaged:
             raise CommandError(damaged[0], "damaged-row")
         return offsets_of(store)
@@ -106,7 +106,7 @@ def stored_shapes() -> dict[int, ToolShape]:
     from core.store.store import Store, StoreError
 
     with as_command_error(StoreError), Store.open(folder, read_only=True) as store:
-        shapes, tools = store.shapes(), store.tools()
+        shapes, tools = store.offsets.shapes.read_rows(), store.offsets.tools.read_rows()
     if wrong := wrong_shapes(shapes, tools):
         way = "correct the shape on its page (F8) or with 'turndesk offsets set'"
         raise CommandError(
@@ -128,10 +128,12 @@ def shapes_at_hand() -> dict[int, ToolShape]:
 
 def offsets_of(store: Store) -> Offsets:
     """What an open store holds, by value."""
-    found, presets = _of_rows(store.tools(), store.secondary(), store.zero_offsets()), store.presets()
-    preset = preset_of(store.setting(PRESET), presets)
-    r = r_parameters(store.setting(R_PARAMETERS))
-    return found._replace(mill=MillOffsets(store.mill_tools(), presets, preset), r=r)
+    tables = store.offsets
+    found = _of_rows(tables.tools.read_rows(), tables.secondary.read_rows(), tables.zero.read_rows())
+    presets = tables.presets.read_rows()
+    preset = preset_of(store.settings.read_setting(PRESET), presets)
+    r = r_parameters(store.settings.read_setting(R_PARAMETERS))
+    return found._replace(mill=MillOffsets(tables.mill_tools.read_rows(), presets, preset), r=r)
 
 
 def read_offsets(path: Path) -> Offsets:

@@ -5,29 +5,72 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from core.store.backup import Verdict
-from core.store.people import People, PersonRow
+from core.store.people import People
 from core.store.store_errors import StoreError
 from core.store.store_rows import EventRow, RunRow
+
+if TYPE_CHECKING:
+    from core.store.production.run_records import RunRecords
+    from core.store.store import Store
 
 NOTHING_KEPT = "no data is being saved; start turndesk with a writable folder (TURNDESK_HOME)"
 
 
+@dataclass(frozen=True, slots=True)
+class NoRunRecords:
+    """The run records where no store is open: every record is dropped, and part counts are zero.
+
+    ``trouble`` is why no store is open; empty for scripts, which have no store.
+    """
+
+    trouble: str = ""
+
+    def read_records_by_text(self) -> Mapping[str, RunRow]:
+        """Return no records. Raise StoreError if the store could not be opened."""
+        if self.trouble:
+            raise StoreError(self.trouble)
+        return {}
+
+    def count_parts(self, _program: str) -> int:
+        """Return 0."""
+        return 0
+
+    def add_parts(self, program: str, count: int = 1) -> None:
+        """Drop the change of a part count."""
+
+    def reset_parts(self, program: str) -> None:
+        """Drop the change of a part count."""
+
+    def record_start(self, program: str) -> None:
+        """Drop the start of a run."""
+
+    def record_end(self, program: str, outcome: str) -> None:
+        """Drop the outcome of a run."""
+
+    def record_cycle(self, program: str, seconds: float) -> None:
+        """Drop the time of a cycle."""
+
+    def record_proof(self, program: str, result: str, planned: float | None, text: str | None = None) -> None:
+        """Drop the result of a proof."""
+
+
 @dataclass(slots=True)
 class Persistence:
-    """Settings, part counts, runs, versions and the event log.
+    """Settings, run records, versions, users and the event log.
 
-    This one is for scripts and a store that cannot be opened: settings live until the program ends, nothing
-    else is kept. Reading may raise StoreError; writing is posted and never waits. ``backup``, ``restore``,
-    ``keep_settings``, those of people, ``events``, ``runs`` and ``save_version`` take their time: they are
-    called on a worker.
+    This class is for scripts and for a store that cannot be opened: it keeps settings until the program
+    ends, and nothing else. Reading may raise StoreError; writing is posted and never waits. Call ``backup``,
+    ``restore``, ``keep_settings``, ``events`` and ``save_version``, and wait for changes of ``opened``, on a
+    worker only.
     """
 
     settings: dict[str, object] = field(default_factory=dict)
     who: Callable[[], str] = str  # has signed in; empty: there are no levels
 
-    def setting(self, key: str) -> object:
+    def read_setting(self, key: str) -> object:
         """What was kept under this name; None: nothing."""
         return self.settings.get(key)
 
@@ -50,55 +93,22 @@ class Persistence:
     def note_access(self, text: str, who: str) -> None:
         """A line of the log about levels: who has signed in, which PIN was wrong."""
 
+    @property
+    def runs(self) -> RunRecords | NoRunRecords:
+        """Return the run records of the store that is open now. A restore opens another store."""
+        return NoRunRecords()
+
+    def opened(self) -> Store:
+        """Return the store that is open now. Raise StoreError if no store is open."""
+        raise StoreError(NOTHING_KEPT, "nothing-stored")
+
     def people(self) -> People:
         """Who works at the machine. Raises StoreError."""
         return People()
 
-    def keep_person(self, _row: PersonRow) -> None:
-        """Somebody new, or another PIN; on a worker. Raises StoreError."""
-        raise StoreError(NOTHING_KEPT, "nothing-stored")
-
-    def remove_person(self, _name: str) -> None:
-        """He works here no more; on a worker. Raises StoreError."""
-        raise StoreError(NOTHING_KEPT, "nothing-stored")
-
-    def remove_people(self) -> None:
-        """Nobody is entered any more: there are no levels; on a worker. Raises StoreError."""
-        raise StoreError(NOTHING_KEPT, "nothing-stored")
-
-    def parts(self, _program: str) -> int:
-        """Parts counted of this program."""
-        return 0
-
-    def correct_parts(self, program: str, by: int) -> None:
-        """Parts added or taken away by hand."""
-
-    def reset_parts(self, program: str) -> None:
-        """Put the part count of this program to nought."""
-
     def events(self, _search: str, _kinds: Collection[str], _limit: int) -> Sequence[EventRow]:
         """The log, newest first; no ``kinds``: all."""
         return ()
-
-    def runs(self) -> Sequence[RunRow]:
-        """What each program has done."""
-        return ()
-
-    def runs_by_text(self) -> Mapping[str, RunRow]:
-        """Return what each program text has done, by ``program_texts.key_of_text``. Raises StoreError."""
-        return {}
-
-    def run_started(self, program: str) -> None:
-        """Note in the record that a run of this program begins."""
-
-    def run_ended(self, program: str, outcome: str) -> None:
-        """Note in the record how the run of this program ended."""
-
-    def cycle_finished(self, program: str, seconds: float) -> None:
-        """Note the cycle time of one whole cycle, in seconds."""
-
-    def program_proved(self, program: str, result: str, planned: float | None, text: str) -> None:
-        """Store what proving found in this text; ``planned`` is the forecast cycle time in seconds."""
 
     def renamed(self, old: str, new: str) -> None:
         """Versions, count and record go with a program that gets another name."""

@@ -67,7 +67,7 @@ class SettingsBook:
     def reload(self) -> None:
         """Read what is kept; where that cannot be read the screen still has settings."""
         try:
-            kept = self.persistence.setting(KEY)
+            kept = self.persistence.read_setting(KEY)
         except StoreError:
             kept = None
         found = kept if isinstance(kept, dict) else {}

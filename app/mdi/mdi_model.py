@@ -44,7 +44,7 @@ class MdiLine:
     def reload(self) -> None:
         """Read the history that is kept; what is no list of lines is forgotten."""
         try:
-            kept = self.persistence.setting(KEY)
+            kept = self.persistence.read_setting(KEY)
         except StoreError:
             kept = None
         lines = kept if isinstance(kept, list) else []

@@ -48,15 +48,16 @@ class OffsetRows(NamedTuple):
 
 def rows_of_store(store: Store) -> OffsetRows:
     """Read all offsets. Raises StoreError."""
-    presets = store.presets()
+    tables = store.offsets
+    presets = tables.presets.read_rows()
     return OffsetRows(
-        store.tools(),
-        store.secondary(),
-        store.zero_offsets(),
-        store.shapes(),
-        store.mill_tools(),
+        tables.tools.read_rows(),
+        tables.secondary.read_rows(),
+        tables.zero.read_rows(),
+        tables.shapes.read_rows(),
+        tables.mill_tools.read_rows(),
         presets,
-        preset_of(store.setting(PRESET), presets),
+        preset_of(store.settings.read_setting(PRESET), presets),
     )
 
 
@@ -108,7 +109,7 @@ class OffsetBook:
 
     def history(self, kind: Kind, limit: int = 200) -> tuple[Change, ...]:
         """The last changes, newest first; none where there is no store to remember them."""
-        return () if self.store is None else self.store.history(kind, limit)
+        return () if self.store is None else self.store.offsets.table(kind).read_history(limit)
 
     def read(self) -> None:
         """Take the values of the store; it answers at once, also while it is being written."""
@@ -135,16 +136,21 @@ class OffsetBook:
     def change(self, kind: Kind, number: int, values: Mapping[str, Value], why: str) -> str:
         """Save some fields of an offset and keep the rest."""
         return self._post(
-            act_of(kind, values), lambda store, who: store.set_offset(kind, number, why, values, who=who)
+            act_of(kind, values),
+            lambda store, who: store.offsets.table(kind).change_row(number, why, values, who=who),
         )
 
     def touch_off(self, number: int, touch: Touch, why: str) -> str:
         """Set a tool by what it touched; with the master all others follow."""
-        return self._post(Act.TOOLS, lambda store, who: store.touch_off(number, touch, why, who=who))
+        return self._post(
+            Act.TOOLS, lambda store, who: store.offsets.tools.touch_off(number, touch, why, who=who)
+        )
 
     def choose_master(self, number: int, why: str) -> str:
         """Make this tool the master; 0: no tool is."""
-        return self._post(Act.TOOLS, lambda store, who: store.choose_master(number, why, who=who))
+        return self._post(
+            Act.TOOLS, lambda store, who: store.offsets.tools.choose_master(number, why, who=who)
+        )
 
     def choose_preset(self, number: int) -> str:
         """Another preset is in force; 0: that of the machine file."""
@@ -154,25 +160,31 @@ class OffsetBook:
             self.access.persistence.note_change(
                 Message("active preset: {before} → {number}", before=before, number=number)
             )
-            return store.set_setting(PRESET, number)
+            return store.settings.save_setting(PRESET, number)
 
         return self._post(Act.PRESETS, choose)
 
     def remove_shape(self, number: int, why: str) -> str:
         """A tool without a shape again."""
-        return self._post(Act.SHAPES, lambda store, who: store.remove_shape(number, why, who=who))
+        return self._post(
+            Act.SHAPES, lambda store, who: store.offsets.shapes.remove_row(number, why, who=who)
+        )
 
     def clear(self, kind: Kind, why: str) -> str:
         """All offsets of this kind at once."""
-        return self._post(act_of(kind), lambda store, who: store.clear_offsets(kind, why, who=who))
+        return self._post(
+            act_of(kind), lambda store, who: store.offsets.table(kind).remove_all_rows(why, who=who)
+        )
 
     def undoable(self, kind: Kind, number: int | None) -> tuple[Change, ...]:
         """Return what undo would take back; None: the last step of the table. Raises StoreError."""
-        return () if self.store is None else self.store.undoable(kind, number)
+        return () if self.store is None else self.store.offsets.table(kind).find_undoable(number)
 
     def undo(self, kind: Kind, number: int | None, step: int) -> str:
         """Take exactly this step back."""
-        return self._post(act_of(kind), lambda store, who: store.undo_step(kind, number, step, who=who))
+        return self._post(
+            act_of(kind), lambda store, who: store.offsets.table(kind).undo_step(number, step, who=who)
+        )
 
     def barred(self, act: Act) -> str:
         """Return why this change cannot be posted now; empty if it can."""

@@ -123,7 +123,7 @@ class PartSheet:
 
     def _read(self) -> None:
         try:
-            self.kept = kept_part(self.keep.setting, self.name)
+            self.kept = kept_part(self.keep.read_setting, self.name)
         except StoreError as error:
             self.kept = NOTHING_KEPT
             self.desk.refuse(str(error))

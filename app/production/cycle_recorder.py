@@ -7,9 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from core.executor.snapshot import Event, State
-from core.store.production import part_cycles
-from core.store.production.part_cycles import CycleRow, StopRow
-from core.store.store import Store
+from core.store.production.part_cycles import CycleRecords, CycleRow, StopRow
 from core.store.store_rows import utc_now
 
 COMPLETE, UNCOUNTED, GIVEN_UP, RESTARTED = "COMPLETE", "NOT COUNTED", "GIVEN UP", "RESTARTED"
@@ -51,31 +49,31 @@ class CycleRecorder:
         self._reason = ""  # told before the machine stood
         self._numbered = 0
 
-    def hear(self, event: Event, store: Store) -> None:
+    def hear(self, event: Event, cycles: CycleRecords) -> None:
         """One event."""
         if event.kind == "load":
             self._program = Path(event.text).name
         elif event.kind in {"start", "repeat"}:
-            self._end_stop(event, store)
-            self._begin(event, store)
+            self._end_stop(event, cycles)
+            self._begin(event, cycles)
         elif event.kind == "restart" and self._cycle is not None:
             self._cycle.restarted = True
         elif event.kind == "state":
-            self._state(event, store)
+            self._state(event, cycles)
         elif event.kind in {"stop", "alarm", "estop"} and event.alarm is not None:
             self._name(event.alarm.text)
         elif event.kind in {"part", "uncounted"}:
-            self._end(event, store, COMPLETE if event.kind == "part" else UNCOUNTED)
+            self._end(event, cycles, COMPLETE if event.kind == "part" else UNCOUNTED)
         elif event.kind == "end":
-            self._end(event, store, GIVEN_UP)  # behind a part nothing is left to end
+            self._end(event, cycles, GIVEN_UP)  # behind a part nothing is left to end
             if self._stop is None or self._stop.row.cycle:
-                self._end_stop(event, store)
+                self._end_stop(event, cycles)
                 self._begin_stop(event, BETWEEN, named=True)
 
-    def go_on(self, program: str, t: float, store: Store) -> None:
+    def go_on(self, program: str, t: float, cycles: CycleRecords) -> None:
         """Record the rest of a part that was begun before this process; it counts as restarted."""
         self._program = Path(program).name
-        self._begin(Event(t, "start", program), store)
+        self._begin(Event(t, "start", program), cycles)
         assert self._cycle is not None
         self._cycle.restarted = True
 
@@ -86,12 +84,12 @@ class CycleRecorder:
         now = self._now()
         return f"{now}#{self._numbered}", now
 
-    def _begin(self, event: Event, store: Store) -> None:
+    def _begin(self, event: Event, cycles: CycleRecords) -> None:
         key, now = self._key()
         self._cycle = _Cycle(CycleRow(key, self._program, 0, now), event.t)
-        self._save(store, self._cycle.row)
+        cycles.record_cycle(self._cycle.row)
 
-    def _end(self, event: Event, store: Store, outcome: str) -> None:
+    def _end(self, event: Event, cycles: CycleRecords, outcome: str) -> None:
         cycle, self._cycle = self._cycle, None
         if cycle is None:
             return
@@ -103,39 +101,33 @@ class CycleRecorder:
         row = cycle.row._replace(
             part=event.part, ended=self._now(), seconds=seconds, outcome=outcome, load=event.load
         )
-        self._save(store, row)
-
-    @staticmethod
-    def _save(store: Store, row: CycleRow) -> None:
-        store.keep(
-            lambda unwritten: unwritten.latest(("cycle", row.key), lambda c: part_cycles.save_cycle(c, row))
-        )
+        cycles.record_cycle(row)
 
     # --- stops --------------------------------------------------------------------------------------------
 
-    def _state(self, event: Event, store: Store) -> None:
+    def _state(self, event: Event, cycles: CycleRecords) -> None:
         cycle = self._cycle
         if event.text in _BROKEN:
-            self._break(event, store)
+            self._break(event, cycles)
         elif cycle is None:
             return
         elif event.text in _STANDS and self._stop is None:
             self._begin_stop(event, self._reason or event.text, named=bool(self._reason))
         elif event.text in _GOES:
-            self._go(cycle, event, store)
+            self._go(cycle, event, cycles)
 
-    def _go(self, cycle: _Cycle, event: Event, store: Store) -> None:
+    def _go(self, cycle: _Cycle, event: Event, cycles: CycleRecords) -> None:
         if event.text != State.HOLDING.value:
             self._reason = ""
         if self._stop is not None:
             cycle.stood += event.t - self._stop.began
-            self._end_stop(event, store)
+            self._end_stop(event, cycles)
 
-    def _break(self, event: Event, store: Store) -> None:
+    def _break(self, event: Event, cycles: CycleRecords) -> None:
         """An alarm or the E-stop: the cycle is over, and production stands until the next start."""
-        self._end(event, store, event.text)
+        self._end(event, cycles, event.text)
         if self._stop is not None and self._stop.row.reason == BETWEEN:
-            self._end_stop(event, store)
+            self._end_stop(event, cycles)
         if self._stop is None:
             self._begin_stop(event, self._reason or event.text, named=bool(self._reason))
 
@@ -145,14 +137,12 @@ class CycleRecorder:
         self._stop = _Stop(StopRow(key, cycle, self._program, now, 0.0, reason, event.line), event.t, named)
         self._reason = ""
 
-    def _end_stop(self, event: Event, store: Store) -> None:
+    def _end_stop(self, event: Event, cycles: CycleRecords) -> None:
         stop, self._stop, self._reason = self._stop, None, ""
         if stop is None:
             return
         row = stop.row._replace(seconds=max(0.0, event.t - stop.began))
-        store.keep(
-            lambda unwritten: unwritten.latest(("stop", row.key), lambda c: part_cycles.save_stop(c, row))
-        )
+        cycles.record_stop(row)
 
     def _name(self, reason: str) -> None:
         """The reason of the stop that stands, or of the one that is to come."""

@@ -16,9 +16,9 @@ from core.store.production import part_cycles, tool_lives
 from core.store.production.part_cycles import StopRow
 from core.store.production.tool_lives import LifeRow
 from core.store.store import Store
+from core.store.store_access import Operation
 from core.store.store_errors import StoreError
 from core.store.store_rows import Kind
-from core.store.store_writer import Operation
 
 NONE_KEPT = "MEASURED PARTS CANNOT BE SAVED: NO DATA STORE"
 Read = Callable[[Store, str], Any]
@@ -181,9 +181,7 @@ class PartsBook:
         store = self.store
         if store is not None:
             use = (life.number, life.parts, life.seconds, self.tools)
-            store.keep(
-                lambda held: held.latest(("life", str(life.number)), lambda c: tool_lives.set_use(c, *use))
-            )
+            store.keep_latest(("life", str(life.number)), lambda c: tool_lives.set_use(c, *use))
 
     def reopen(self, store: Store | None, trouble: str) -> None:
         """Another store is in the place of the one before. From any thread."""

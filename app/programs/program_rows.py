@@ -51,7 +51,7 @@ def list_programs(
     It reads every file whose text is not known yet: call it on a worker. Raises StoreError when the store
     cannot be read.
     """
-    runs = persistence.runs_by_text()
+    runs = persistence.runs.read_records_by_text()
     found = []
     for entry in (*program_folders.entries(), *program_folders.drawings()):
         if (status := _status(entry.path)) is not None:

@@ -14,7 +14,7 @@ from app.desk.translation import tr
 from core.executor.commands import Command, PartsMade, SetSwitch
 from core.executor.snapshot import Snapshot, State
 from core.message import Message
-from core.store.store import Store
+from core.store.production.run_records import RunRecords
 from core.store.store_errors import StoreError
 
 COMPLETE, UNCOUNTED, GIVEN_UP, ESTOP = "COMPLETE", "NOT COUNTED", "GIVEN UP", "E-STOP"
@@ -48,9 +48,9 @@ class RunHistory:
         name = Path(snapshot.program).name
         if parts is not None and snapshot.parts > parts and name:
             if snapshot.timed > self._timed:
-                self.persistence.cycle_finished(name, snapshot.last_cycle)
+                self.persistence.runs.record_cycle(name, snapshot.last_cycle)
             if not self.running:
-                self.persistence.run_started(name)
+                self.persistence.runs.record_start(name)
             self._end(name, COMPLETE)
         elif parts is not None and snapshot.ends > self._ends and self.running:
             self._end(name, UNCOUNTED)
@@ -60,13 +60,13 @@ class RunHistory:
         under_way = snapshot.state in _RUNNING and snapshot.block > 0 and snapshot.lines == self._lines
         if under_way and not self.running and name:
             self.running = name
-            self.persistence.run_started(name)
+            self.persistence.runs.record_start(name)
         elif self.running and snapshot.state not in _RUNNING:
             self._end(self.running, _outcome(snapshot))
 
     def _end(self, name: str, outcome: str) -> None:
         self.running = ""
-        self.persistence.run_ended(name, outcome)
+        self.persistence.runs.record_end(name, outcome)
 
     def _proof(self, loaded: Loaded) -> None:
         if loaded is self._loaded:
@@ -77,7 +77,7 @@ class RunHistory:
         errors, name, text = len(loaded.errors), loaded.path.name, loaded.source.text
         if loaded.phase is Phase.REFUSED:
             first = loaded.errors[0].message if errors else ""
-            self.persistence.program_proved(
+            self.persistence.runs.record_proof(
                 name,
                 Message("{errors_count} ERRORS: {errors}", errors_count=max(errors, 1), errors=first),
                 None,
@@ -85,7 +85,7 @@ class RunHistory:
             )
         else:
             planned = loaded.proof.cycle_time if loaded.proof else None
-            self.persistence.program_proved(name, "PROVED", planned, text)
+            self.persistence.runs.record_proof(name, "PROVED", planned, text)
 
 
 def _outcome(snapshot: Snapshot) -> str:
@@ -96,9 +96,11 @@ def _outcome(snapshot: Snapshot) -> str:
     return GIVEN_UP
 
 
-def note_cut_off_runs(store: Store) -> None:
+def note_cut_off_runs(runs: RunRecords) -> None:
     """At the start, when nothing runs yet: a run without an end is one that the control did not outlive."""
-    told = store.runs_cut_off(CUT_OFF, "{program}: the control shut down during the last run of this program")
+    told = runs.end_cut_off_runs(
+        CUT_OFF, "{program}: the control shut down during the last run of this program"
+    )
     with suppress(StoreError):  # a disk that is full gets it later
         told.result()
 
@@ -181,8 +183,8 @@ class PartCounter:
         if not name:
             return
         try:
-            self.count = self.persistence.parts(name)
-            kept = self.persistence.setting(_key(name))
+            self.count = self.persistence.runs.count_parts(name)
+            kept = self.persistence.read_setting(_key(name))
         except StoreError:
             return  # the desk says by itself that nothing is kept
         self.target = kept if isinstance(kept, int) and 0 < kept <= MOST else 0
@@ -207,7 +209,7 @@ class PartCounter:
     def correct(self, by: int) -> None:
         """Parts that were made otherwise, or are scrap. Raises StoreError when it is not kept."""
         self.count, self._announced = self.count + by, -1
-        self.persistence.correct_parts(self.program, by)
+        self.persistence.runs.add_parts(self.program, by)
         self.persistence.note_change(
             Message(
                 "part count of {program}: {count} → {count2}",
@@ -220,7 +222,7 @@ class PartCounter:
     def reset(self) -> None:
         """The count to nought. Raises StoreError when it is not kept."""
         before, self.count, self._announced = self.count, 0, -1
-        self.persistence.reset_parts(self.program)
+        self.persistence.runs.reset_parts(self.program)
         self.persistence.note_change(
             Message("part count of {program}: {before} → 0", program=self.program, before=before)
         )

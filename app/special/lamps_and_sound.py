@@ -71,7 +71,7 @@ class DeskSounds:
             return
         self._read = True
         try:
-            kept = self.persistence.setting(_SETTING)
+            kept = self.persistence.read_setting(_SETTING)
         except StoreError:
             return
         match kept:

@@ -44,7 +44,7 @@ class RParameters(FigureFunction):
         if self._worker.busy:
             return  # what is being kept is shown already
         try:
-            self.values = r_parameters(self._persistence.setting(R_PARAMETERS))
+            self.values = r_parameters(self._persistence.read_setting(R_PARAMETERS))
         except StoreError:
             self.values = {}  # the desk says by itself that nothing is kept
 

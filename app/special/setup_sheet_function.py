@@ -78,7 +78,7 @@ class SetupSheetFunction(SpecialFunction):
 
     def _kept(self, key: str) -> object:
         try:
-            return self.persistence.setting(key)
+            return self.persistence.read_setting(key)
         except StoreError:
             return None  # the desk says by itself that nothing is kept
 

@@ -373,6 +373,6 @@ class SerialTransfer(SpecialFunction):
 
 def _stored_settings(persistence: Persistence, default: DncModel) -> DncModel:
     try:
-        return settings_of(persistence.setting(SETTING), default)
+        return settings_of(persistence.read_setting(SETTING), default)
     except StoreError:
         return default  # the desk says by itself that nothing is kept

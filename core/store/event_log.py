@@ -1,16 +1,18 @@
-"""The event log and the settings."""
+"""The event log."""
 
 from __future__ import annotations
 
 import json
 import sqlite3
 from collections.abc import Collection, Iterable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from core.message import Message, pack_message, unpack_message
-from core.store import row_sums
-from core.store.store_errors import StoreError
-from core.store.store_rows import EventRow
+from core.message import pack_message, unpack_message
+from core.store.store_access import StoreAccess, WaitingEntries
+from core.store.store_rows import EventRow, utc_now
+
+if TYPE_CHECKING:
+    from concurrent.futures import Future
 
 
 def log(connection: sqlite3.Connection, events: Iterable[EventRow]) -> None:
@@ -40,34 +42,6 @@ def _event(row: tuple[Any, ...]) -> EventRow:
     return EventRow(at, kind, unpack_message(packed, text), *more)
 
 
-def setting(connection: sqlite3.Connection, key: str) -> object:
-    """What was stored under ``key``, None: nothing, or it is not as it was stored."""
-    row = row_sums.whole_row(connection, "settings", key)
-    return json.loads(str(row_sums.readable(row)[1])) if row else None
-
-
-def set_setting(connection: sqlite3.Connection, key: str, value: object) -> None:
-    """Stores anything that JSON can hold; None forgets the key. Raises StoreError for what it cannot."""
-    if value is None:
-        connection.execute("DELETE FROM settings WHERE key = ?", (key,))
-        return
-    text = setting_text(key, value)
-    connection.execute(
-        "INSERT INTO settings VALUES (?, ?) ON CONFLICT (key) DO UPDATE SET value = excluded.value",
-        (key, text),
-    )
-
-
-def setting_text(key: str, value: object) -> str:
-    """As it is stored. Raises StoreError for what JSON cannot hold."""
-    try:
-        return json.dumps(value, allow_nan=False)
-    except (TypeError, ValueError) as error:
-        raise StoreError(
-            Message("the setting {key} cannot be stored: {error}", key=key, error=error), "unstorable-setting"
-        ) from error
-
-
 def events_between(
     connection: sqlite3.Connection, kinds: Collection[str], since: str, until: str
 ) -> tuple[EventRow, ...]:
@@ -78,3 +52,34 @@ def events_between(
         (since, until, json.dumps(sorted(kinds))),
     )
     return tuple(map(_event, rows))
+
+
+class EventLog:
+    """The event log of an open store. Methods raise StoreError as described in ``StoreAccess``."""
+
+    def __init__(self, store: StoreAccess) -> None:
+        self._store = store
+
+    def read_events(
+        self, search: str = "", limit: int = 100, kinds: Collection[str] = ()
+    ) -> tuple[EventRow, ...]:
+        """Return the last events, newest first.
+
+        ``search`` selects events that contain it in kind or text, in upper or lower case; ``kinds`` selects
+        events of these kinds, all kinds if empty.
+        """
+        return self._store.query(events, search, limit, kinds)
+
+    def log_event(self, kind: str, text: str, line: int = 0, record: str = "", who: str = "") -> Future[None]:
+        """Log an event with the present time. A full disk does not lose the event."""
+        return self.log_events([EventRow(utc_now(), kind, text, line, record, who)])
+
+    def log_events(self, events: Iterable[EventRow]) -> Future[None]:
+        """Log several events with the times that they have. A full disk does not lose them."""
+        rows = tuple(events)
+
+        def keeping(unwritten: WaitingEntries) -> None:
+            for row in rows:
+                unwritten.event(row)
+
+        return self._store.keep(keeping)

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import sqlite3
 from collections.abc import Iterable
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from core.message import Message
 from core.store import row_sums
+from core.store.store_access import StoreAccess
 from core.store.store_errors import StoreError
+
+if TYPE_CHECKING:
+    from concurrent.futures import Future
 
 NAME_LONGEST = 20
 
@@ -109,3 +113,33 @@ def _demand_service(connection: sqlite3.Connection) -> None:
             "add this user first",
             "last-service-person",
         )
+
+
+class PeopleRecords:
+    """The list of users of an open store. Methods raise StoreError as described in ``StoreAccess``."""
+
+    def __init__(self, store: StoreAccess) -> None:
+        self._store = store
+
+    def read_people(self) -> People:
+        """Return all users. Without users there are no access levels."""
+        return self._store.query(people)
+
+    def save_person(self, row: PersonRow) -> Future[None]:
+        """Add a user, or replace the level and PIN of a user.
+
+        The future raises StoreError for an invalid name, and if no user with SERVICE level would remain.
+        """
+        return self._store.write(lambda c: keep_person(c, row))
+
+    def remove_person(self, name: str) -> Future[None]:
+        """Remove a user.
+
+        The future raises StoreError for an unknown name, and if other users but none with SERVICE level
+        would remain.
+        """
+        return self._store.write(lambda c: remove_person(c, name))
+
+    def remove_all_people(self) -> Future[int]:
+        """Remove all users, and with them the access levels; the result is the number of users removed."""
+        return self._store.write(remove_all)

@@ -12,7 +12,7 @@ import sqlite3
 from hashlib import sha256
 
 from core.message import Message
-from core.store import event_log, row_sums
+from core.store import row_sums, settings
 from core.store.store_errors import StoreError
 from core.store.store_file import notes_key, part_key, stock_key, text_key
 from core.store.store_rows import ProgramRow, RunRow, VersionRow, utc_now
@@ -269,7 +269,7 @@ def key_of(connection: sqlite3.Connection, program: str) -> str:
     """Return the record key of a name; a key is returned as it is."""
     if program.startswith(PREFIX):
         return program
-    stored = event_log.setting(connection, text_key(program))
+    stored = settings.read_setting(connection, text_key(program))
     return stored if isinstance(stored, str) and stored.startswith(PREFIX) else program
 
 

@@ -5,13 +5,17 @@ from __future__ import annotations
 import csv
 import io
 import json
-from collections.abc import Iterable, Iterator
+import sqlite3
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
 from core.file_lock import unfinished_folder
 from core.file_placing import folder_in_place
 from core.input_file import MB, input_bytes
 from core.message import Message
+from core.store import program_records
+from core.store.offsets import offset_tables
+from core.store.offsets.offset_tables import Reason
 from core.store.store import Store
 from core.store.store_errors import Cause, StoreError, cause_of, said, why
 from core.store.store_rows import FIELDS, EventRow, Field, Kind, Row, RunRow, Sort, Value, inches
@@ -65,12 +69,12 @@ def export(store: Store, folder: Path) -> int:
 
 def _write_all(store: Store, folder: Path) -> int:
     (folder / PROGRAMS).mkdir(parents=True)
-    names = [row.name for row in store.programs()]
+    names = [row.name for row in store.programs.list_programs()]
     for name in names:
-        (folder / PROGRAMS / _file_name(name)).write_bytes(store.load_program(name))
+        (folder / PROGRAMS / _file_name(name)).write_bytes(store.programs.load_version(name))
     (folder / OFFSETS).write_text("\n".join(_offset_lines(store)) + "\n", encoding="utf-8")
-    _write_table(folder / EVENTS, EventRow._fields, reversed(store.events(limit=_ALL)))
-    _write_table(folder / RUNS, _run_columns(), store.runs())
+    _write_table(folder / EVENTS, EventRow._fields, reversed(store.events.read_events(limit=_ALL)))
+    _write_table(folder / RUNS, _run_columns(), store.runs.read_records())
     with store.read() as connection:
         for name, table in TABLES.items():
             rows = connection.execute(f"SELECT * FROM {table}")
@@ -94,17 +98,17 @@ def _file_name(name: object) -> str:
 
 def _offset_lines(store: Store) -> Iterator[str]:
     yield "# Offsets in inches; X is a radius."
-    for code, zero in store.zero_offsets().items():
+    for code, zero in store.offsets.zero.read_rows().items():
         yield Message("[zero.{code}]  # mm and degrees", code=code)
         yield from (f"{name} = {value!r}" for name, value in zero._asdict().items())
-    tools, shapes = store.tools(), store.shapes()
+    tools, shapes = store.offsets.tools.read_rows(), store.offsets.shapes.read_rows()
     for number in sorted({*tools, *shapes}):
         yield f"[tool.{_key(number)}]"
         if number in tools:
             yield from _entry_lines(Kind.TOOL, tools[number])
         if number in shapes:
             yield from _entry_lines(Kind.SHAPE, shapes[number])
-    for number, row in store.secondary().items():
+    for number, row in store.offsets.secondary.read_rows().items():
         yield f"[secondary.{number}]"
         yield from _entry_lines(Kind.SECONDARY, row)
 
@@ -202,3 +206,20 @@ def program_files(folder: Path) -> dict[str, bytes]:
             ),
             "not-an-export",
         ) from error
+
+
+def import_all(
+    connection: sqlite3.Connection,
+    programs: Mapping[str, bytes],
+    offsets: Mapping[Kind, Mapping[int, Mapping[str, Value]]],
+    reason: Reason,
+) -> None:
+    """Save programs by name and rows of offsets by number, within the transaction of the caller.
+
+    Raise StoreError for an invalid name, and for a number or value out of range.
+    """
+    for name, text in programs.items():
+        program_records.save(connection, name, text, reason.why)
+    for kind, rows in offsets.items():
+        for number, values in rows.items():
+            offset_tables.change(connection, kind, number, reason, values)

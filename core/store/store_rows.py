@@ -230,6 +230,7 @@ FIELDS: Mapping[Kind, Mapping[str, Field]] = {
 }
 Row = ToolRow | SecondaryRow | ZeroRow | ShapeRow | MillRow | PresetRow
 R = TypeVar("R", ToolRow, SecondaryRow, ZeroRow, ShapeRow, MillRow, PresetRow)
+RowT = TypeVar("RowT", bound=Row)  # also where only the kind is known when the program runs
 
 
 def with_fields(row: R, values: Mapping[str, Value]) -> R:

@@ -7,16 +7,17 @@ import sqlite3
 import threading
 import time
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from concurrent.futures import Future
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple, TypeVar
 
-from core.message import Message, join_messages
+from core.message import Message
 from core.store import event_log, program_records
 from core.store.production import job_queue
+from core.store.store_access import Backlog, Keeping, Operation
 from core.store.store_errors import Cause, StoreError, cause_of, why
 from core.store.store_rows import EventRow, utc_now
 
@@ -24,30 +25,6 @@ from core.store.store_rows import EventRow, utc_now
 
 
 EVENTS = 20_000  # more than a week of them; beyond that the oldest go, and how many is told
-Deferred = Callable[[sqlite3.Connection], object]
-
-
-@dataclass(frozen=True, slots=True)
-class Backlog:
-    """How much waits in memory, and why."""
-
-    why: str
-    events: int = 0
-    parts: int = 0
-    others: int = 0
-    dropped: int = 0  # events for which there was no room in memory either
-    counts: Mapping[str, tuple[bool, int]] = field(
-        default_factory=dict
-    )  # by program: put to nought first, and so many more
-
-    @property
-    def words(self) -> str:
-        """What would be lost if the control ended now."""
-        counts = ((self.parts, "part"), (self.events, "event"), (self.others, "other entry"))
-        found = [
-            Message("{count} {name}", count=count, name=_many(name, count)) for count, name in counts if count
-        ]
-        return join_messages(", ", found) if found else "nothing"
 
 
 class _Parts(NamedTuple):
@@ -77,7 +54,7 @@ class Unwritten:
         self._dropped = 0
         self._parts: dict[str, _Parts] = {}
         self._cycles: dict[str, _Cycles] = {}
-        self._latest: dict[tuple[str, str], Deferred] = {}
+        self._latest: dict[tuple[str, str], Operation[object]] = {}
 
     def __bool__(self) -> bool:
         return bool(self._events or self._parts or self._cycles or self._latest or self._dropped)
@@ -103,7 +80,7 @@ class Unwritten:
         before = self._cycles.get(program, _Cycles(0, seconds, seconds))
         self._cycles[program] = _Cycles(before.made + 1, min(before.best, seconds), seconds)
 
-    def latest(self, name: tuple[str, str], operation: Deferred) -> None:
+    def latest(self, name: tuple[str, str], operation: Operation[object]) -> None:
         """Of several under one name only the last counts."""
         self._latest.pop(name, None)  # what comes last is written last
         self._latest[name] = operation
@@ -136,7 +113,7 @@ class Unwritten:
         self._cycles.clear()
         self._latest.clear()
 
-    def _operations(self) -> list[Deferred]:
+    def _operations(self) -> list[Operation[object]]:
         return [
             *(_writing_parts(program, each) for program, each in self._parts.items()),
             *(_writing_cycles(program, each) for program, each in self._cycles.items()),
@@ -144,7 +121,7 @@ class Unwritten:
         ]
 
 
-def _done(operation: Deferred, connection: sqlite3.Connection) -> str:
+def _done(operation: Operation[object], connection: sqlite3.Connection) -> str:
     """Why it can never be written; a disk that takes nothing now raises, and all of it is tried again."""
     try:
         operation(connection)
@@ -153,7 +130,7 @@ def _done(operation: Deferred, connection: sqlite3.Connection) -> str:
     return ""
 
 
-def _writing_parts(program: str, parts: _Parts) -> Deferred:
+def _writing_parts(program: str, parts: _Parts) -> Operation[object]:
     def write(connection: sqlite3.Connection) -> None:
         if parts.reset:
             job_queue.count_reset(connection, program)
@@ -164,21 +141,14 @@ def _writing_parts(program: str, parts: _Parts) -> Deferred:
     return write
 
 
-def _writing_cycles(program: str, cycles: _Cycles) -> Deferred:
+def _writing_cycles(program: str, cycles: _Cycles) -> Operation[object]:
     return lambda connection: program_records.finished(
         connection, program, cycles.latest, cycles.made, cycles.best
     )
 
 
-def _many(name: str, count: int) -> str:
-    if count == 1:
-        return name
-    return name.replace("entry", "entries") if name.endswith("entry") else f"{name}s"
-
-
 T = TypeVar("T")
-Operation = Callable[[sqlite3.Connection], T]
-Keeping = Callable[[Unwritten], None]
+_Task = Callable[[Unwritten], None]
 HANGS = 2.0  # s; a change that is not stored for longer is reported
 ENDS = 10.0  # s that closing waits for the disk
 AGAIN = 2.0  # s after which what the disk did not take is tried again
@@ -206,7 +176,7 @@ class StoreWriter:
         self._connection, self._path = connection, path
         self._unwritten = Unwritten()
         self._waiting: list[Future[None]] = []  # for what is not on the disk yet
-        self._queue: queue.SimpleQueue[Keeping | None] = queue.SimpleQueue()
+        self._queue: queue.SimpleQueue[_Task | None] = queue.SimpleQueue()
         self._closing = threading.Lock()
         self._closed = False
         self._thread = threading.Thread(target=self._work, name="store-writer", daemon=True)
@@ -256,7 +226,7 @@ class StoreWriter:
         self._put(take)
         return future
 
-    def _put(self, task: Keeping) -> None:
+    def _put(self, task: _Task) -> None:
         with self._closing:
             if self._closed:
                 raise StoreError("the data store is closed; nothing more can be written", "closed")

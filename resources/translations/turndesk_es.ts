@@ -31524,11 +31524,6 @@
       <translation>{path} fue escrito por un TurnDesk más nuevo (versión de almacén {version}, este admite {newest}) y no se cambió. Use el TurnDesk más nuevo</translation>
     </message>
     <message>
-      <location filename="core/store/event_log.py" />
-      <source>the setting {key} cannot be stored: {error}</source>
-      <translation>el ajuste {key} no se puede guardar: {error}</translation>
-    </message>
-    <message>
       <location filename="core/store/log_damage.py" />
       <source>the last saved change</source>
       <translation>el último cambio guardado</translation>
@@ -31739,6 +31734,11 @@
       <translation>{name} versión {value} no coincide con su suma de comprobación; cargue otra versión o restaure un respaldo</translation>
     </message>
     <message>
+      <location filename="core/store/settings.py" />
+      <source>the setting {key} cannot be stored: {error}</source>
+      <translation>el ajuste {key} no se puede guardar: {error}</translation>
+    </message>
+    <message>
       <location filename="core/store/store.py" />
       <source>{path} is closed; nothing more can be read from it</source>
       <translation>{path} está cerrado; ya no se puede leer nada de él</translation>
@@ -31747,6 +31747,11 @@
       <location filename="core/store/store.py" />
       <source>{path} is open read-only; nothing can be stored</source>
       <translation>{path} está abierto solo para lectura; no se puede guardar nada</translation>
+    </message>
+    <message>
+      <location filename="core/store/store_access.py" />
+      <source>other entry</source>
+      <translation>otro apunte</translation>
     </message>
     <message>
       <location filename="core/store/store_connection.py" />
@@ -31912,11 +31917,6 @@
       <location filename="core/store/store_writer.py" />
       <source>nothing was stored: {problem}. Then make the entry again</source>
       <translation>no se guardó nada: {problem}. Luego haga la entrada otra vez</translation>
-    </message>
-    <message>
-      <location filename="core/store/store_writer.py" />
-      <source>other entry</source>
-      <translation>otro apunte</translation>
     </message>
     <message>
       <location filename="core/store/store_writer.py" />

@@ -83,7 +83,7 @@ def counted_in(store: Store, truth: Truth) -> dict[str, int]:
         [(inserts,)] = connection.execute("SELECT count(*) FROM insert_changes").fetchall()
     return {
         "seen at the slides": truth.pins - truth.given_up - truth.uncounted,
-        "store": store.parts(NAME),
+        "store": store.runs.count_parts(NAME),
         "log": events,
         "cycles": cycles["COMPLETE"],
         "pins without count": truth.uncounted,

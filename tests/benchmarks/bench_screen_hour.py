@@ -143,7 +143,7 @@ def begun(stage: Server, home: Path, seed: int) -> Iterator[Looker]:
     program.write_text(PROGRAM)
     with Store.open(home) as store:
         for number, (x, z) in TOOLS.items():
-            store.set_tool(number, "touched off", x=x * INCH, z=z * INCH).result()
+            store.offsets.tools.change_row(number, "touched off", {"x": x * INCH, "z": z * INCH}).result()
     words = [sys.executable, "-m", __spec__.name, "--desk", "--program", str(program)]
     popen = subprocess.Popen(
         words,
@@ -179,7 +179,7 @@ def watched(home: Path, seed: int, minutes: float) -> dict[str, Any]:
     with Store.open(home, read_only=True) as store:
         counts = counted_in(store, Truth(pins=told["pins"]))
         alarms = Counter(
-            event.text.split(" line ")[0] for event in store.events(limit=1000, kinds=("alarm",))
+            event.text.split(" line ")[0] for event in store.events.read_events(limit=1000, kinds=("alarm",))
         )
     return {
         "minutes": minutes,

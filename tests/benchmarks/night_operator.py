@@ -66,7 +66,9 @@ class Operator:
         """Tools, the feature that is measured, the life of an insert, drives, program."""
         store = self.shift.store
         for number, (x, z) in TOOLS.items():
-            store.set_tool(number, "touched off", x=x * INCH, z=z * INCH).result(PATIENCE)
+            store.offsets.tools.change_row(number, "touched off", {"x": x * INCH, "z": z * INCH}).result(
+                PATIENCE
+            )
         store.write(lambda c: measured_parts.save_feature(c, FEATURE)).result(PATIENCE)
         life = LifeRow(1, limit_parts=INSERT, stops=True)
         store.write(lambda c: tool_lives.set_limits(c, life)).result(PATIENCE)

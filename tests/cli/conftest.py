@@ -20,7 +20,7 @@ from core.store.production import measured_parts, part_cycles, tool_lives
 from core.store.production.measured_parts import FeatureRow, ReadingRow
 from core.store.production.part_cycles import CycleRow, StopRow
 from core.store.store import Store
-from core.store.store_rows import Kind, utc
+from core.store.store_rows import utc
 from drivers.waiting import StepClock
 from tests.coded import recorded_refusals
 from tests.worked import worked
@@ -107,16 +107,16 @@ def filled(home: Path) -> Path:
             outcome = "COMPLETE" if part > 1 else "ALARM"
             cycle = CycleRow(f"c{part}", "peg.nc", part if part > 1 else 0, *times, 50.0, outcome)
             store.write(partial(part_cycles.save_cycle, row=cycle)).result(60)
-            store.count_part("peg.nc").result(60)
+            store.runs.add_parts("peg.nc").result(60)
             reading = ReadingRow(0, of, part, 12.69 if part % 2 else 12.79, "in", at, "gauge", "mic")
             store.write(partial(measured_parts.add_reading, row=reading)).result(60)
         stop = StopRow("s", "c1", "peg.nc", at, 4.0, "FEED HOLD", 7)
         store.write(lambda c: part_cycles.save_stop(c, stop)).result(60)
         store.write(lambda c: tool_lives.set_limits(c, tool_lives.LifeRow(1, 50))).result(60)
         store.write(lambda c: tool_lives.change_insert(c, 1, "worn")).result(60)
-        store.set_tool(1, "first", x=0.0, z=0.0).result(60)
-        store.set_tool(1, "wear", wear_x=-0.01).result(60)
-        store.undo_offset("undone", kind=Kind.TOOL).result(60)
+        store.offsets.tools.change_row(1, "first", {"x": 0.0, "z": 0.0}).result(60)
+        store.offsets.tools.change_row(1, "wear", {"wear_x": -0.01}).result(60)
+        store.offsets.tools.undo_last_step("undone").result(60)
         store.write(
             lambda c: people.keep_person(c, people.PersonRow("ANN", Level.SERVICE, b"salt", b"hash"))
         ).result(60)

@@ -47,14 +47,14 @@ def test_without_sign_in_no_user_can_change_anything(
     assert say(*words, typed="4711")[0] == 2
     assert codes(refusals) == ["no-sign-in"]
     with Store.open(home) as store:
-        assert store.history() == ()
+        assert store.offsets.read_history() == ()
 
 
 @pytest.mark.usefixtures("people", "no_sign_in")
 def test_without_sign_in_changes_of_no_level_are_still_made(say: Say, home: Path) -> None:
     assert say("offsets", "set", "D4", "x=-.0005")[0] == 0
     with Store.open(home) as store:
-        assert [(row.number, row.who) for row in store.history()] == [(4, "shop")]
+        assert [(row.number, row.who) for row in store.offsets.read_history()] == [(4, "shop")]
 
 
 @pytest.mark.usefixtures("people", "no_sign_in")

@@ -20,7 +20,6 @@ from core.language.source import load_source
 from core.message import CodedError
 from core.proving.prove_program import prove
 from core.store.store import Store
-from core.store.store_rows import Kind
 from tests.coded import raises_code
 
 INCH = 25.4
@@ -47,16 +46,19 @@ def test_its_offsets_are_those_of_the_samples_and_may_be_changed(home: Path) -> 
 def test_the_tool_table_of_a_mill_has_what_its_samples_use(home: Path) -> None:
     """It showed 0 for tools whose length counted."""
     with Store.open(open_demo("bc-table-mill")) as store:
-        lengths = {number: (row.length, round(row.radius, 3)) for number, row in store.mill_tools().items()}
+        lengths = {
+            number: (row.length, round(row.radius, 3))
+            for number, row in store.offsets.mill_tools.read_rows().items()
+        }
     assert lengths == {6: (3.5 * INCH, 2.5), 8: (4.0 * INCH, 4.25), 20: (3.0 * INCH, 6.0)}
 
 
 def test_what_was_changed_in_it_stays(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with Store.open(open_demo(None)) as store:
-        store.set_offset(Kind.TOOL, 1, values={"x": 3.0}, why="test", who="test").result()
+        store.offsets.tools.change_row(1, values={"x": 3.0}, why="test", who="test").result()
     monkeypatch.setenv("TURNDESK_HOME", str(home))  # the next start
     with Store.open(open_demo(None), read_only=True) as store:
-        assert store.tools()[1].x == 3.0
+        assert store.offsets.tools.read_rows()[1].x == 3.0
 
 
 def test_no_real_machine_gets_offsets_of_samples(home: Path) -> None:

@@ -23,7 +23,7 @@ ROWS = (
 
 def rows(home: Path) -> tuple[MillRow, PresetRow]:
     with Store.open(home, read_only=True) as store:
-        return store.mill_tools()[7], store.presets()[3]
+        return store.offsets.mill_tools.read_rows()[7], store.offsets.presets.read_rows()[3]
 
 
 def test_tools_and_presets_are_set_by_the_words_of_their_columns(turndesk: Turndesk, home: Path) -> None:
@@ -33,7 +33,7 @@ def test_tools_and_presets_are_set_by_the_words_of_their_columns(turndesk: Turnd
     assert rows(home) == ROWS
     assert turndesk("offsets", "undo", "preset").status == 0
     with Store.open(home, read_only=True) as store:
-        assert store.presets() == {}
+        assert store.offsets.presets.read_rows() == {}
 
 
 @pytest.mark.parametrize(
@@ -55,7 +55,7 @@ def test_what_is_no_tool_and_no_preset_is_refused(
     assert (answer.status, answer.code) == (2, code)
     assert value in answer.err
     with Store.open(home) as store:
-        assert (store.mill_tools(), store.presets()) == ({}, {})
+        assert (store.offsets.mill_tools.read_rows(), store.offsets.presets.read_rows()) == ({}, {})
 
 
 def test_an_export_brings_them_to_another_store(
@@ -83,7 +83,7 @@ def test_of_a_spoilt_table_nothing_is_imported(turndesk: Turndesk, home: Path, t
     told = turndesk("store", "import", out)
     assert (told.code, "T1000" in told.err) == ("unknown-number", True)
     with Store.open(home) as store:
-        assert store.mill_tools() == {}
+        assert store.offsets.mill_tools.read_rows() == {}
 
 
 @pytest.mark.usefixtures("paced_by_steps")

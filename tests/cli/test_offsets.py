@@ -70,8 +70,8 @@ def test_set_and_show_in_inches(capsys: Captured, home: Path) -> None:
         "secondary": {"4": {"x": -0.0005, "z": 0.0, "r": 0.0}},
     }
     with Store.open(home, read_only=True) as store:  # millimetres inside; D's x is the radius as given
-        assert store.tools() == {3: ToolRow(1.25 * 25.4, -0.5 * 25.4, 0.0)}
-        assert store.secondary() == {4: SecondaryRow(-0.0005 * 25.4, 0.0, 0.0)}
+        assert store.offsets.tools.read_rows() == {3: ToolRow(1.25 * 25.4, -0.5 * 25.4, 0.0)}
+        assert store.offsets.secondary.read_rows() == {4: SecondaryRow(-0.0005 * 25.4, 0.0, 0.0)}
 
 
 def test_second_entry_keeps_what_it_does_not_name(capsys: Captured) -> None:
@@ -169,7 +169,7 @@ def test_one_bad_value_of_two_sets_neither(capsys: Captured) -> None:
 
 def test_store_in_use_is_refused_and_still_shown(capsys: Captured, home: Path) -> None:
     with Store.open(home) as store:
-        store.set_tool(1, "screen", x=25.4).result()
+        store.offsets.tools.change_row(1, "screen", {"x": 25.4}).result()
         assert refused(capsys, "set", "T1", "x=2").code == "in-use"
         assert shown(capsys) == {"tool": {"1": tool(x=1.0)}, "secondary": {}}
 
@@ -303,7 +303,7 @@ def test_an_import_beyond_the_travel_is_refused_as_a_whole(
     assert imported(monkeypatch, folder, "--yes") == "beyond-travel"
     assert shown(capsys) == {"tool": {}, "secondary": {}}
     with Store.open(home, read_only=True) as store:
-        assert store.programs() == ()
+        assert store.programs.list_programs() == ()
 
 
 def test_an_import_of_a_large_change_needs_consent(
@@ -324,7 +324,7 @@ def test_an_import_of_a_large_change_of_a_mill_needs_consent(
     folder = exported(tmp_path / "out", mill="number,length\n1,8.0\n")
     assert imported(monkeypatch, folder) == "not-confirmed"
     with Store.open(home) as store:
-        assert store.mill_tools()[1].length == 80.0
+        assert store.offsets.mill_tools.read_rows()[1].length == 80.0
     assert imported(monkeypatch, folder, "--yes") == ""
 
 
@@ -334,7 +334,7 @@ def test_a_large_change_of_a_tool_of_a_mill_needs_consent(capsys: Captured, home
     capsys.readouterr()
     assert refused(capsys, "set", "TOOL1", entry).code == "not-confirmed"
     with Store.open(home) as store:
-        assert store.mill_tools()[1][1:5] == (80.0, 5.0, 0.0, 0.0)
+        assert store.offsets.mill_tools.read_rows()[1][1:5] == (80.0, 5.0, 0.0, 0.0)
 
 
 # --- the machine in use -------------------------------------------------------------------------------------

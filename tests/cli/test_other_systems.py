@@ -48,7 +48,7 @@ setup load desk.setup
 """
 DESK = r"""from app.compose.backends import connection
 from app.compose.screen_desk import build_desk
-assert not connection.FEEDER
+assert not connection.HAS_DRIVER_HOST
 desk = build_desk()
 assert not desk.book.locked
 desk.close()

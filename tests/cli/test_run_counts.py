@@ -46,7 +46,7 @@ def test_a_run_at_the_machines_pace_counts_part_and_time_at_feed(
         assert life(home).parts == made
         assert life(home).seconds == pytest.approx(0.5 * made, abs=0.2 * made)
     with Store.open(home, read_only=True) as store:
-        assert store.parts("part.nc") == 2
+        assert store.runs.count_parts("part.nc") == 2
         with store.read() as connection:
             rows = part_cycles.cycles(connection, "part.nc", -1)
     assert [row.outcome for row in rows] == ["COMPLETE", "COMPLETE"]

@@ -72,7 +72,7 @@ def test_a_check_that_is_silenced_for_the_program_refuses_nothing(
     kept = KeptPart("bar:1:2+.02", silenced={"rapid-into-stock": "soft wax"})
     with Store.open(home) as store:
         for key, value in kept.settings(path.name).items():
-            store.set_setting(key, value).result()
+            store.settings.save_setting(key, value).result()
     told = turndesk("run", path, "--headless", "--json", "--offsets", offsets, "--tools", tools)
     assert state(told) == (0, "complete")
     assert text("findings.check-off", why="soft wax") in told.err

@@ -283,7 +283,7 @@ def test_what_the_store_silences_for_a_program_counts_for_that_alone(
     with Store.open(home) as store:
         kept = KeptPart(silenced={"rapid-into-stock": "drilled before", "through-part": "drilled before"})
         for key, value in kept.settings("part.nc").items():
-            store.set_setting(key, value).result()
+            store.settings.save_setting(key, value).result()
     told = turndesk("prove", path, *given)
     assert (told.status, wording("findings.check-off", why="drilled before") in told.out) == (0, True)
     assert turndesk("prove", other, *given).status == 1

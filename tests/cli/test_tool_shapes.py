@@ -14,7 +14,7 @@ from app.offsets.offsets_file import read_rows, read_shape_rows, read_tool_shape
 from core.message import CodedError
 from core.part.tool_shape import Hand, ToolKind, ToolShape
 from core.store.store import Store
-from core.store.store_rows import HANDS, TOOL_KINDS, Kind, ShapeRow, ToolRow
+from core.store.store_rows import HANDS, TOOL_KINDS, ShapeRow, ToolRow
 from tests.coded import recorded_refusals
 
 Captured = pytest.CaptureFixture[str]
@@ -199,7 +199,7 @@ def test_shape_is_set_shown_and_told(capsys: Captured, home: Path) -> None:
     assert told["shape"]["5"]["diameter"] == 0.25
     assert told["shape"]["3"]["holder"] == "MCLNR-124B"
     with Store.open(home, read_only=True) as store:
-        assert store.shapes()[5] == ShapeRow("drill", diameter=6.35, point=118.0)
+        assert store.offsets.shapes.read_rows()[5] == ShapeRow("drill", diameter=6.35, point=118.0)
 
 
 def test_shape_is_changed_with_its_history_and_taken_back(capsys: Captured, home: Path) -> None:
@@ -212,28 +212,28 @@ def test_shape_is_changed_with_its_history_and_taken_back(capsys: Captured, home
     assert "T5  not set → drill right  diameter=0.25" in oldest
     assert offsets("undo", "shape") == 0
     with Store.open(home, read_only=True) as store:
-        assert store.shapes()[5].diameter == 6.35
-        assert store.history() == (), "offsets have a history of their own"
+        assert store.offsets.shapes.read_rows()[5].diameter == 6.35
+        assert store.offsets.tools.read_history() == (), "offsets have a history of their own"
     assert offsets("set", "T5", "kind=none") == 0
     assert capsys.readouterr().out.endswith("T5 has no shape\n")
     assert offsets("undo", "shape") == 0
     with Store.open(home, read_only=True) as store:
-        assert store.shapes()[5].kind == "drill"
+        assert store.offsets.shapes.read_rows()[5].kind == "drill"
 
 
 def test_shapes_go_with_an_export(capsys: Captured, home: Path, tmp_path: Path) -> None:
     assert offsets("set", "T3", "kind=turning", "insert=CNMG432", "x=0", "z=0", "tip=3") == 0
     assert offsets("set", "T5", "kind=drill", "diameter=.25", 'holder=a "collet"') == 0
     with Store.open(home, read_only=True) as store:
-        before = store.shapes(), store.tools()
+        before = store.offsets.shapes.read_rows(), store.offsets.tools.read_rows()
     assert main(["store", "export", str(tmp_path / "out")]) == 0
     for _ in range(2):  # again it changes nothing
         assert main(["store", "import", str(tmp_path / "out")]) == 0
     (home / "turndesk.db").unlink()
     assert main(["store", "import", str(tmp_path / "out")]) == 0
     with Store.open(home, read_only=True) as store:
-        assert (store.shapes(), store.tools()) == before
-        assert len(store.history(Kind.SHAPE)) == 2
+        assert (store.offsets.shapes.read_rows(), store.offsets.tools.read_rows()) == before
+        assert len(store.offsets.shapes.read_history()) == 2
 
 
 @pytest.mark.parametrize(
@@ -278,7 +278,7 @@ def test_shape_that_has_become_wrong_is_told_before_it_is_proved(capsys: Capture
     program.write_text("G90G94F300G72\nT3\nX1Z.1\nM30\n", encoding="utf-8")
     assert offsets("set", "T3", "kind=grooving", "insert=MGMN300", "x=1", "z=2") == 0
     with Store.open(tmp_path / "home") as store:
-        store.set_offset(Kind.SHAPE, 3, "on the page", {"kind": "turning"}).result()
+        store.offsets.shapes.change_row(3, "on the page", {"kind": "turning"}).result()
     capsys.readouterr()
     with pytest.MonkeyPatch.context() as patch:
         refusals = recorded_refusals(patch)

@@ -44,8 +44,9 @@ HOUSE = Path(__file__).parents[2]
 OPERATORS = {Act.WEAR, Act.COUNTS, Act.INSERTS, Act.READINGS, Act.JOBS, Act.SCREEN, Act.INPUTS, Act.BACKUPS}
 SERVICES = {Act.MACHINE_FILE, Act.RESTORE, Act.SHARED_PLACE, Act.PEOPLE}
 WRITES = re.compile(
-    r"\.(save_setting|keep_settings|set_setting|save_version|correct_parts|reset_parts|import_all|set_offset)\("
-    r"|\.(keep_person|remove_person|remove_people|keep_program|renamed|set_input|unlink|rename|write_text)\("
+    r"\.(save_setting|keep_settings|save_version|add_parts|reset_parts|import_all|change_row)\("
+    r"|\.(save_person|remove_person|remove_all_people|keep_loaded_version|renamed|set_input|unlink)\("
+    r"|\.(rename|write_text)\("
     r"|\b(write_whole|write_new|write_out|write_in_place|store_new|ForceOutput|SpindleLimit)\("
 )
 BEHIND_A_RULE = {
@@ -139,7 +140,7 @@ def test_without_people_nothing_is_asked_and_nothing_more_is_logged(room: Room) 
     room.desk.counter.program = "pin.nc"
     room.find(PartsCounterFunction).correct(1)
     room.settle()
-    assert room.store.history(Kind.TOOL)[0].who == "operator"
+    assert room.store.offsets.tools.read_history()[0].who == "operator"
     assert room.log("change") == []
     assert room.desk.notice == ""
 
@@ -152,7 +153,7 @@ def test_a_refusal_says_which_level_and_how_to_get_it(room: Room) -> None:
     why = room.desk.book.change(Kind.TOOL, 3, {"x": 1.0, "z": -1.0}, "typed")
     assert why == wording("screen.level-needed", what="TOOL OFFSETS", level="SETUP", now="OPERATOR")
     room.settle()
-    assert room.store.tools() == {}
+    assert room.store.offsets.tools.read_rows() == {}
 
 
 def test_where_nobody_can_sign_in_stored_people_still_have_levels(room: Room) -> None:
@@ -167,7 +168,7 @@ def test_where_nobody_can_sign_in_stored_people_still_have_levels(room: Room) ->
 
 
 def test_wear_is_the_operators_and_position_is_not(room: Room) -> None:
-    room.store.set_tool(3, "touched off", x=1.0, z=-1.0).result(LIMIT)
+    room.store.offsets.tools.change_row(3, "touched off", {"x": 1.0, "z": -1.0}).result(LIMIT)
     room.enter_people()
     book = room.desk.book
     assert shows(
@@ -180,12 +181,15 @@ def test_wear_is_the_operators_and_position_is_not(room: Room) -> None:
     room.settle()
     assert book.change(Kind.SECONDARY, 1, {"x": -0.01}, "too large") == ""
     room.settle()
-    assert (room.store.tools()[3].wear_x, room.store.tools()[3].x) == (0.01, 1.0)
-    assert room.store.secondary()[1].x == -0.01
+    assert (room.store.offsets.tools.read_rows()[3].wear_x, room.store.offsets.tools.read_rows()[3].x) == (
+        0.01,
+        1.0,
+    )
+    assert room.store.offsets.secondary.read_rows()[1].x == -0.01
 
 
 def test_nothing_is_asked_that_the_level_does_not_allow(room: Room) -> None:
-    room.store.set_tool(3, "touched off", x=1.0, z=-1.0).result(LIMIT)
+    room.store.offsets.tools.change_row(3, "touched off", {"x": 1.0, "z": -1.0}).result(LIMIT)
     room.desk.book.read()
     room.enter_people()
     questions = OffsetQuestions(OffsetHistory(room.desk, Kind.TOOL))
@@ -315,9 +319,9 @@ def test_every_history_has_the_name(room: Room) -> None:
     ):
         assert book.change(kind, number, values, "set up") == ""
         room.settle()
-        assert room.store.history(kind)[0].who == "BEN"
+        assert room.store.offsets.table(kind).read_history()[0].who == "BEN"
     room.journal.save_version("pin.nc", b"M30\n", "saved in the editor")
-    assert room.store.versions("pin.nc")[0].who == "BEN"
+    assert room.store.programs.list_versions("pin.nc")[0].who == "BEN"
     watch.lives.change_insert(3, "worn", lambda _text: None)
     room.settle()
     with room.store.read() as connection:
@@ -367,7 +371,7 @@ def test_an_accepted_machine_file_has_the_name(room: Room) -> None:
 def test_who_is_taken_away_is_not_in_force_any_more(room: Room) -> None:
     room.enter_people()
     room.sign_in("BEN")
-    room.journal.remove_person("BEN")
+    room.journal.opened().people.remove_person("BEN").result()
     room.access.reload()
     assert room.access.words == "OPERATOR"
 
@@ -375,16 +379,16 @@ def test_who_is_taken_away_is_not_in_force_any_more(room: Room) -> None:
 def test_a_second_desk_has_the_levels_of_the_first(room: Room, tmp_path: Path) -> None:
     room.enter_people()
     beside = Journal(tmp_path / "home")
-    assert beside.people() == room.store.people()
+    assert beside.people() == room.store.people.read_people()
     beside.close()
 
 
 def test_one_of_service_stays(room: Room) -> None:
     room.enter_people()
     with pytest.raises(StoreError, match=pattern("desk.service-stays")):
-        room.journal.remove_person("ANNA")
+        room.journal.opened().people.remove_person("ANNA").result()
     for name in ("BEN", "CARLA", "ANNA"):
-        room.journal.remove_person(name)
+        room.journal.opened().people.remove_person(name).result()
     room.access.reload()
     assert not room.access.people.on
 
@@ -398,7 +402,7 @@ def test_a_damaged_row_lets_nobody_in_and_switches_nothing_off(room: Room, tmp_p
     assert room.access.people.named("CARLA") is None
     assert any(
         begins(text, "desk.not-as-saved", what=f"{wording('desk.pin-of')} CARLA")
-        for text in room.store.damaged()
+        for text in room.store.find_damaged_rows()
     )
 
 
@@ -412,7 +416,7 @@ def test_a_store_of_before_has_no_levels_and_keeps_its_log(tmp_path: Path) -> No
         connection.execute("INSERT INTO events (at, kind, text) VALUES ('2026-01-02', 'start', 'pin.nc')")
         connection.execute("INSERT INTO tool_offsets (number, x, z, r) VALUES (3, 1.0, -1.0, 0.0)")
     with Store.open(folder) as store:
-        assert not store.people().on
-        assert [(row.text, row.who) for row in store.events()] == [("pin.nc", "")]
-        assert store.tools()[3].x == 1.0
-        assert store.damaged() == ()
+        assert not store.people.read_people().on
+        assert [(row.text, row.who) for row in store.events.read_events()] == [("pin.nc", "")]
+        assert store.offsets.tools.read_rows()[3].x == 1.0
+        assert store.find_damaged_rows() == ()

@@ -39,7 +39,7 @@ class Days:
 @pytest.fixture
 def home(tmp_path: Path) -> Path:
     with Store.open(tmp_path / "home") as store:
-        store.set_tool(3, "touched", x=1.0, z=2.0).result()
+        store.offsets.tools.change_row(3, "touched", {"x": 1.0, "z": 2.0}).result()
     return tmp_path / "home"
 
 
@@ -57,7 +57,7 @@ def test_one_a_day_and_the_newest_stay(home: Path, tmp_path: Path) -> None:
     assert days.told == []
     backup.restore(tmp_path / "other", folder / names(folder)[-1])
     with Store.open(tmp_path / "other") as store:
-        assert store.tools()[3].x == 1.0
+        assert store.offsets.tools.read_rows()[3].x == 1.0
 
 
 def test_it_waits_for_a_standstill_but_not_for_ever(home: Path, tmp_path: Path) -> None:

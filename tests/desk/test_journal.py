@@ -29,7 +29,10 @@ def journal(tmp_path: Path) -> Iterator[Journal]:
 
 
 def test_the_journal_keeps_all_that_there_is_to_keep() -> None:
-    asked = {name for name, what in vars(Persistence).items() if callable(what) and not name.startswith("_")}
+    offered = (
+        name for name, what in vars(Persistence).items() if callable(what) or isinstance(what, property)
+    )
+    asked = {name for name in offered if not name.startswith("_")}
     assert len(asked) > 10
     assert asked <= vars(Journal).keys()
 
@@ -56,7 +59,7 @@ def test_a_part_made_meanwhile_is_counted_in_the_restored_store(journal: Journal
     journal.restore(target)
     journal.hear(Event(0.0, "part", "part 1"))
     journal.save_version("pin.nc", b"M02", "so that all is written")
-    assert journal.parts("pin.nc") == 1
+    assert journal.runs.count_parts("pin.nc") == 1
     assert book.poll() == ""
     assert book.store is not before
     assert book.changes == 1
@@ -99,8 +102,8 @@ def test_without_a_store_nothing_is_backed_up_or_restored(tmp_path: Path) -> Non
     with pytest.raises(StoreError):
         journal.restore(tmp_path / "x.db")
     journal.save_setting("a", 1)
-    assert journal.setting("a") is None
-    assert journal.parts("pin.nc") == 0
+    assert journal.read_setting("a") is None
+    assert journal.runs.count_parts("pin.nc") == 0
     journal.close()
 
 
@@ -111,8 +114,8 @@ def test_without_a_store_nothing_is_backed_up_or_restored(tmp_path: Path) -> Non
 def away(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Journal]:
     """Begun while the disk was full; the store holds a job that was interrupted before."""
     with Store.open(tmp_path / "home") as store:
-        store.set_tool(3, "test", x=1.25).result(60)
-        store.set_setting(UNDER_WAY, plain(broken_off(line=8))).result(60)
+        store.offsets.tools.change_row(3, "test", {"x": 1.25}).result(60)
+        store.settings.save_setting(UNDER_WAY, plain(broken_off(line=8))).result(60)
     full = Cause.FULL.error(tmp_path / "home" / "turndesk.db", "")
     monkeypatch.setattr("app.compose.runs.journal.AGAIN", 1e6)  # the test opens it
     with monkeypatch.context() as disk:
@@ -195,11 +198,11 @@ def test_a_store_that_could_not_be_read_at_the_start_is_read_by_the_second_try(
 ) -> None:
     """The first try had opened it: its lock must be free again, and what happened meanwhile is written."""
     with Store.open(tmp_path / "home") as store:
-        store.set_setting(UNDER_WAY, plain(broken_off(line=8))).result(60)
+        store.settings.save_setting(UNDER_WAY, plain(broken_off(line=8))).result(60)
     locked = Cause.LOCKED.error(tmp_path / "home" / "turndesk.db", "")
     monkeypatch.setattr("app.compose.runs.journal.AGAIN", 1e6)  # the test tries again
     with monkeypatch.context() as disk:
-        disk.setattr(Store, "damaged", raising(locked))
+        disk.setattr(Store, "find_damaged_rows", raising(locked))
         journal = Journal(tmp_path / "home")
         assert shows(journal.trouble, "desk.locked")
         assert journal.waiting
@@ -214,7 +217,7 @@ def test_a_store_that_could_not_be_read_at_the_start_is_read_by_the_second_try(
     assert (journal.trouble, journal.waiting, journal.held) == ("", False, "")
     assert journal.left == broken_off(line=8)
     journal.save_version("pin.nc", b"M30", "so that all is written")
-    assert journal.parts("pin.nc") == 1
+    assert journal.runs.count_parts("pin.nc") == 1
     journal.close()
 
 
@@ -223,7 +226,7 @@ def test_a_store_too_damaged_to_be_read_is_left_to_a_restore(
 ) -> None:
     damaged = Cause.DAMAGED.error(tmp_path / "home" / "turndesk.db", "a page is torn")
     with monkeypatch.context() as disk:
-        disk.setattr(Store, "damaged", raising(damaged))
+        disk.setattr(Store, "find_damaged_rows", raising(damaged))
         journal = Journal(tmp_path / "home")
     assert shows(journal.trouble, "desk.damaged")
     assert not journal.waiting  # no try will read it
@@ -268,14 +271,14 @@ def test_what_a_second_instance_cannot_keep_names_the_first(tmp_path: Path) -> N
 def test_a_second_instance_shows_the_offsets_of_the_first(tmp_path: Path) -> None:
     """It showed every tool as not set."""
     first = Journal(tmp_path / "home")
-    first.opened().set_tool(3, "test", x=-12.5).result(60)
+    first.opened().offsets.tools.change_row(3, "test", {"x": -12.5}).result(60)
     second = Journal(tmp_path / "home")
     book = second.book()
     assert second.trouble
     assert book.locked
     assert book.tools[3].x == -12.5
     assert book.change(Kind.TOOL, 3, {"x": 1.0}, "test") == book.locked
-    first.opened().set_tool(3, "test", x=-13.0).result(60)
+    first.opened().offsets.tools.change_row(3, "test", {"x": -13.0}).result(60)
     second._open_again()  # as its thread does every few seconds
     book.poll()
     assert (book.tools[3].x, book.changes) == (-13.0, 1)

@@ -42,7 +42,7 @@ class Bench:
             load_machine(None),
             lambda: Offsets(TOOLS, {}, {}),
             shapes=lambda: {1: TURNING},
-            kept=partial(kept_part, self.keep.setting),
+            kept=partial(kept_part, self.keep.read_setting),
         )
         self.desk = Desk(
             post=posted.append,
@@ -82,7 +82,7 @@ class Bench:
 
     @property
     def kept(self) -> KeptPart:
-        return kept_part(self.keep.setting, "part.nc")
+        return kept_part(self.keep.read_setting, "part.nc")
 
     @property
     def cells(self) -> Mapping[str, tuple[str, ...]]:

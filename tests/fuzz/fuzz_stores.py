@@ -19,7 +19,7 @@ from core.store.production.tool_lives import LifeRow
 from core.store.store import Store
 from core.store.store_errors import StoreError
 from core.store.store_export import export
-from core.store.store_file import FILE_NAME
+from core.store.store_file import FILE_NAME, stock_key
 from core.store.store_rows import Kind
 from tests.fuzz.fuzz_target import Target
 
@@ -34,13 +34,15 @@ def _good() -> Path:
     home = Path(tempfile.mkdtemp(prefix="fuzz-store-", dir=fast if fast.is_dir() else None)) / "good"
     with Store.open(home) as store:
         for number in (1, 3, 101):
-            store.set_tool(number % 32 + 1, "touched off", x=1.0 * number, z=-2.0).result()
-        store.set_secondary(2, "worn", x=-0.01).result()
-        store.save_program("part.nc", b"G90\nM30\n" * 100, "written").result()
-        store.log_event("alarm", "alarm 101 x line 3: X", 3).result()
-        store.count_part("part.nc").result()
-        store.run_started("part.nc").result()
-        store.set_setting("target:part.nc", 10).result()
+            store.offsets.tools.change_row(
+                number % 32 + 1, "touched off", {"x": 1.0 * number, "z": -2.0}
+            ).result()
+        store.offsets.secondary.change_row(2, "worn", {"x": -0.01}).result()
+        store.programs.save_version("part.nc", b"G90\nM30\n" * 100, "written").result()
+        store.events.log_event("alarm", "alarm 101 x line 3: X", 3).result()
+        store.runs.add_parts("part.nc").result()
+        store.runs.record_start("part.nc").result()
+        store.settings.save_setting("target:part.nc", 10).result()
         row = FeatureRow(0, "part.nc", "PIN", "diameter", 10.0, -0.1, 0.1, "tool", 1, 1, 0, 1)
         store.write(lambda c: measured_parts.save_feature(c, row)).result()
         reading = ReadingRow(0, 1, 1, 10.0, "mm", "", "typed", "")
@@ -106,17 +108,20 @@ def _read(data: bytes) -> Iterator[str]:
         yield from backup.problems(home / FILE_NAME)
     with Store.open(home) as store:
         yield from store.repaired
-        yield from store.damaged()
+        yield from store.find_damaged_rows()
         readers: tuple[Callable[[], object], ...] = (
-            *(partial(store.offsets, kind) for kind in Kind),
-            *(partial(store.history, kind, 50) for kind in Kind),
-            store.programs, lambda: store.versions("part.nc"), lambda: store.load_program("part.nc"),
-            store.events, store.runs, store.jobs, lambda: store.parts("part.nc"),
-            lambda: store.setting("target:part.nc"), lambda: store.setting("under_way"),
-            lambda: store.stock_of("part.nc"), lambda: _measured(store),
-            lambda: export(store, home / "out"), lambda: store.set_tool(5, "x", x=1.0).result(),
-            lambda: store.count_part("part.nc").result(), lambda: store.undo_last().result(),
-            lambda: store.rename_program("part.nc", "other.nc").result(),
+            *(store.offsets.table(kind).read_rows for kind in Kind),
+            *(partial(store.offsets.table(kind).read_history, 50) for kind in Kind),
+            store.programs.list_programs, lambda: store.programs.list_versions("part.nc"),
+            lambda: store.programs.load_version("part.nc"), store.events.read_events,
+            store.runs.read_records, store.jobs.read_jobs, lambda: store.runs.count_parts("part.nc"),
+            lambda: store.settings.read_setting("target:part.nc"),
+            lambda: store.settings.read_setting("under_way"),
+            lambda: store.settings.read_setting(stock_key("part.nc")), lambda: _measured(store),
+            lambda: export(store, home / "out"),
+            lambda: store.offsets.tools.change_row(5, "x", {"x": 1.0}).result(),
+            lambda: store.runs.add_parts("part.nc").result(), lambda: store.offsets.undo_last_step().result(),
+            lambda: store.programs.rename_program("part.nc", "other.nc").result(),
             lambda: backup.backup(home, home / "copy.db"),
         )  # fmt: skip
         for reader in readers:

@@ -120,4 +120,4 @@ def test_a_killed_control_stops_on_the_path_with_everything_off(
         shop.until(lambda: abs(shop.place[0] - moved) > 3.0, lambda: (again.popen.poll(), shop.place))
     if command is SCREEN:
         with Store.open(home, read_only=True) as store:
-            assert [run.program for run in store.runs()] == ["part.nc"]
+            assert [run.program for run in store.runs.read_records()] == ["part.nc"]

@@ -65,13 +65,15 @@ def parts_in(record: Record) -> int:
 def kept_parts(home: Path) -> int:
     """The part count on the disk, while the desk runs."""
     with Store.open(home, read_only=True) as store:
-        return store.parts("part.nc")
+        return store.runs.count_parts("part.nc")
 
 
 def between_start_and_end(home: Path) -> bool:
     """Whether a part has been counted and the next is under way, both as the disk has it."""
     with Store.open(home, read_only=True) as store:
-        return store.parts("part.nc") >= 1 and [run.outcome for run in store.runs()] == [""]
+        return store.runs.count_parts("part.nc") >= 1 and [
+            run.outcome for run in store.runs.read_records()
+        ] == [""]
 
 
 def test_a_killed_screen_and_control_keep_what_was_entered_and_leave_nobody(
@@ -87,13 +89,13 @@ def test_a_killed_screen_and_control_keep_what_was_entered_and_leave_nobody(
         until(lambda: not desk.family(), lambda: "the driver host has not ended")
     assert parts_in(read_ring(home / "records" / NOW)) >= made
     with Store.open(home) as store:
-        assert store.tools()[9].offset == (-0.5 * 25.4, -3.25 * 25.4)
-        assert store.parts("part.nc") >= made
-        assert store.load_program("part.nc") == PROGRAM.encode()
-        assert {"load", "part"} <= {event.kind for event in store.events()}
-        (run,) = store.runs()
+        assert store.offsets.tools.read_rows()[9].offset == (-0.5 * 25.4, -3.25 * 25.4)
+        assert store.runs.count_parts("part.nc") >= made
+        assert store.programs.load_version("part.nc") == PROGRAM.encode()
+        assert {"load", "part"} <= {event.kind for event in store.events.read_events()}
+        (run,) = store.runs.read_records()
         assert (run.program, run.outcome, run.started is not None) == ("part.nc", "", True)
-        counted = store.parts("part.nc")
+        counted = store.runs.count_parts("part.nc")
     with process(home, OPERATOR, *files) as again:
         cutting(again, 1)
         assert again.lines[-1]["alarms"] == []
@@ -101,19 +103,19 @@ def test_a_killed_screen_and_control_keep_what_was_entered_and_leave_nobody(
         assert parts_in(read_ring(home / "records" / LAST)) >= made  # of the control before
         until(lambda: not again.family(), lambda: "the driver host has not ended")
     with Store.open(home, read_only=True) as store:
-        assert store.parts("part.nc") > counted
-        told = [event.text for event in store.events() if event.kind == "warning"]
+        assert store.runs.count_parts("part.nc") > counted
+        told = [event.text for event in store.events.read_events() if event.kind == "warning"]
         assert text("shopfloor.ended-in-run", program="part.nc") in told
 
 
 def test_a_run_without_an_end_is_told_at_the_next_start(tmp_path: Path) -> None:
     with Store.open(tmp_path) as store:
-        store.run_started("cut.nc")
-        store.run_started("whole.nc")
-        store.run_ended("whole.nc", "COMPLETE")
-        store.count_part("counted.nc")
+        store.runs.record_start("cut.nc")
+        store.runs.record_start("whole.nc")
+        store.runs.record_end("whole.nc", "COMPLETE")
+        store.runs.add_parts("counted.nc")
     journal = Journal(tmp_path)
-    ended = {run.program: run.outcome for run in journal.runs()}
+    ended = {run.program: run.outcome for run in journal.opened().runs.read_records()}
     journal.close()
     assert ended == {"cut.nc": "CUT OFF", "whole.nc": "COMPLETE", "counted.nc": ""}
 
@@ -142,10 +144,10 @@ def test_a_killed_screen_holds_its_program_and_finds_it_again(files: tuple[str, 
             again.popen.terminate()
             until(lambda: not again.family(), again.family)
     with Store.open(home, read_only=True) as store:
-        kinds = [event.kind for event in store.events()]
+        kinds = [event.kind for event in store.events.read_events()]
         assert kinds.count("stop") == 1  # the feed hold by the control
-        assert kinds.count("part") == store.parts("part.nc") >= made + 1
-        assert [run.outcome for run in store.runs()] != ["CUT OFF"]
+        assert kinds.count("part") == store.runs.count_parts("part.nc") >= made + 1
+        assert [run.outcome for run in store.runs.read_records()] != ["CUT OFF"]
 
 
 def test_a_killed_control_is_an_alarm_and_the_screen_stays(files: tuple[str, str], tmp_path: Path) -> None:

@@ -53,7 +53,7 @@ def settle(room: Room, page: CellTable) -> None:
 
 
 def kept(room: Room, tool: int = 1) -> MillRow:
-    return room.store.mill_tools()[tool]
+    return room.store.offsets.mill_tools.read_rows()[tool]
 
 
 # --- typed ----------------------------------------------------------------------------------------------
@@ -112,7 +112,7 @@ def test_a_length_follows_from_a_tip_on_the_part(room: Room) -> None:
 
 
 def test_a_workpiece_follows_from_a_tip_that_touches_it(room: Room) -> None:
-    room.store.set_offset(MillTools.kind, 7, "", {"length": 60.0, "radius": 5.0}).result(LIMIT)
+    room.store.offsets.table(MillTools.kind).change_row(7, "", {"length": 60.0, "radius": 5.0}).result(LIMIT)
     room.desk.book.read()
     mill(room, 100.0, 50.0, -200.0, tool=7)
     page = Presets(room.desk)
@@ -124,18 +124,18 @@ def test_a_workpiece_follows_from_a_tip_that_touches_it(room: Room) -> None:
         page.here()
         settle(room, page)
     # The tip is 60 below the nose; its centre stands 5 before the left side.
-    assert room.store.presets()[1] == PresetRow(x=105.0, y=50.0, z=-262.0)
+    assert room.store.offsets.presets.read_rows()[1] == PresetRow(x=105.0, y=50.0, z=-262.0)
 
 
 def test_a_turned_table_is_reckoned_back_to_zero(room: Room) -> None:
     # C at 180 about X 300, Y 252: what touches at 340, 252 lies at 260, 252 with C at 0.
-    room.store.set_offset(MillTools.kind, 7, "", {"length": 60.0}).result(LIMIT)
+    room.store.offsets.table(MillTools.kind).change_row(7, "", {"length": 60.0}).result(LIMIT)
     room.desk.book.read()
     mill(room, 340.0, 252.0, -200.0, 0.0, 180.0, tool=7)
     page = Presets(room.desk)
     page.here()
     settle(room, page)
-    assert room.store.presets()[1].x == pytest.approx(260.0)
+    assert room.store.offsets.presets.read_rows()[1].x == pytest.approx(260.0)
 
 
 def touches(room: Room, page: MillTools | Presets, name: str, reads: str = "") -> None:
@@ -150,16 +150,16 @@ def touches(room: Room, page: MillTools | Presets, name: str, reads: str = "") -
 def test_a_rotary_axis_reads_what_is_typed_where_it_stands(room: Room) -> None:
     """C at 130 shall read 40: its zero is 90, and the part's zero goes along, 40 to the right of the table's
     line at X 300, Y 252, a quarter turn back."""
-    room.store.set_offset(Kind.PRESET, 1, "", {"x": 340.0, "y": 252.0, "z": 7.0}).result(LIMIT)
+    room.store.offsets.presets.change_row(1, "", {"x": 340.0, "y": 252.0, "z": 7.0}).result(LIMIT)
     room.desk.book.read()
     mill(room, 0.0, 0.0, 0.0, 0.0, 130.0)
     page = Presets(room.desk)
     assert page.columns == ("x", "y", "z", "rotation", "a", "c", "remark")
     touches(room, page, "c", "40")
-    row = room.store.presets()[1]
+    row = room.store.offsets.presets.read_rows()[1]
     assert (row.c, row.x, row.y, row.z) == pytest.approx((90.0, 300.0, 212.0, 7.0))
     types(room, page, "10", name="c")  # typed it is the figure alone
-    assert room.store.presets()[1] == row._replace(c=10.0)
+    assert room.store.offsets.presets.read_rows()[1] == row._replace(c=10.0)
 
 
 def at(room: Room, x: float, y: float) -> None:
@@ -168,7 +168,7 @@ def at(room: Room, x: float, y: float) -> None:
 
 def test_the_basic_rotation_follows_from_two_points_of_an_edge(room: Room) -> None:
     """10 up on 100 along is atan .1 = 5.7106 degrees, from whichever end; an edge along Y reads 90."""
-    room.store.set_offset(Kind.MILL_TOOL, 7, "", {"length": 60.0}).result(LIMIT)
+    room.store.offsets.mill_tools.change_row(7, "", {"length": 60.0}).result(LIMIT)
     room.desk.book.read()
     mill(room, 100.0, 50.0, -200.0, tool=7)
     page = Presets(room.desk)
@@ -186,11 +186,11 @@ def test_the_basic_rotation_follows_from_two_points_of_an_edge(room: Room) -> No
             page.typed(key)
         page.here()
         settle(room, page)
-        assert room.store.presets()[1].rotation == pytest.approx(wanted, abs=1e-6)
+        assert room.store.offsets.presets.read_rows()[1].rotation == pytest.approx(wanted, abs=1e-6)
 
 
 def test_points_that_lie_together_are_no_edge_and_another_cell_forgets_the_first(room: Room) -> None:
-    room.store.set_offset(Kind.MILL_TOOL, 7, "", {"length": 60.0}).result(LIMIT)
+    room.store.offsets.mill_tools.change_row(7, "", {"length": 60.0}).result(LIMIT)
     room.desk.book.read()
     mill(room, 100.0, 50.0, -200.0, tool=7)
     page = Presets(room.desk)
@@ -199,7 +199,7 @@ def test_points_that_lie_together_are_no_edge_and_another_cell_forgets_the_first
     at(room, 100.5, 50.5)
     page.here()
     assert "LESS THAN 1 MM APART" in room.desk.notice
-    assert room.store.presets() == {}
+    assert room.store.offsets.presets.read_rows() == {}
     page.choose(0, page.columns.index("rotation"))
     page.here()
     assert text("offsets.first-point") in room.desk.notice
@@ -209,7 +209,7 @@ def test_points_that_lie_together_are_no_edge_and_another_cell_forgets_the_first
 
 
 def test_cur_time_is_what_was_cut_and_goes_to_what_counts_it(room: Room) -> None:
-    room.store.set_offset(Kind.MILL_TOOL, 1, "", {"length": 60.0, "life": 30.0}).result(LIMIT)
+    room.store.offsets.mill_tools.change_row(1, "", {"length": 60.0, "life": 30.0}).result(LIMIT)
     room.desk.book.read()
     mill(room)
     told: list[tuple[int, float]] = []
@@ -250,7 +250,7 @@ def test_what_is_no_tool_is_refused(room: Room, name: str, text: str) -> None:
     page = MillTools(room.desk)
     types(room, page, text, name=name)
     assert room.desk.notice.startswith("REJECTED")
-    assert room.store.mill_tools() == {}
+    assert room.store.offsets.mill_tools.read_rows() == {}
 
 
 def test_nothing_changes_under_a_program(room: Room) -> None:
@@ -258,7 +258,7 @@ def test_nothing_changes_under_a_program(room: Room) -> None:
     room.at(State.RUN)
     page = Presets(room.desk)
     types(room, page, "3", name="x")
-    assert room.store.presets() == {}
+    assert room.store.offsets.presets.read_rows() == {}
     page.activate()
     assert text("offsets.between-cycles") in room.desk.notice
 
@@ -269,7 +269,7 @@ def test_a_leaning_tool_touches_no_length_off(room: Room) -> None:
     page.choose(0, page.columns.index("length"))
     page.here()
     assert "TILTED" in room.desk.notice
-    assert room.store.mill_tools() == {}
+    assert room.store.offsets.mill_tools.read_rows() == {}
 
 
 def test_a_workpiece_is_not_touched_with_a_tool_of_unknown_length(room: Room) -> None:
@@ -277,7 +277,7 @@ def test_a_workpiece_is_not_touched_with_a_tool_of_unknown_length(room: Room) ->
     page = Presets(room.desk)
     page.here()
     assert "TOOL CALL" in room.desk.notice
-    assert room.store.presets() == {}
+    assert room.store.offsets.presets.read_rows() == {}
 
 
 def test_an_axis_that_was_not_homed_touches_nothing_off(room: Room) -> None:

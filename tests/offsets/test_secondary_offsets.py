@@ -30,9 +30,11 @@ def test_x_is_halved_and_added_z_added_r_replaced(room: Room) -> None:
     page = room.page()
     room.enter(page, "3", "-.001", ".002", ".0156")
     room.enter(page, "3", "-.001", ".002", ".0312")
-    x, z, r = (value / 25.4 for value in room.store.secondary()[3])
+    x, z, r = (value / 25.4 for value in room.store.offsets.secondary.read_rows()[3])
     assert (x, z, r) == pytest.approx((-0.001, 0.004, 0.0312), abs=1e-12)
-    assert in_words(room.store.secondary()[3], Mode()) == "X −0.00100  Z +0.00400  R 0.03120"
+    assert (
+        in_words(room.store.offsets.secondary.read_rows()[3], Mode()) == "X −0.00100  Z +0.00400  R 0.03120"
+    )
 
 
 def test_an_empty_row_reads_as_on_the_control() -> None:
@@ -44,17 +46,19 @@ def test_ten_small_corrections_are_one_large_one(room: Room) -> None:
     page = room.page()
     for _ in range(10):
         room.enter(page, "1", ".0001", "", "")
-    assert room.store.secondary()[1].x == 0.0005 * 25.4
+    assert room.store.offsets.secondary.read_rows()[1].x == 0.0005 * 25.4
 
 
 def test_bare_return_keeps(room: Room) -> None:
     page = room.page()
     room.enter(page, "2", ".1", ".2", ".3", asked=True)
     room.enter(page, "2", "", ".01", "")
-    assert room.store.secondary()[2] == pytest.approx((0.05 * 25.4, 0.21 * 25.4, 0.3 * 25.4))
+    assert room.store.offsets.secondary.read_rows()[2] == pytest.approx(
+        (0.05 * 25.4, 0.21 * 25.4, 0.3 * 25.4)
+    )
     room.enter(page, "2", "", "", "")
     assert room.desk.notice == text("offsets.as-it-was", number=2)
-    assert len(room.store.history()) == 2
+    assert len(room.store.offsets.read_history()) == 2
 
 
 def test_arithmetic_and_the_preview_of_old_and_new(room: Room) -> None:
@@ -67,7 +71,7 @@ def test_arithmetic_and_the_preview_of_old_and_new(room: Room) -> None:
     assert page.preview == (0.0, 0.0, 0.0)
     page.typed("Back")
     room.enter(page, "", "", "", asked=True)
-    assert room.store.secondary()[1].x == pytest.approx(0.249 * 25.4)
+    assert room.store.offsets.secondary.read_rows()[1].x == pytest.approx(0.249 * 25.4)
     assert room.desk.notice == "D1 SAVED"
     assert page.old_to_new == "D1   not set  →  X +0.24900  Z +0.00000  R 0.00000"
 
@@ -97,15 +101,15 @@ def test_refusals_say_what_and_why_and_ask_again(room: Room, answers: tuple[str,
     room.enter(page, *answers)
     assert room.desk.notice == text("offsets.refused", why=why)
     assert page.text == answers[-1]
-    assert room.store.secondary() == {}
+    assert room.store.offsets.secondary.read_rows() == {}
 
 
 def test_metric_when_the_control_is_metric(room: Room) -> None:
     room.at(metric=True)
     page = room.page()
     room.enter(page, "1", ".02", "-.5", ".4", asked=True)
-    assert room.store.secondary()[1] == (0.01, -0.5, 0.4)
-    assert room.store.history()[0].why == "MM X .02 Z -.5 R .4"
+    assert room.store.offsets.secondary.read_rows()[1] == (0.01, -0.5, 0.4)
+    assert room.store.offsets.read_history()[0].why == "MM X .02 Z -.5 R .4"
 
 
 def test_a_unit_that_changes_in_the_middle_gives_the_entry_up(room: Room) -> None:
@@ -115,7 +119,7 @@ def test_a_unit_that_changes_in_the_middle_gives_the_entry_up(room: Room) -> Non
     page.look(room.now[0])
     assert page.step is Step.NUMBER
     assert "NOTHING SAVED" in room.desk.notice
-    assert room.store.secondary() == {}
+    assert room.store.offsets.secondary.read_rows() == {}
 
 
 def test_escape_goes_back_step_by_step(room: Room) -> None:
@@ -125,7 +129,7 @@ def test_escape_goes_back_step_by_step(room: Room) -> None:
     assert room.desk.notice == text("offsets.as-it-was", number=4)
     assert page.question == "Offset Number?"
     assert not page.escape()
-    assert room.store.secondary() == {}
+    assert room.store.offsets.secondary.read_rows() == {}
 
 
 def test_clear_asks_once_more(room: Room) -> None:
@@ -140,19 +144,19 @@ def test_clear_asks_once_more(room: Room) -> None:
     page.typed("Back")
     page.typed("C")
     room.settle(page)
-    assert len(room.store.secondary()) == 2
+    assert len(room.store.offsets.secondary.read_rows()) == 2
     page.typed("C")
     room.settle(page)
-    assert len(room.store.secondary()) == 2
+    assert len(room.store.offsets.secondary.read_rows()) == 2
     room.desk.answers._since = float("-inf")
     room.desk.answer()
     room.settle(page)
-    assert room.store.secondary() == {}
+    assert room.store.offsets.secondary.read_rows() == {}
     assert page.old_to_new == text("offsets.count-changed", count=2, keys="F5")
     page.undo()
     room.confirm()
     room.settle(page)
-    assert sorted(room.store.secondary()) == [1, 9]
+    assert sorted(room.store.offsets.secondary.read_rows()) == [1, 9]
 
 
 def test_clear_is_not_taken_in_the_middle_of_an_entry(room: Room) -> None:
@@ -162,19 +166,19 @@ def test_clear_is_not_taken_in_the_middle_of_an_entry(room: Room) -> None:
     page.typed("C")
     page.typed("C")
     room.settle(page)
-    assert room.store.secondary()
+    assert room.store.offsets.secondary.read_rows()
     assert room.desk.notice == text("offsets.only-at-number")
 
 
 def test_undo_takes_back_secondary_offsets_only(room: Room) -> None:
     page = room.page()
     room.enter(page, "1", ".1", "", "", asked=True)
-    room.store.set_tool(1, "touched off", x=5.0).result(LIMIT)
+    room.store.offsets.tools.change_row(1, "touched off", {"x": 5.0}).result(LIMIT)
     page.undo()
     room.confirm()
     room.settle(page)
-    assert room.store.secondary() == {}
-    assert room.store.tools()[1].x == 5.0
+    assert room.store.offsets.secondary.read_rows() == {}
+    assert room.store.offsets.tools.read_rows()[1].x == 5.0
     assert room.desk.notice == "D1 UNDONE"
     page.undo()
     assert not room.desk.asked
@@ -193,7 +197,7 @@ def test_undo_after_a_number_is_of_this_offset_and_a_value_is_only_cancelled(roo
     page.undo()
     room.confirm()
     room.settle(page)
-    assert set(room.store.secondary()) == {2}
+    assert set(room.store.offsets.secondary.read_rows()) == {2}
     assert room.desk.notice == "D1 UNDONE"
     assert page.step is Step.NUMBER
 
@@ -235,7 +239,7 @@ def test_a_correction_while_parts_run_counts_from_the_next_one(
     assert text(f"offsets.prompt-{when}") in page.prompt(room.now[0])
     room.enter(page, "1", ".1", "", "", asked=True)
     assert room.desk.notice == f"D1 SAVED{text(f'offsets.{when}')}"
-    assert room.store.secondary()[1].x == pytest.approx(0.05 * 25.4)
+    assert room.store.offsets.secondary.read_rows()[1].x == pytest.approx(0.05 * 25.4)
     page.undo()
     room.confirm()
     room.settle(page)
@@ -251,7 +255,7 @@ def test_all_offsets_are_not_cleared_under_a_running_program(room: Room, state: 
     page.typed("C")
     assert room.desk.notice == text("offsets.only-wear")
     room.settle(page)
-    assert room.store.secondary()[1].x == pytest.approx(0.05 * 25.4)
+    assert room.store.offsets.secondary.read_rows()[1].x == pytest.approx(0.05 * 25.4)
 
 
 @pytest.mark.parametrize("state", [State.JOG, State.HOME])
@@ -269,7 +273,7 @@ def test_the_next_part_that_switches_to_diameters_does_not_take_the_entry_away(r
     room.enter(page, "3", "-.0002")
     room.at(State.RUN, diameter=False)
     room.enter(page, "", "")
-    assert room.store.secondary()[3].x == pytest.approx(-0.0001 * 25.4)
+    assert room.store.offsets.secondary.read_rows()[3].x == pytest.approx(-0.0001 * 25.4)
 
 
 def test_the_next_part_that_switches_to_mm_does(room: Room) -> None:
@@ -279,7 +283,7 @@ def test_the_next_part_that_switches_to_mm_does(room: Room) -> None:
     room.at(State.RUN, metric=True)
     room.settle(page)
     assert room.desk.notice == text("offsets.unit-changed")
-    assert 3 not in room.store.secondary()
+    assert 3 not in room.store.offsets.secondary.read_rows()
 
 
 def test_a_correction_at_a_stop_counts_when_the_job_has_ended(room: Room) -> None:

@@ -69,7 +69,7 @@ def test_datums_are_not_questioned() -> None:
 
 
 def test_a_typed_x_of_a_tool_is_asked_and_esc_keeps_it(room: Room) -> None:
-    room.store.set_tool(1, "touched off", x=12.7, z=-76.2).result(60)
+    room.store.offsets.tools.change_row(1, "touched off", {"x": 12.7, "z": -76.2}).result(60)
     room.desk.book.read()
     grid = room.grid()
     grid.look(room.now[0])
@@ -81,25 +81,28 @@ def test_a_typed_x_of_a_tool_is_asked_and_esc_keeps_it(room: Room) -> None:
     assert room.desk.notice == text("offsets.suspicious", changes=change)
     assert grid.escape()
     room.settle(grid)
-    assert room.store.tools()[1].x == 12.7
+    assert room.store.offsets.tools.read_rows()[1].x == 12.7
 
 
 def test_undo_takes_back_the_chosen_row_only(room: Room) -> None:
     for number in (1, 2):
-        room.store.set_tool(number, "touched off", x=12.7, z=-76.2)
-    room.store.set_tool(1, "moved", x=12.8)
-    room.store.set_tool(2, "moved", x=12.9).result(60)
+        room.store.offsets.tools.change_row(number, "touched off", {"x": 12.7, "z": -76.2})
+    room.store.offsets.tools.change_row(1, "moved", {"x": 12.8})
+    room.store.offsets.tools.change_row(2, "moved", {"x": 12.9}).result(60)
     room.desk.book.read()
     grid = room.grid()
     grid.look(room.now[0])
     grid.choose(1, 0)
     grid.undo()
     room.settle(grid)
-    assert room.store.tools()[1].x == 12.8
+    assert room.store.offsets.tools.read_rows()[1].x == 12.8
     assert room.desk.asked
     room.confirm()
     room.settle(grid)
-    assert (room.store.tools()[1].x, room.store.tools()[2].x) == (12.7, 12.9)
+    assert (room.store.offsets.tools.read_rows()[1].x, room.store.offsets.tools.read_rows()[2].x) == (
+        12.7,
+        12.9,
+    )
 
 
 def test_undo_of_a_row_without_a_change_asks_nothing(room: Room) -> None:

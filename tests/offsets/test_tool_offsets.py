@@ -16,8 +16,8 @@ INCH = 25.4
 
 def set_tools(room: Room) -> None:
     """T1 and T2 stand in the table."""
-    room.store.set_tool(1, "touched off", x=-12.7, z=-76.2, nose_radius=0.381)
-    room.store.set_tool(2, "touched off", x=25.4, z=-50.8).result(LIMIT)
+    room.store.offsets.tools.change_row(1, "touched off", {"x": -12.7, "z": -76.2, "nose_radius": 0.381})
+    room.store.offsets.tools.change_row(2, "touched off", {"x": 25.4, "z": -50.8}).result(LIMIT)
     room.desk.book.read()  # as a desk that is opened now reads them
 
 
@@ -54,7 +54,7 @@ def test_a_length_is_read_as_the_control_shows_it(
     room.at(diameter=diameter)
     grid = at(room, 1, name)
     room.enter(grid, typed)
-    assert getattr(room.store.tools()[1], name) == pytest.approx(mm, abs=1e-12)
+    assert getattr(room.store.offsets.tools.read_rows()[1], name) == pytest.approx(mm, abs=1e-12)
     assert room.desk.notice == "T1 SAVED"
 
 
@@ -65,8 +65,8 @@ def test_f2_adds_to_what_is_there(room: Room) -> None:
         write(grid, ".0001")
         grid.add()
         room.settle(grid)
-    assert room.store.tools()[1].wear_x == 0.0005 * INCH
-    assert room.store.history()[0].why == "WEAR X + .0001"
+    assert room.store.offsets.tools.read_rows()[1].wear_x == 0.0005 * INCH
+    assert room.store.offsets.read_history()[0].why == "WEAR X + .0001"
     grid.add()
     assert room.desk.notice == text("offsets.add-first")
 
@@ -82,7 +82,7 @@ def test_quadrant_remark_and_the_sum_that_the_control_gets(room: Room) -> None:
     room.settle(grid)
     grid.choose(1, 5)
     room.enter(grid, "-.002")
-    row = room.store.tools()[1]
+    row = room.store.offsets.tools.read_rows()[1]
     assert row == pytest.approx(ToolRow(-12.7, -76.2, 0.381, 0.0, -0.0508, 3)[:6] + row[6:])
     assert row.remark == "Hard END, .4 R"
     assert row.offset == pytest.approx((-12.7, -76.2508))
@@ -98,17 +98,17 @@ def test_a_remark_takes_letters_only_once_it_is_open(room: Room) -> None:
     assert grid.typed("H")
     assert grid.escape()
     assert not grid.takes("H")
-    assert room.store.tools()[1].remark == ""
+    assert room.store.offsets.tools.read_rows()[1].remark == ""
 
 
 def test_a_tool_that_was_never_set_needs_x_and_z_together(room: Room) -> None:
     grid = at(room, 7, "x")
     room.enter(grid, "1")
-    assert room.store.tools() == {}
+    assert room.store.offsets.tools.read_rows() == {}
     assert room.desk.notice == text("offsets.half-set", axis="Z", number=7)
     assert grid.name == "z"
     room.enter(grid, "-2")
-    assert room.store.tools() == {7: ToolRow(INCH, -2 * INCH)}
+    assert room.store.offsets.tools.read_rows() == {7: ToolRow(INCH, -2 * INCH)}
 
 
 def test_half_a_tool_is_forgotten_when_it_is_left(room: Room) -> None:
@@ -117,7 +117,7 @@ def test_half_a_tool_is_forgotten_when_it_is_left(room: Room) -> None:
     grid.typed("Down")
     assert room.desk.notice == text("offsets.not-set", number=7)
     assert grid.cell(7, "z") == ""
-    assert room.store.tools() == {}
+    assert room.store.offsets.tools.read_rows() == {}
 
 
 @pytest.mark.parametrize("name", ["nose_radius", "wear_x", "quadrant"])
@@ -125,7 +125,7 @@ def test_no_other_field_of_a_tool_that_was_never_set(room: Room, name: str) -> N
     grid = at(room, 7, name)
     room.enter(grid, "0")
     assert room.desk.notice == text("offsets.never-set", number=7)
-    assert room.store.tools() == {}
+    assert room.store.offsets.tools.read_rows() == {}
 
 
 def test_the_master_is_chosen_and_the_others_are_shown_from_it(room: Room) -> None:
@@ -133,10 +133,10 @@ def test_the_master_is_chosen_and_the_others_are_shown_from_it(room: Room) -> No
     grid = at(room, 2, "master")
     grid.turn_relative()
     assert room.desk.notice == text("offsets.no-master")
-    before = {n: row.offset for n, row in room.store.tools().items()}
+    before = {n: row.offset for n, row in room.store.offsets.tools.read_rows().items()}
     room.enter(grid, "", asked=True)
     assert room.desk.book.master == 2
-    assert {n: row.offset for n, row in room.store.tools().items()} == before
+    assert {n: row.offset for n, row in room.store.offsets.tools.read_rows().items()} == before
     grid.turn_relative()
     # T1 - T2: X (-.5 - 1) in, Z (-3 - -2) in
     assert (grid.cell(1, "x"), grid.cell(1, "z")) == ("−1.50000", "−1.00000")
@@ -146,7 +146,7 @@ def test_the_master_is_chosen_and_the_others_are_shown_from_it(room: Room) -> No
     grid.choose(1, 0)
     room.enter(grid, "1")
     assert room.desk.notice == text("offsets.shown-from-master")  # from the master they are only shown
-    assert room.store.tools()[1].x == -12.7
+    assert room.store.offsets.tools.read_rows()[1].x == -12.7
 
 
 def test_the_cursor_does_not_leave_what_is_typed(room: Room) -> None:
@@ -170,7 +170,7 @@ GEOMETRY = ("x", "z", "nose_radius", "quadrant", "master")
 @pytest.mark.parametrize("name", GEOMETRY)
 def test_no_geometry_changes_while_a_cycle_is_under_way(room: Room, state: State, name: str) -> None:
     set_tools(room)
-    before = room.store.tools()
+    before = room.store.offsets.tools.read_rows()
     room.at(state)
     grid = at(room, 1, name)
     room.enter(grid, "1" if name != "master" else "")
@@ -181,7 +181,7 @@ def test_no_geometry_changes_while_a_cycle_is_under_way(room: Room, state: State
     assert not room.desk.asked
     assert "PROGRAM RUNNING" in room.desk.notice
     room.settle(grid)
-    assert room.store.tools() == before
+    assert room.store.offsets.tools.read_rows() == before
 
 
 @pytest.mark.parametrize("name", GEOMETRY)
@@ -196,7 +196,7 @@ def test_while_a_part_runs_only_wear_may_change(room: Room, state: State, name: 
     grid.choose(1, 4)
     room.enter(grid, "-.001")
     assert room.desk.notice == f"T1 SAVED{text('offsets.next-start')}"
-    assert room.store.tools()[1].wear_x == pytest.approx(-0.0127)
+    assert room.store.offsets.tools.read_rows()[1].wear_x == pytest.approx(-0.0127)
 
 
 def test_a_start_in_the_middle_of_an_entry_refuses_its_end(room: Room) -> None:
@@ -206,7 +206,7 @@ def test_a_start_in_the_middle_of_an_entry_refuses_its_end(room: Room) -> None:
     room.at(State.RUN)
     room.enter(grid, "")
     assert "PROGRAM RUNNING" in room.desk.notice
-    assert room.store.tools()[1].x == -12.7
+    assert room.store.offsets.tools.read_rows()[1].x == -12.7
 
 
 def test_another_unit_in_the_middle_gives_the_entry_up(room: Room) -> None:
@@ -227,7 +227,7 @@ def test_a_part_that_switches_to_diameters_leaves_an_entry_of_wear_alone(room: R
     write(grid, "-.001")
     room.at(State.RUN, diameter=True)
     room.enter(grid, "")
-    assert room.store.tools()[1].wear_x == pytest.approx(-0.0127)
+    assert room.store.offsets.tools.read_rows()[1].wear_x == pytest.approx(-0.0127)
 
 
 def would_become(field: str, value: str, low: str, high: str) -> str:
@@ -259,14 +259,14 @@ def test_what_is_no_value_is_refused_and_stays_to_be_mended(
     room: Room, name: str, typed: str, why: str
 ) -> None:
     set_tools(room)
-    before = room.store.tools()
+    before = room.store.offsets.tools.read_rows()
     grid = at(room, 1, name)
     write(grid, typed) if "," not in typed else setattr(grid, "text", typed)
     grid.typed("Enter")
     assert room.desk.notice.startswith(why)
     assert grid.text == typed
     room.settle(grid)
-    assert room.store.tools() == before
+    assert room.store.offsets.tools.read_rows() == before
 
 
 def test_undo_and_history(room: Room) -> None:
@@ -276,7 +276,7 @@ def test_undo_and_history(room: Room) -> None:
     grid.undo()
     room.confirm()
     room.settle(grid)
-    assert room.store.tools()[1].wear_x == 0.0
+    assert room.store.offsets.tools.read_rows()[1].wear_x == 0.0
     assert room.desk.notice == "T1 UNDONE"
     grid.history.toggle()
     assert grid.history.listed is not None
@@ -289,14 +289,14 @@ def test_undo_and_history(room: Room) -> None:
 
 def test_undo_of_half_a_tool_takes_that_back_and_no_older_change(room: Room) -> None:
     set_tools(room)
-    before = room.store.tools()
+    before = room.store.offsets.tools.read_rows()
     grid = at(room, 5, "x")
     room.enter(grid, "1")
     assert grid.fields.new.number == 5
     grid.undo()
     assert not room.desk.asked
     room.settle(grid)
-    assert (grid.fields.new.number, room.store.tools()) == (0, before)
+    assert (grid.fields.new.number, room.store.offsets.tools.read_rows()) == (0, before)
     assert "UNDONE" not in room.desk.notice
 
 
@@ -329,7 +329,7 @@ def test_d_opens_another_cutting_edge(with_edges: Room) -> None:
     assert (grid.number, grid.name, grid.rows[:3]) == (200_001, "x", (1, 200_001, 2))
     room.enter(grid, ".5")
     room.enter(grid, "-3.2")
-    assert room.store.tools()[200_001] == pytest.approx(ToolRow(0.5 * INCH, -3.2 * INCH))
+    assert room.store.offsets.tools.read_rows()[200_001] == pytest.approx(ToolRow(0.5 * INCH, -3.2 * INCH))
     assert room.desk.notice == "T1 D2 SAVED"
     assert grid.typed("Down")
     assert grid.number == 2

@@ -7,7 +7,7 @@ import pytest
 from app.offsets.tool_shapes import ToolShapes
 from core.executor.snapshot import State
 from core.part.tool_shape import ToolKind
-from core.store.store_rows import TOOL_KINDS, Kind, ShapeRow
+from core.store.store_rows import TOOL_KINDS, ShapeRow
 from tests.offsets.conftest import LIMIT, Room
 from tests.screen.yes import read
 from tests.texts import shows, text
@@ -17,10 +17,12 @@ INCH = 25.4
 
 def set_tools(room: Room) -> None:
     """T1 turns and was touched off, T2 was touched off and has no shape, T3 is a drill from the office."""
-    room.store.set_tool(1, "set", x=-12.7, z=-76.2, nose_radius=0.79375, quadrant=3)
-    room.store.set_tool(2, "set", x=25.4, z=-50.8)
-    room.store.set_offset(Kind.SHAPE, 1, "set", {"kind": "turning", "insert": "CNMG432"})
-    room.store.set_offset(Kind.SHAPE, 3, "set", {"kind": "drill", "diameter": 6.35}).result(LIMIT)
+    room.store.offsets.tools.change_row(
+        1, "set", {"x": -12.7, "z": -76.2, "nose_radius": 0.79375, "quadrant": 3}
+    )
+    room.store.offsets.tools.change_row(2, "set", {"x": 25.4, "z": -50.8})
+    room.store.offsets.shapes.change_row(1, "set", {"kind": "turning", "insert": "CNMG432"})
+    room.store.offsets.shapes.change_row(3, "set", {"kind": "drill", "diameter": 6.35}).result(LIMIT)
     room.desk.book.read()
 
 
@@ -95,7 +97,7 @@ def test_kind_is_turned_to_and_set(room: Room) -> None:
     assert page.entered == "FORM TOOL", "it goes round"
     write(page, "Right", "Enter")
     save(room, page)
-    assert room.store.shapes()[2] == ShapeRow("turning")
+    assert room.store.offsets.shapes.read_rows()[2] == ShapeRow("turning")
     assert room.desk.notice == "T2 SAVED"
     assert page.history.last_in_words == "T2   not set  →  TURNING  RIGHT HAND"
 
@@ -109,14 +111,14 @@ def test_length_is_typed_in_the_controls_unit(room: Room, metric: bool, typed: s
     page.look(room.now[0])
     write(page, typed, "Enter")
     save(room, page)
-    assert room.store.shapes()[3].diameter == pytest.approx(mm)
+    assert room.store.offsets.shapes.read_rows()[3].diameter == pytest.approx(mm)
 
 
 def test_angle_is_typed_in_degrees(room: Room) -> None:
     page = shape_of(room, 3, "point")
     write(page, "118", "Enter")
     save(room, page)
-    assert room.store.shapes()[3].point == 118.0
+    assert room.store.offsets.shapes.read_rows()[3].point == 118.0
     assert page.cell("point") == "118°"
 
 
@@ -127,7 +129,7 @@ def test_text_is_opened_written_and_kept(room: Room) -> None:
     assert (page.text, page.takes("D")) == ("CNMG432", True)
     write(page, "Delete", "DNMG 442", "Enter")
     save(room, page)
-    assert room.store.shapes()[1].insert == "DNMG 442"
+    assert room.store.offsets.shapes.read_rows()[1].insert == "DNMG 442"
     assert page.cell("insert") == "DNMG 442"
 
 
@@ -136,8 +138,8 @@ def test_nose_radius_and_tip_are_those_of_the_offset(room: Room) -> None:
     assert page.cell("nose_radius") == "0.03125"
     write(page, ".0156", "Enter")
     save(room, page)
-    assert room.store.tools()[1].nose_radius == pytest.approx(0.0156 * INCH)
-    assert len(room.store.history(Kind.SHAPE)) == 2, "the shape has not changed"
+    assert room.store.offsets.tools.read_rows()[1].nose_radius == pytest.approx(0.0156 * INCH)
+    assert len(room.store.offsets.shapes.read_history()) == 2, "the shape has not changed"
     assert room.desk.notice == "SAVED"
     assert page.outline is not None
     assert page.outline.cutting[0][:, 1].min() == pytest.approx(0.0, abs=1e-9)
@@ -155,15 +157,15 @@ def test_f3_takes_the_shape_away_after_asking_and_undo_brings_it_back(room: Room
     page = shape_of(room, 3)
     page.remove()
     assert text("offsets.forget-shape", number=3) in room.desk.notice
-    assert 3 in room.store.shapes()
+    assert 3 in room.store.offsets.shapes.read_rows()
     read(room.desk)
     room.desk.yes()
     save(room, page)
-    assert 3 not in room.store.shapes()
+    assert 3 not in room.store.offsets.shapes.read_rows()
     page.undo()
     room.confirm()
     save(room, page)
-    assert room.store.shapes()[3].diameter == 6.35
+    assert room.store.offsets.shapes.read_rows()[3].diameter == 6.35
     assert room.desk.notice == "T3 UNDONE"
 
 
@@ -205,7 +207,7 @@ def test_value_that_means_nothing_is_refused_and_stays_to_be_mended(
     room: Room, number: int, name: str, keys: tuple[str, ...], says: str
 ) -> None:
     page = shape_of(room, number, name)
-    before = room.store.shapes()[number], room.store.tools().get(number)
+    before = room.store.offsets.shapes.read_rows()[number], room.store.offsets.tools.read_rows().get(number)
     write(page, *keys)
     if not says:  # a contradiction with another field is kept, and shown there
         save(room, page)
@@ -214,7 +216,10 @@ def test_value_that_means_nothing_is_refused_and_stays_to_be_mended(
         return
     assert says in room.desk.notice
     assert page.text
-    assert (room.store.shapes()[number], room.store.tools().get(number)) == before
+    assert (
+        room.store.offsets.shapes.read_rows()[number],
+        room.store.offsets.tools.read_rows().get(number),
+    ) == before
 
 
 def test_letters_are_no_figures(room: Room) -> None:
@@ -258,7 +263,7 @@ def test_nothing_changes_while_a_program_is_under_way(room: Room) -> None:
     page.remove()
     page.undo()
     assert not room.desk.asked
-    assert len(room.store.history(Kind.SHAPE)) == 2
+    assert len(room.store.offsets.shapes.read_history()) == 2
 
 
 def test_there_is_no_shape_to_take_away(room: Room) -> None:

@@ -32,9 +32,9 @@ class Recorded:
 
     def settle(self) -> None:
         for event in self.rig.events[self._heard :]:
-            self.recorder.hear(event, self.store)
+            self.recorder.hear(event, self.store.cycles)
         self._heard = len(self.rig.events)
-        self.store.set_setting("settled", True).result(60)
+        self.store.settings.save_setting("settled", True).result(60)
 
     @property
     def cycles(self) -> tuple[CycleRow, ...]:
@@ -193,15 +193,15 @@ def test_events_without_a_cycle_leave_nothing(recorded: Recorded) -> None:
         ("mdi", "G90"),
         ("restart", "from line 3"),
     ):
-        recorded.recorder.hear(Event(0.0, kind, text), recorded.store)
+        recorded.recorder.hear(Event(0.0, kind, text), recorded.store.cycles)
     assert recorded.cycles == ()
     assert recorded.stops == ()
 
 
 def test_the_load_that_a_part_tells_is_kept_with_its_cycle(recorded: Recorded) -> None:
     for kind, text in (("load", "peg.nc"), ("start", "peg.nc")):
-        recorded.recorder.hear(Event(0.0, kind, text), recorded.store)
-    recorded.recorder.hear(Event(9.0, "part", "part 1", part=1, load=31.5), recorded.store)
-    recorded.recorder.hear(Event(10.0, "start", "peg.nc"), recorded.store)
-    recorded.recorder.hear(Event(19.0, "part", "part 2", part=2), recorded.store)
+        recorded.recorder.hear(Event(0.0, kind, text), recorded.store.cycles)
+    recorded.recorder.hear(Event(9.0, "part", "part 1", part=1, load=31.5), recorded.store.cycles)
+    recorded.recorder.hear(Event(10.0, "start", "peg.nc"), recorded.store.cycles)
+    recorded.recorder.hear(Event(19.0, "part", "part 2", part=2), recorded.store.cycles)
     assert [row.load for row in recorded.cycles] == [31.5, None]

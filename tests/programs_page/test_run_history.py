@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from app.desk.persistence import Persistence
+from app.desk.persistence import NoRunRecords, Persistence
 from app.desk.programs.program_loading import Loaded, Phase
 from app.programs.run_history import RunHistory
 from core.executor.job import Proof
@@ -20,23 +20,38 @@ RUNNING = replace(READY, state=State.RUN, block=3)
 NO_PROGRAM = Loaded()
 
 
-@dataclass
-class Kept(Persistence):
-    """Writes down what is posted."""
+@dataclass(frozen=True)
+class WrittenDown(NoRunRecords):
+    """Writes down what is recorded."""
 
     told: list[tuple[object, ...]] = field(default_factory=list)
 
-    def run_started(self, program: str) -> None:
+    def record_start(self, program: str) -> None:
         self.told.append(("started", program))
 
-    def run_ended(self, program: str, outcome: str) -> None:
+    def record_end(self, program: str, outcome: str) -> None:
         self.told.append(("ended", program, outcome))
 
-    def cycle_finished(self, program: str, seconds: float) -> None:
+    def record_cycle(self, program: str, seconds: float) -> None:
         self.told.append(("cycle", program, seconds))
 
-    def program_proved(self, program: str, result: str, planned: float | None, text: str) -> None:
+    def record_proof(self, program: str, result: str, planned: float | None, text: str | None = None) -> None:
         self.told.append(("proved", program, result, planned, text))
+
+
+@dataclass
+class Kept(Persistence):
+    """A store whose run records are written down."""
+
+    records: WrittenDown = field(default_factory=WrittenDown)
+
+    @property
+    def runs(self) -> NoRunRecords:
+        return self.records
+
+    @property
+    def told(self) -> list[tuple[object, ...]]:
+        return self.records.told
 
 
 def told(*snapshots: Snapshot) -> list[tuple[object, ...]]:
@@ -116,11 +131,11 @@ def test_a_proof_is_kept_once() -> None:
 
 
 def test_a_store_that_fails_stops_nobody() -> None:
-    class Broken(Kept):
-        def run_started(self, program: str) -> None:
+    class Broken(WrittenDown):
+        def record_start(self, program: str) -> None:
             raise StoreError(f"the disk is full: {program}")
 
-    record = RunHistory(Broken())
+    record = RunHistory(Kept(records=Broken()))
     for snapshot in (READY, RUNNING, READY):
         record.see(snapshot, NO_PROGRAM)
     assert record.running == ""

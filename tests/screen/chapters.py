@@ -116,7 +116,7 @@ def set_tools(day: Day) -> None:
         day.enter(face)
         day.saved()
         assert day.prompt == f"T{number} SAVED"
-    tools = day.store.tools()
+    tools = day.store.offsets.tools.read_rows()
     for row, (x, z) in ((tools[1], T1), (tools[2], T2)):
         assert (row.x / 25.4, row.z / 25.4) == (pytest.approx(x, abs=NEAR), pytest.approx(z, abs=NEAR))
     back_to_automatic(day)

@@ -40,7 +40,6 @@ from core.store.production.measured_parts import FeatureRow, ReadingRow
 from core.store.production.part_cycles import CycleRow, StopRow
 from core.store.production.tool_lives import LifeRow
 from core.store.store import Store
-from core.store.store_rows import Kind
 from drivers.waiting import StepClock
 from tests.extras.modules import of_extras
 
@@ -82,12 +81,14 @@ class Stage:
     def _fill(self, store: Store) -> None:
         """The offsets of the samples and some corrections."""
         for number, tool in read_offsets(samples() / "offsets.toml").tools.items():
-            store.set_tool(number, "touched off", x=tool.x, z=tool.z, nose_radius=tool.nose_radius)
+            store.offsets.tools.change_row(
+                number, "touched off", {"x": tool.x, "z": tool.z, "nose_radius": tool.nose_radius}
+            )
         sheet = {"kind": "turning", "insert": "CNMG432", "holder": "MCLNR-124B"}
-        store.set_tool(1, "set", quadrant=3)
-        store.set_offset(Kind.SHAPE, 1, "entered", sheet)
+        store.offsets.tools.change_row(1, "set", {"quadrant": 3})
+        store.offsets.shapes.change_row(1, "entered", sheet)
         for number, x, z, why in CORRECTIONS:
-            store.set_secondary(number, why, x=x * 25.4, z=z * 25.4).result()
+            store.offsets.secondary.change_row(number, why, {"x": x * 25.4, "z": z * 25.4}).result()
         _fill_parts(store)
 
     def close(self) -> None:
@@ -200,7 +201,7 @@ def _fill_parts(store: Store) -> None:
     for program, wanted, note in JOBS:
         store.write(partial(job_queue.add, program=program, wanted=wanted, note=note)).result()
     store.write(lambda c: job_queue.begin(c, 1)).result()
-    store.correct_parts(name, len(SIZES_MEASURED)).result()
+    store.runs.add_parts(name, len(SIZES_MEASURED)).result()
 
 
 def main(argv: list[str] | None = None) -> int:
@@ -269,7 +270,8 @@ def _of_levels(out: Path, looks: Looks) -> Iterator[Path]:
         journal = Journal.at_home()
         stage = Stage(journal)
         for name, level in (("ANNA", Level.SERVICE), ("BEN", Level.SETUP)):
-            journal.keep_person(PersonRow(name, level, b"-", b"-"))  # nobody has to sign in
+            person = PersonRow(name, level, b"-", b"-")  # nobody has to sign in
+            journal.opened().people.save_person(person).result()
         stage.desk.access.reload()
         stage.make_ready()
         yield from taken(stage.desk, out, False, looks, levels=True)

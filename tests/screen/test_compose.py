@@ -40,7 +40,7 @@ def test_without_a_file_the_store_is_asked_anew_each_time(home: Path) -> None:
     offsets = chosen_offsets(None)
     assert offsets() == NONE
     with Store.open(home) as store:
-        store.set_tool(7, x=1.0, z=2.0, why="touched off").result(60)
+        store.offsets.tools.change_row(7, values={"x": 1.0, "z": 2.0}, why="touched off").result(60)
     assert sorted(offsets()[0]) == [7]
 
 
@@ -56,9 +56,9 @@ def test_what_ran_is_kept(home: Path) -> None:
         journal.hear(Event(1.0, kind, text))
     journal.close()
     with Store.open(home, read_only=True) as store:
-        assert store.load_program("part.nc") == b"G90\nM30\n"
-        assert store.parts("part.nc") == 2
-        assert [event.kind for event in store.events()].count("part") == 2
+        assert store.programs.load_version("part.nc") == b"G90\nM30\n"
+        assert store.runs.count_parts("part.nc") == 2
+        assert [event.kind for event in store.events.read_events()].count("part") == 2
 
 
 def test_a_store_that_cannot_be_trusted_is_told_and_left_alone(home: Path) -> None:

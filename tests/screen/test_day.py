@@ -104,7 +104,7 @@ def test_from_an_empty_folder_to_the_first_good_part(day: Day) -> None:
     set_tools(day)
     correct(day, ".5-.502", "2/2000")
     day.sees(lambda: text("screen.to-start") in day.prompt)  # a warning of the first move may come before it
-    row = day.store.secondary()[1]
+    row = day.store.offsets.secondary.read_rows()[1]
     assert (row.x / 25.4, row.z / 25.4) == pytest.approx(D1, abs=1e-9)
     dry_run(day)
     assert day.count("part") == 1

@@ -94,8 +94,8 @@ def test_five_parts_with_a_wear_correction_between(day: Day) -> None:
     assert not day.shot.cycle_repeat
     assert day.prompt == wording("screen.target-reached", count=5, target=5)
     assert day.count("part") == 5
-    assert day.journal.parts(PARTS) == 5
-    assert [change.why for change in day.store.history()][:2] == ["X -.001", "X -.002 Z .001"]
+    assert day.journal.runs.count_parts(PARTS) == 5
+    assert [change.why for change in day.store.offsets.read_history()][:2] == ["X -.001", "X -.002 Z .001"]
 
 
 def test_a_correction_while_parts_run_and_nothing_stops(day: Day) -> None:

@@ -89,7 +89,10 @@ def test_a_name_is_found_by_typing_and_loaded_by_return(shop: Shop) -> None:
     shop.sees(lambda: shop.prompt().startswith(wording("screen.to-start")))
     assert any(isinstance(command, LoadJob) for command in shop.machine.posted)
     shop.sees(
-        lambda: shop.journal is not None and any(row.proof for row in shop.journal.runs_by_text().values())
+        lambda: (
+            shop.journal is not None
+            and any(row.proof for row in shop.journal.runs.read_records_by_text().values())
+        )
     )
     shop.open_list()
     shop.sees(
@@ -135,8 +138,8 @@ def test_the_name_of_a_copy_is_typed_in_a_cycle(shop: Shop) -> None:
 def test_it_is_sorted_by_name_date_run_parts_and_size(shop: Shop) -> None:
     assert shop.journal is not None
     shop.journal.keep(load_source(SAMPLES / "knob.nc"))
-    shop.journal.run_started("knob.nc")
-    shop.sees(lambda: shop.journal is not None and bool(shop.journal.runs()))
+    shop.journal.runs.record_start("knob.nc")
+    shop.sees(lambda: shop.journal is not None and bool(shop.journal.opened().runs.read_records()))
     shop.open_list()
     assert shop.rows() == sorted(shop.rows())
     shop.key(Key.Key_F2)

@@ -42,7 +42,9 @@ class Mill:
         self.desk, self._executor = desk_and_executor(machine, lambda: read_offsets(offsets), self._clock)
         self._store = Store.open(folder)
         for number, tool in read_offsets(offsets).tools.items():
-            self._store.set_tool(number, "measured", x=tool.x, z=tool.z, nose_radius=tool.nose_radius)
+            self._store.offsets.tools.change_row(
+                number, "measured", {"x": tool.x, "z": tool.z, "nose_radius": tool.nose_radius}
+            )
         self.desk.book = OffsetBook(self._store)
         self.desk.hands.clock = self._clock.now
         self.window = MainWindow(Look(DARK))

@@ -75,7 +75,7 @@ def test_a_correction_is_entered_seen_and_runs_in_the_next_cycle(hands: Hands, s
     assert page.asked.asked.change.endswith("→  X −0.00100  Z +0.00000  R 0.00000")
     answer(hands, "")
     hands.sees(lambda: 1 in page.table.offsets)
-    assert store.secondary()[1].x == pytest.approx(-0.001 * 25.4)
+    assert store.offsets.secondary.read_rows()[1].x == pytest.approx(-0.001 * 25.4)
     hands.sees(lambda: hands.prompt() == wording("screen.saved", names="D1"))
     hands.key(Key.Key_Escape)
     assert hands.frame.page is hands.page
@@ -97,7 +97,7 @@ def test_what_is_refused_is_said_and_stays_to_be_mended(hands: Hands, store: Sto
     hands.key(Key.Key_Delete)
     answer(hands, ".005", "", "")
     hands.sees(lambda: 2 in page.table.offsets)
-    assert store.secondary()[2].x == pytest.approx(0.0025 * 25.4)
+    assert store.offsets.secondary.read_rows()[2].x == pytest.approx(0.0025 * 25.4)
 
 
 def test_signs_and_c_belong_to_the_entry_and_not_to_the_switches(hands: Hands, store: Store) -> None:
@@ -140,7 +140,7 @@ def test_clear_asks_once_and_undo_brings_everything_back(hands: Hands, store: St
 
 def test_the_history_is_looked_through(hands: Hands, store: Store) -> None:
     for step in range(40):
-        store.set_secondary(1, f"change {step}", z=step + 1.0)
+        store.offsets.secondary.change_row(1, f"change {step}", {"z": step + 1.0})
     store.write(lambda _connection: None).result(60)
     hands.key(Key.Key_F9)
     page = page_of(hands)
@@ -189,7 +189,7 @@ def renewals(hands: Hands) -> list[Renew]:
 
 
 def test_metric_when_the_control_is_metric(hands: Hands, store: Store) -> None:
-    store.set_secondary(1, "inch", z=2.54).result(60)
+    store.offsets.secondary.change_row(1, "inch", {"z": 2.54}).result(60)
     hands.desk.book = OffsetBook(store)
     hands.key(Key.Key_F9)
     modal = hands.machine.now.modal._replace(metric=True)
@@ -211,15 +211,15 @@ def test_a_tool_is_set_with_f8_and_refused_while_running(hands: Hands, store: St
     hands.key(Key.Key_Right)
     answer(hands, ".0156")
     hands.sees(lambda: page.asked.asked.change == "T9   NOSE RADIUS 0.00000 → 0.01560")
-    assert store.tools()[9] == ToolRow(-0.5 * 25.4, -3.25 * 25.4, 0.0156 * 25.4)
+    assert store.offsets.tools.read_rows()[9] == ToolRow(-0.5 * 25.4, -3.25 * 25.4, 0.0156 * 25.4)
     hands.machine.now = replace(hands.machine.now, state=State.HOLD)
     answer(hands, "1")
     hands.sees(lambda: hands.prompt() == wording("screen.program-runs-wear-only"))
-    assert store.tools()[9].nose_radius == 0.0156 * 25.4
+    assert store.offsets.tools.read_rows()[9].nose_radius == 0.0156 * 25.4
 
 
 def test_wear_between_two_parts(hands: Hands, store: Store) -> None:
-    store.set_tool(1, "touched off", x=-12.7, z=-76.2).result(60)
+    store.offsets.tools.change_row(1, "touched off", {"x": -12.7, "z": -76.2}).result(60)
     hands.desk.book = OffsetBook(store)
     hands.load("pin")
     hands.key(Key.Key_F8)
@@ -231,15 +231,15 @@ def test_wear_between_two_parts(hands: Hands, store: Store) -> None:
     hands.sees(lambda: hands.prompt() == wording("screen.saved", names="T1"))
     hands.type("-.0002")
     hands.key(Key.Key_F2)
-    hands.sees(lambda: store.tools()[1].wear_x == pytest.approx(-0.00035 * 25.4))
+    hands.sees(lambda: store.offsets.tools.read_rows()[1].wear_x == pytest.approx(-0.00035 * 25.4))
     hands.sees(lambda: in_force(hands) == pytest.approx(-12.7 - 0.00035 * 25.4))
     hands.key(Key.Key_F4)
     yes(hands.window)
-    hands.sees(lambda: store.tools()[1].wear_x == pytest.approx(-0.00025 * 25.4))
+    hands.sees(lambda: store.offsets.tools.read_rows()[1].wear_x == pytest.approx(-0.00025 * 25.4))
 
 
 def test_a_remark_takes_the_letters_that_are_keys_elsewhere(hands: Hands, store: Store) -> None:
-    store.set_tool(1, "touched off", x=1.0, z=1.0).result(60)
+    store.offsets.tools.change_row(1, "touched off", {"x": 1.0, "z": 1.0}).result(60)
     hands.desk.book = OffsetBook(store)
     hands.key(Key.Key_F8)
     for _ in range(7):
@@ -248,14 +248,14 @@ def test_a_remark_takes_the_letters_that_are_keys_elsewhere(hands: Hands, store:
     hands.type("she Dares")
     hands.sees(lambda: {"S", "H", "E", "R", "D"} & hands.frame.strip.mute != set())
     hands.key(Key.Key_Return)
-    hands.sees(lambda: store.tools()[1].remark == "she Dares")
+    hands.sees(lambda: store.offsets.tools.read_rows()[1].remark == "she Dares")
     assert hands.machine.now.state is State.IDLE
     assert not hands.machine.now.single_block
 
 
 def test_a_remark_is_written_by_a_finger(hands: Hands, store: Store) -> None:
     """The pad has figures; a text had no letters, and none of it could be typed."""
-    store.set_tool(1, "touched off", x=1.0, z=1.0).result(60)
+    store.offsets.tools.change_row(1, "touched off", {"x": 1.0, "z": 1.0}).result(60)
     hands.desk.book = OffsetBook(store)
     hands.window.resize(1024, 600)
     hands.key(Key.Key_F8)
@@ -268,7 +268,7 @@ def test_a_remark_is_written_by_a_finger(hands: Hands, store: Store) -> None:
     for place in (11, 13):  # of the rows of ten: w, r
         touch(hands, page.letters, place)
     page.letters._places[-1][1]()
-    hands.sees(lambda: store.tools()[1].remark == "wr")
+    hands.sees(lambda: store.offsets.tools.read_rows()[1].remark == "wr")
     hands.sees(lambda: page.letters.isHidden() and not page.pad.isHidden() and page.table.isVisible())
 
 
@@ -295,7 +295,7 @@ def test_a_finger_alone_enters_an_offset(hands: Hands, store: Store) -> None:
         QTest.mouseClick(page.pad, Qt.MouseButton.LeftButton, pos=QPoint(*map(int, spot.center().toTuple())))
     yes(hands.window)
     hands.sees(lambda: 17 in page.table.offsets)
-    assert store.secondary()[17].x == pytest.approx(0.1 * 25.4)
+    assert store.offsets.secondary.read_rows()[17].x == pytest.approx(0.1 * 25.4)
 
 
 def touch(hands: Hands, panel: Panel, place: int) -> None:

@@ -82,7 +82,7 @@ def test_notes_stay_with_their_program(hands: Hands, journal: Journal) -> None:
     hands.type(" MORE")
     hands.key(Key.Key_Return)
     assert function.notes == ["SOFT JAWS", "BAR .02 OUT MORE"]
-    hands.sees(lambda: journal.setting("notes:bushing.nc") == ["SOFT JAWS", "BAR .02 OUT MORE"])
+    hands.sees(lambda: journal.read_setting("notes:bushing.nc") == ["SOFT JAWS", "BAR .02 OUT MORE"])
     function.opened()  # read anew from what is kept
     assert function.notes == ["SOFT JAWS", "BAR .02 OUT MORE"]
     hands.desk.choose("pin")
@@ -90,8 +90,8 @@ def test_notes_stay_with_their_program(hands: Hands, journal: Journal) -> None:
     assert function.notes == []
     store = journal.book().store
     assert store is not None
-    store.rename_program("bushing.nc", "other.nc").result(60)
-    assert journal.setting("notes:other.nc") == ["SOFT JAWS", "BAR .02 OUT MORE"]
+    store.programs.rename_program("bushing.nc", "other.nc").result(60)
+    assert journal.read_setting("notes:other.nc") == ["SOFT JAWS", "BAR .02 OUT MORE"]
 
 
 def test_a_note_goes_only_after_asking(hands: Hands) -> None:

@@ -145,7 +145,7 @@ def test_no_number_of_parts(hands: Hands, typed: str) -> None:
 def test_a_target_below_what_is_made_is_refused(hands: Hands, journal: Journal) -> None:
     for event in (Event(0.0, "load", "pin.nc"), *(Event(0.0, "part", "part"),) * 3):
         journal.hear(event)
-    hands.sees(lambda: journal.parts("pin.nc") == 3)
+    hands.sees(lambda: journal.runs.count_parts("pin.nc") == 3)
     hands.load("pin")
     open_function(hands, 2)
     hands.sees(lambda: hands.desk.counter.count == 3)
@@ -231,7 +231,7 @@ def test_a_backup_is_made_and_restored(hands: Hands, journal: Journal) -> None:
     hands.desk.book = journal.book()
     store = hands.desk.book.store
     assert store is not None
-    store.set_setting("mark", "before").result(60)
+    store.settings.save_setting("mark", "before").result(60)
     page = open_function(hands, 6)
     hands.sees(lambda: len(page.table.sheet.rows) >= 1)
     hands.key(Key.Key_Return)
@@ -239,13 +239,13 @@ def test_a_backup_is_made_and_restored(hands: Hands, journal: Journal) -> None:
     hands.sees(
         lambda: len(page.table.sheet.rows) >= 2 and cells(page, 1)[1] == wording("screen.restore-is-whole")
     )
-    store.set_setting("mark", "after").result(60)
+    store.settings.save_setting("mark", "after").result(60)
     hands.key(Key.Key_Down)
     hands.key(Key.Key_Return)
     assert begins(hands.prompt(), "screen.restore")
     yes(hands.window)
     hands.sees(lambda: begins(hands.prompt(), "screen.restored"))
-    assert journal.setting("mark") == "before"
+    assert journal.read_setting("mark") == "before"
     assert hands.desk.book.store is not store
     journal.hear(Event(0.0, "start", "after the restore"))
     hands.sees(lambda: [e.text for e in journal.events("after the", (), 9)] == ["after the restore"])
@@ -255,7 +255,7 @@ def test_the_list_tells_what_a_backup_is_worth(hands: Hands, journal: Journal) -
     hands.desk.book = journal.book()
     store = hands.desk.book.store
     assert store is not None
-    store.set_tool(3, "x", x=1.0, z=0.0).result(60)
+    store.offsets.tools.change_row(3, "x", {"x": 1.0, "z": 0.0}).result(60)
     page = open_function(hands, 6)
     hands.sees(lambda: len(page.table.sheet.rows) >= 1)
     backups = page.model.current
@@ -264,7 +264,7 @@ def test_the_list_tells_what_a_backup_is_worth(hands: Hands, journal: Journal) -
     folder.mkdir(parents=True, exist_ok=True)
     journal.backup(folder / "2026-11-23-good.turndesk.db")
     (folder / "2026-11-22-bad.turndesk.db").write_bytes(b"no store any more")
-    store.set_tool(3, "x", x=2.0).result(60)
+    store.offsets.tools.change_row(3, "x", {"x": 2.0}).result(60)
     hands.key(Key.Key_F4)
     said = ["RESTORE (BACKUP IS INTACT)", "CANNOT RESTORE: BACKUP DAMAGED"]
     hands.sees(lambda: [row.cells[1] for row in page.table.sheet.rows[1:3]] == said)
@@ -277,7 +277,7 @@ def test_the_list_tells_what_a_backup_is_worth(hands: Hands, journal: Journal) -
     hands.key(Key.Key_Return)
     assert shows(hands.desk.notice, "screen.refused")
     assert shows(hands.desk.notice, "screen.not-a-database")
-    assert store.tools()[3].x == 2.0
+    assert store.offsets.tools.read_rows()[3].x == 2.0
 
 
 @pytest.mark.parametrize("row", [0, 1])
@@ -321,7 +321,7 @@ def test_a_restore_leaves_the_levels_on(hands: Hands, journal: Journal) -> None:
     folder = backups.places[0].path
     folder.mkdir(parents=True, exist_ok=True)
     journal.backup(folder / "2026-11-23-before.turndesk.db")
-    journal.keep_person(PersonRow("ANNA", 3, b"salt", b"hash"))
+    journal.opened().people.save_person(PersonRow("ANNA", 3, b"salt", b"hash")).result()
     access = hands.desk.access
     access.reload()
     hands.key(Key.Key_F4)
@@ -338,8 +338,8 @@ def test_a_restore_leaves_the_levels_on(hands: Hands, journal: Journal) -> None:
     hands.sees(lambda: shows(hands.desk.notice, "screen.restored"))
     access.reload()
     assert [row.name for row in access.people.rows] == ["ANNA"]
-    hands.sees(lambda: len(journal.opened().events(kinds={"change"})) > 0)
-    [row] = journal.opened().events(kinds={"change"})
+    hands.sees(lambda: len(journal.opened().events.read_events(kinds={"change"})) > 0)
+    [row] = journal.opened().events.read_events(kinds={"change"})
     assert (row.who, row.text.startswith("restored; ")) == ("ANNA", True)
 
 
@@ -371,7 +371,7 @@ def test_settings_act_at_once_and_are_kept(hands: Hands, journal: Journal) -> No
     wanted = {"units": "MM", "theme": "light", "dock": False, "language": "en", "readout": "POSITION"}
 
     def all_kept() -> bool:
-        kept = journal.setting("screen")
+        kept = journal.read_setting("screen")
         return isinstance(kept, dict) and wanted.items() <= kept.items()
 
     hands.sees(all_kept)
@@ -427,7 +427,7 @@ def test_the_count_is_corrected_by_hand(hands: Hands, journal: Journal) -> None:
     hands.key(Key.Key_F2)
     hands.key(Key.Key_F3)
     hands.sees(lambda: cells(page, 0) == ("PARTS MADE", "1"))
-    hands.sees(lambda: journal.parts("pin.nc") == 1)
+    hands.sees(lambda: journal.runs.count_parts("pin.nc") == 1)
 
 
 def test_the_count_of_no_program_is_not_corrected(hands: Hands) -> None:

@@ -18,7 +18,7 @@ from app.screen.panel import Panel
 from app.screen.window_layout import FINGER
 from core.executor.snapshot import State
 from core.store.store import Store
-from core.store.store_rows import Kind, ShapeRow
+from core.store.store_rows import ShapeRow
 from tests.screen.hands import Hands, Key
 from tests.screen.yes import yes
 from tests.texts import begins, text
@@ -29,9 +29,11 @@ LIMIT = 60.0
 @pytest.fixture
 def store(hands: Hands, tmp_path: Path) -> Iterator[Store]:
     with Store.open(tmp_path / "home") as store:
-        store.set_tool(1, "set", x=-12.7, z=-76.2, nose_radius=0.79375, quadrant=3)
-        store.set_offset(Kind.SHAPE, 1, "set", {"kind": "turning", "insert": "CNMG432"})
-        store.set_tool(2, "set", x=25.4, z=-50.8).result(LIMIT)
+        store.offsets.tools.change_row(
+            1, "set", {"x": -12.7, "z": -76.2, "nose_radius": 0.79375, "quadrant": 3}
+        )
+        store.offsets.shapes.change_row(1, "set", {"kind": "turning", "insert": "CNMG432"})
+        store.offsets.tools.change_row(2, "set", {"x": 25.4, "z": -50.8}).result(LIMIT)
         hands.desk.book = OffsetBook(store)
         yield store
 
@@ -89,7 +91,7 @@ def test_a_new_shape_by_keys_alone(hands: Hands, store: Store) -> None:
     hands.key(Key.Key_Return)
     hands.type("DCMT 11T304")
     hands.key(Key.Key_Return)
-    hands.sees(lambda: store.shapes()[2] == ShapeRow("turning", insert="DCMT 11T304"))
+    hands.sees(lambda: store.offsets.shapes.read_rows()[2] == ShapeRow("turning", insert="DCMT 11T304"))
 
 
 def test_letters_of_an_open_text_are_no_commands(hands: Hands, store: Store) -> None:
@@ -104,7 +106,7 @@ def test_letters_of_an_open_text_are_no_commands(hands: Hands, store: Store) -> 
     assert hands.machine.posted == []
     hands.key(Key.Key_Escape)
     assert (page.model.text, hands.frame.page) == ("", page)
-    assert store.shapes()[1].holder == ""
+    assert store.offsets.shapes.read_rows()[1].holder == ""
 
 
 def test_a_finger_alone_makes_a_drill(hands: Hands, store: Store) -> None:
@@ -119,11 +121,11 @@ def test_a_finger_alone_makes_a_drill(hands: Hands, store: Store) -> None:
     touch(hands, page.table, 2)
     for key in (point, two, five, enter):
         touch(hands, page.pad, key)
-    hands.sees(lambda: store.shapes()[2].diameter == pytest.approx(6.35))
+    hands.sees(lambda: store.offsets.shapes.read_rows()[2].diameter == pytest.approx(6.35))
 
 
 def test_every_field_is_as_large_as_a_finger(hands: Hands, store: Store) -> None:
-    store.set_offset(Kind.SHAPE, 1, "set", {"kind": "threading"}).result(LIMIT)
+    store.offsets.shapes.change_row(1, "set", {"kind": "threading"}).result(LIMIT)
     hands.desk.book.read()
     page = opened(hands)
     for place in reversed(range(1, len(page.model.names))):
@@ -146,7 +148,7 @@ def test_outline_and_control_point_are_drawn(hands: Hands, store: Store, size: t
 
 
 def test_what_cannot_be_is_told_and_not_drawn(hands: Hands, store: Store) -> None:
-    store.set_offset(Kind.SHAPE, 1, "set", {"kind": "drill"}).result(LIMIT)
+    store.offsets.shapes.change_row(1, "set", {"kind": "drill"}).result(LIMIT)
     hands.desk.book.read()
     page = opened(hands)
     hands.sees(lambda: hands.prompt().startswith(f"T1: {text('screen.tip-not-round', tip=3)}"))
@@ -160,7 +162,7 @@ def test_f3_asks_before_it_forgets(hands: Hands, store: Store) -> None:
     hands.key(Key.Key_F3)
     assert hands.prompt() == text("screen.forget-shape", number=1)
     hands.key(Key.Key_Escape)
-    assert 1 in store.shapes()
+    assert 1 in store.offsets.shapes.read_rows()
     hands.key(Key.Key_F3)
     yes(hands.window)
     hands.sees(lambda: page.model.row is None)
@@ -170,7 +172,7 @@ def test_f3_asks_before_it_forgets(hands: Hands, store: Store) -> None:
 
 
 def test_history_tells_what_has_changed(hands: Hands, store: Store) -> None:
-    store.set_offset(Kind.SHAPE, 1, "sharper", {"insert": "CNMG431"}).result(LIMIT)
+    store.offsets.shapes.change_row(1, "sharper", {"insert": "CNMG431"}).result(LIMIT)
     page = opened(hands)
     hands.key(Key.Key_F5)
     hands.sees(page.history.isVisible)
@@ -187,7 +189,7 @@ def test_nothing_changes_under_a_running_program(hands: Hands, store: Store) -> 
     hands.key(Key.Key_Right)
     hands.key(Key.Key_Return)
     hands.key(Key.Key_F4)
-    assert len(store.history(Kind.SHAPE)) == 1
+    assert len(store.offsets.shapes.read_history()) == 1
 
 
 def test_without_a_store_the_reason_is_told(hands: Hands) -> None:

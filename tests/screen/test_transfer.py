@@ -134,7 +134,7 @@ def test_settings_by_arrows_and_return_are_kept(hands: Hands, journal: Journal) 
     hands.sees(lambda: cells(hands)["BITS, PARITY, STOP BITS"] == "7E2")
 
     def kept() -> bool:
-        value = journal.setting("rs232")
+        value = journal.read_setting("rs232")
         return isinstance(value, dict) and (value["port"], value["stop"]) == ("/dev/ttyS0", 2)
 
     hands.sees(kept)

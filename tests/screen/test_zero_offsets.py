@@ -13,7 +13,7 @@ from app.offsets.offset_book import OffsetBook
 from app.screen import page_table
 from core.executor.snapshot import State
 from core.store.store import Store
-from core.store.store_rows import Kind, ZeroRow
+from core.store.store_rows import ZeroRow
 from tests.screen.hands import Hands, Key
 from tests.screen.yes import yes
 from tests.texts import begins
@@ -46,7 +46,7 @@ def test_values_are_typed_over_and_saved(hands: Hands, store: Store) -> None:
     page = opened(hands)
     hands.sees(lambda: page.asked.asked.question == f"G54  {wording('screen.x-radius')}")
     enter(hands, "1.5-.25")
-    hands.sees(lambda: store.zero_offsets() == {54: ZeroRow(x=1.25)})
+    hands.sees(lambda: store.offsets.zero.read_rows() == {54: ZeroRow(x=1.25)})
     hands.sees(lambda: hands.prompt() == wording("screen.saved", names="G54"))
     hands.key(Key.Key_Tab)
     hands.key(Key.Key_Tab)
@@ -58,7 +58,7 @@ def test_values_are_typed_over_and_saved(hands: Hands, store: Store) -> None:
     hands.key(Key.Key_Down)
     hands.key(Key.Key_Left)
     enter(hands, "33")
-    hands.sees(lambda: store.zero_offsets().get(55) == ZeroRow(z=33.0))
+    hands.sees(lambda: store.offsets.zero.read_rows().get(55) == ZeroRow(z=33.0))
 
 
 def test_what_is_refused_is_said_and_stays_to_be_mended(hands: Hands, store: Store) -> None:
@@ -74,7 +74,7 @@ def test_what_is_refused_is_said_and_stays_to_be_mended(hands: Hands, store: Sto
     hands.key(Key.Key_Delete)
     enter(hands, "2+")
     assert begins(hands.prompt(), "screen.refused")
-    assert store.zero_offsets() == {}
+    assert store.offsets.zero.read_rows() == {}
 
 
 def test_return_alone_goes_on_and_changes_nothing(hands: Hands, store: Store) -> None:
@@ -82,22 +82,22 @@ def test_return_alone_goes_on_and_changes_nothing(hands: Hands, store: Store) ->
     for _ in range(18):
         hands.key(Key.Key_Return)
     assert (page.model.row, page.model.column) == (0, 0)
-    assert store.history(Kind.ZERO) == ()
+    assert store.offsets.zero.read_history() == ()
 
 
 def test_undo_clear_and_history(hands: Hands, store: Store) -> None:
     page = opened(hands)
     enter(hands, "7")
-    hands.sees(lambda: store.zero_offsets() == {54: ZeroRow(x=7.0)})
+    hands.sees(lambda: store.offsets.zero.read_rows() == {54: ZeroRow(x=7.0)})
     hands.sees(lambda: hands.prompt() == wording("screen.saved", names="G54"))
     hands.key(Key.Key_C)
     assert begins(hands.prompt(), "screen.clear-zero")
     yes(hands.window)
-    hands.sees(lambda: store.zero_offsets() == {})
+    hands.sees(lambda: store.offsets.zero.read_rows() == {})
     hands.sees(lambda: not page.model.book.busy and page.table.stored == {})
     hands.key(Key.Key_F4)
     yes(hands.window)
-    hands.sees(lambda: store.zero_offsets() == {54: ZeroRow(x=7.0)})
+    hands.sees(lambda: store.offsets.zero.read_rows() == {54: ZeroRow(x=7.0)})
     hands.sees(lambda: hands.prompt() == wording("screen.taken-back", names="G54"))
     hands.key(Key.Key_F5)
     hands.sees(page.history.isVisible)
@@ -115,7 +115,7 @@ def test_nothing_changes_under_a_running_program(hands: Hands, store: Store) -> 
     hands.key(Key.Key_F4)
     hands.key(Key.Key_C)
     hands.key(Key.Key_C)
-    assert store.history(Kind.ZERO) == ()
+    assert store.offsets.zero.read_history() == ()
 
 
 def test_escape_takes_an_entry_back_and_then_leaves(hands: Hands, store: Store) -> None:
@@ -125,11 +125,11 @@ def test_escape_takes_an_entry_back_and_then_leaves(hands: Hands, store: Store) 
     assert page.model.text == ""
     hands.key(Key.Key_Escape)
     assert hands.frame.page is hands.page
-    assert store.zero_offsets() == {}
+    assert store.offsets.zero.read_rows() == {}
 
 
 def test_from_the_other_tables_and_back(hands: Hands, store: Store) -> None:
-    assert store.zero_offsets() == {}
+    assert store.offsets.zero.read_rows() == {}
     hands.key(Key.Key_F8)
     hands.key(Key.Key_F10)
     assert isinstance(hands.frame.page, ZeroOffsetsPage)
@@ -149,7 +149,7 @@ def test_a_program_is_read_anew_when_an_offset_changes(hands: Hands, store: Stor
     before = hands.desk.session.now
     opened(hands)
     enter(hands, "4")
-    hands.sees(lambda: store.zero_offsets() != {} and hands.desk.session.now.job is not before.job)
+    hands.sees(lambda: store.offsets.zero.read_rows() != {} and hands.desk.session.now.job is not before.job)
 
 
 def test_where_the_machine_stands_reads_what_is_typed(hands: Hands, store: Store) -> None:
@@ -159,12 +159,12 @@ def test_where_the_machine_stands_reads_what_is_typed(hands: Hands, store: Store
     hands.key(Key.Key_Tab)
     hands.type("1.5")
     hands.key(Key.Key_F2)
-    hands.sees(lambda: store.zero_offsets() == {54: ZeroRow(z=-85.0)})
+    hands.sees(lambda: store.offsets.zero.read_rows() == {54: ZeroRow(z=-85.0)})
     hands.sees(lambda: hands.prompt() == wording("screen.saved", names="G54"))
     hands.key(Key.Key_Tab)
     hands.key(Key.Key_F2)
-    hands.sees(lambda: store.zero_offsets() == {54: ZeroRow(z=-85.0, c=15.0)})
-    assert store.history(Kind.ZERO)[1].why == "Z position set to 1.5"
+    hands.sees(lambda: store.offsets.zero.read_rows() == {54: ZeroRow(z=-85.0, c=15.0)})
+    assert store.offsets.zero.read_history()[1].why == "Z position set to 1.5"
     assert page.model.text == ""
 
 
@@ -173,4 +173,4 @@ def test_an_axis_that_is_not_homed_is_no_place_to_count_from(hands: Hands, store
     hands.machine.now = replace(hands.machine.now, homed=(False, True, True))
     hands.key(Key.Key_F2)
     assert hands.prompt() == wording("screen.position-unknown", axis="X")
-    assert store.history(Kind.ZERO) == ()
+    assert store.offsets.zero.read_history() == ()

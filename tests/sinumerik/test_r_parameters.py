@@ -53,7 +53,7 @@ def test_other_values_are_another_job() -> None:
 
 def test_the_store_keeps_them(tmp_path: Path) -> None:
     with Store.open(tmp_path) as store:
-        store.set_setting(R_PARAMETERS, {"1": 40.0, "299": -2.5}).result()
+        store.settings.save_setting(R_PARAMETERS, {"1": 40.0, "299": -2.5}).result()
     with Store.open(tmp_path) as store:
         assert offsets_of(store).r == {1: 40.0, 299: -2.5}
         assert setup_with(MODULO, offsets_of(store)).r[1] == 40.0

@@ -11,28 +11,29 @@ from pathlib import Path
 import pytest
 
 from core.store import backup, store_export
+from core.store.offsets.offset_tables import Reason
 from core.store.store import Store, StoreError
 from core.store.store_file import FILE_NAME
-from core.store.store_rows import SecondaryRow, ToolRow
+from core.store.store_rows import Kind, SecondaryRow, ToolRow
 from tests.coded import raises_code
 
 
 def fill(store: Store) -> None:
-    store.set_tool(1, "x", x=31.75, z=-12.7, nose_radius=0.381)
-    store.set_secondary(4, "wear", x=-0.0127)
-    store.save_program("PIN.nc", b"G90\r\nM30\r\n", "new")
-    store.log_event("start", 'PIN.nc, "first" part').result()
+    store.offsets.tools.change_row(1, "x", {"x": 31.75, "z": -12.7, "nose_radius": 0.381})
+    store.offsets.secondary.change_row(4, "wear", {"x": -0.0127})
+    store.programs.save_version("PIN.nc", b"G90\r\nM30\r\n", "new")
+    store.events.log_event("start", 'PIN.nc, "first" part').result()
 
 
 def test_backup_of_a_store_in_use_restores_elsewhere(store: Store, folder: Path, tmp_path: Path) -> None:
     fill(store)
     target = tmp_path / "b.db"
     backup.backup(folder, target)
-    store.set_tool(1, "later", x=1.0).result()
+    store.offsets.tools.change_row(1, "later", {"x": 1.0}).result()
     assert backup.restore(tmp_path / "other", target) is None
     with Store.open(tmp_path / "other") as other:
-        assert other.tools() == {1: ToolRow(31.75, -12.7, 0.381)}
-        assert other.load_program("PIN.nc") == b"G90\r\nM30\r\n"
+        assert other.offsets.tools.read_rows() == {1: ToolRow(31.75, -12.7, 0.381)}
+        assert other.programs.load_version("PIN.nc") == b"G90\r\nM30\r\n"
     assert sorted(path.name for path in tmp_path.iterdir()) == ["b.db", "home", "other"]
 
 
@@ -41,12 +42,12 @@ def test_restore_keeps_the_replaced_store(folder: Path, tmp_path: Path) -> None:
         fill(store)
     backup.backup(folder, tmp_path / "b.db")
     with Store.open(folder) as store:
-        store.set_tool(1, "later", x=1.0).result()
+        store.offsets.tools.change_row(1, "later", {"x": 1.0}).result()
     kept = backup.restore(folder, tmp_path / "b.db")
     assert kept is not None
     assert kept.parent == folder
     with Store.open(folder) as store:
-        assert store.tools()[1].x == 31.75
+        assert store.offsets.tools.read_rows()[1].x == 31.75
     connection = sqlite3.connect(kept)
     assert connection.execute("SELECT x FROM tool_offsets").fetchall() == [(1.0,)]
     connection.close()
@@ -61,7 +62,7 @@ def test_restore_replaces_a_damaged_store_and_keeps_its_bytes(folder: Path, tmp_
     assert kept is not None
     assert kept.read_bytes() == b"rubbish" * 1000
     with Store.open(folder) as store:
-        assert store.tools()[1].x == 31.75
+        assert store.offsets.tools.read_rows()[1].x == 31.75
 
 
 def test_restore_while_the_store_is_in_use_is_refused(store: Store, folder: Path, tmp_path: Path) -> None:
@@ -137,7 +138,7 @@ def test_backup_over_an_older_backup(store: Store, folder: Path, tmp_path: Path)
     target = tmp_path / "b.db"
     backup.backup(folder, target)
     first = sha256(target.read_bytes()).digest()
-    store.set_tool(2, "x", x=1.0).result()
+    store.offsets.tools.change_row(2, "x", {"x": 1.0}).result()
     backup.backup(folder, target)
     assert sha256(target.read_bytes()).digest() != first
     assert backup.problems(target) == ()
@@ -164,10 +165,14 @@ def test_exported_programs_come_back(store: Store, tmp_path: Path) -> None:
     store_export.export(store, tmp_path / "out")
     with Store.open(tmp_path / "other") as other:
         rows = {4: SecondaryRow(-0.0127, 0.0, 0.0)}
-        other.import_all(store_export.program_files(tmp_path / "out"), {}, rows, "import").result()
-        assert other.load_program("PIN.nc") == b"G90\r\nM30\r\n"
-        assert other.secondary() == rows
-        assert other.history()[0].who == "import"
+        programs = store_export.program_files(tmp_path / "out")
+        values = {Kind.SECONDARY: {number: row._asdict() for number, row in rows.items()}}
+        other.write(
+            lambda c: store_export.import_all(c, programs, values, Reason("import", "import"))
+        ).result()
+        assert other.programs.load_version("PIN.nc") == b"G90\r\nM30\r\n"
+        assert other.offsets.secondary.read_rows() == rows
+        assert other.offsets.read_history()[0].who == "import"
 
 
 def test_export_into_a_folder_with_something_in_it_is_refused(store: Store, tmp_path: Path) -> None:

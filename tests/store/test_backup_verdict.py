@@ -12,7 +12,6 @@ from core.store import backup, store_connection
 from core.store.backup import Verdict, verdict
 from core.store.store import Store
 from core.store.store_errors import StoreError
-from core.store.store_rows import Kind
 from tests.coded import raises_code
 
 
@@ -24,13 +23,13 @@ def judged(folder: Path, path: Path) -> Verdict:
 @pytest.fixture
 def kept(store: Store, folder: Path, tmp_path: Path) -> Path:
     """A backup of two tools, a correction, two programs and a setting."""
-    store.set_tool(1, "x", x=1.0, z=0.0)
-    store.set_tool(2, "x", x=2.0, z=0.0)
-    store.set_secondary(4, "x", x=-0.01)
-    store.save_program("pin.nc", b"M30\n", "saved")
-    store.save_program("bush.nc", b"M30\n", "saved")
-    store.count_part("pin.nc")
-    store.set_setting("preset", 1).result()
+    store.offsets.tools.change_row(1, "x", {"x": 1.0, "z": 0.0})
+    store.offsets.tools.change_row(2, "x", {"x": 2.0, "z": 0.0})
+    store.offsets.secondary.change_row(4, "x", {"x": -0.01})
+    store.programs.save_version("pin.nc", b"M30\n", "saved")
+    store.programs.save_version("bush.nc", b"M30\n", "saved")
+    store.runs.add_parts("pin.nc")
+    store.settings.save_setting("preset", 1).result()
     backup.backup(folder, tmp_path / "b.db")
     return tmp_path / "b.db"
 
@@ -40,20 +39,20 @@ def test_the_same_is_whole_and_differs_in_nothing(folder: Path, kept: Path) -> N
 
 
 def test_what_is_other_missing_or_new_is_counted(store: Store, folder: Path, kept: Path) -> None:
-    store.set_tool(1, "x", x=1.5)  # other
-    store.remove_offset(Kind.TOOL, 2, "x")  # missing now
-    store.set_tool(3, "x", x=3.0, z=0.0)  # new since
-    store.save_program("pin.nc", b"G90\nM30\n", "saved")
-    store.save_program("new.nc", b"M30\n", "saved")
-    store.count_part("pin.nc")
-    store.set_setting("preset", 2).result()
+    store.offsets.tools.change_row(1, "x", {"x": 1.5})  # other
+    store.offsets.tools.remove_row(2, "x")  # missing now
+    store.offsets.tools.change_row(3, "x", {"x": 3.0, "z": 0.0})  # new since
+    store.programs.save_version("pin.nc", b"G90\nM30\n", "saved")
+    store.programs.save_version("new.nc", b"M30\n", "saved")
+    store.runs.add_parts("pin.nc")
+    store.settings.save_setting("preset", 2).result()
     differs = (("programs", 2), ("tool offsets", 3), ("part counts", 1), ("settings", 1))
     assert judged(folder, kept).differs == differs
 
 
 def test_what_was_put_back_by_hand_is_no_difference(store: Store, folder: Path, kept: Path) -> None:
-    store.set_tool(1, "x", x=1.5)
-    store.set_tool(1, "back", x=1.0).result()
+    store.offsets.tools.change_row(1, "x", {"x": 1.5})
+    store.offsets.tools.change_row(1, "back", {"x": 1.0}).result()
     assert judged(folder, kept) == Verdict()
 
 
@@ -66,7 +65,7 @@ def test_a_damaged_one_is_told_and_not_compared(folder: Path, kept: Path) -> Non
 
 @pytest.mark.parametrize("data", [b"", b"no database", bytes(5000)])
 def test_what_is_no_backup_is_told(data: bytes, store: Store, folder: Path, tmp_path: Path) -> None:
-    store.set_setting("a", 1).result()
+    store.settings.save_setting("a", 1).result()
     (tmp_path / "b.db").write_bytes(data)
     assert str(tmp_path / "b.db") in judged(folder, tmp_path / "b.db").problem
     assert str(tmp_path / "gone.db") in judged(folder, tmp_path / "gone.db").problem

@@ -27,14 +27,14 @@ def test_the_newest_change_is_first_and_is_taken_back_first(
 ) -> None:
     """The clock is set back between a tool and a zero offset: the tool was taken for the newer one."""
     clock(monkeypatch, 9, 12, 11, 10, 8)
-    store.set_tool(3, "touched", x=1.0).result()
-    store.set_tool(3, "worn", wear_x=0.1).result()
-    store.set_offset(Kind.ZERO, 54, "set", {"z": -1.0}).result()
-    assert [row.kind for row in store.history_of_all()] == [Kind.ZERO, Kind.TOOL, Kind.TOOL]
-    [undone] = store.undo_last().result()
+    store.offsets.tools.change_row(3, "touched", {"x": 1.0}).result()
+    store.offsets.tools.change_row(3, "worn", {"wear_x": 0.1}).result()
+    store.offsets.zero.change_row(54, "set", {"z": -1.0}).result()
+    assert [row.kind for row in store.offsets.read_history()] == [Kind.ZERO, Kind.TOOL, Kind.TOOL]
+    [undone] = store.offsets.undo_last_step().result()
     assert (undone.kind, undone.new) == (Kind.ZERO, None)
-    assert [row.number for row in store.undo_last().result()] == [3]
-    assert [row.number for row in store.history_of_all(2)] == [3, 54]
+    assert [row.number for row in store.offsets.undo_last_step().result()] == [3]
+    assert [row.number for row in store.offsets.read_history(2)] == [3, 54]
 
 
 def older(folder: Path) -> None:
@@ -51,20 +51,20 @@ def older(folder: Path) -> None:
 def test_an_older_store_is_numbered_by_its_times(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     clock(monkeypatch, 8, 9, 10, 11, 12, 7, 7, 7, 7)
     with Store.open(folder) as store:
-        store.set_tool(3, "touched", x=1.0).result()
-        store.set_offset(Kind.ZERO, 54, "set", {"z": -1.0}).result()
-        store.set_tool(3, "worn", wear_x=0.1).result()
-        store.undo_offset(kind=Kind.TOOL).result()
-        store.set_offset(Kind.ZERO, 55, "set", {"z": -2.0}).result()
-        before = [(row.kind, row.number, row.new) for row in store.history_of_all()]
+        store.offsets.tools.change_row(3, "touched", {"x": 1.0}).result()
+        store.offsets.zero.change_row(54, "set", {"z": -1.0}).result()
+        store.offsets.tools.change_row(3, "worn", {"wear_x": 0.1}).result()
+        store.offsets.tools.undo_last_step().result()
+        store.offsets.zero.change_row(55, "set", {"z": -2.0}).result()
+        before = [(row.kind, row.number, row.new) for row in store.offsets.read_history()]
     older(folder)
     with Store.open(folder) as store:
-        assert [(row.kind, row.number, row.new) for row in store.history_of_all()] == before
-        assert [row.step for row in store.history_of_all()] == [5, 4, 3, 2, 1]
-        assert [row.number for row in store.undo_last().result()] == [55]
+        assert [(row.kind, row.number, row.new) for row in store.offsets.read_history()] == before
+        assert [row.step for row in store.offsets.read_history()] == [5, 4, 3, 2, 1]
+        assert [row.number for row in store.offsets.undo_last_step().result()] == [55]
         with raises_code(StoreError, "nothing-to-undo"):
             for _ in range(3):
-                store.undo_offset(kind=Kind.TOOL).result()
-        assert store.tools() == {}
+                store.offsets.tools.undo_last_step().result()
+        assert store.offsets.tools.read_rows() == {}
     assert backup.all_problems(folder / FILE_NAME) == ()
     assert database.check_file(folder / FILE_NAME, thorough=True) == len(database.migrations())

@@ -31,15 +31,17 @@ def test_the_numbers_of_rows() -> None:
 
 def test_an_edge_is_kept_undone_and_exported(tmp_path: Path) -> None:
     with Store.open(tmp_path / "data") as store:
-        store.set_offset(Kind.TOOL, 3, values={"x": 10.0, "z": 20.0}, **WHY).result()
-        row = store.set_offset(Kind.TOOL, T3_D2, values={"x": 10.0, "z": 17.0, "quadrant": 4}, **WHY).result()
+        store.offsets.tools.change_row(3, values={"x": 10.0, "z": 20.0}, **WHY).result()
+        row = store.offsets.tools.change_row(
+            T3_D2, values={"x": 10.0, "z": 17.0, "quadrant": 4}, **WHY
+        ).result()
         assert row == ToolRow(10.0, 17.0, quadrant=4)
-        assert set(store.tools()) == {3, T3_D2}
+        assert set(store.offsets.tools.read_rows()) == {3, T3_D2}
         export(store, tmp_path / "out")
         tools, _, _ = read_rows(tmp_path / "out" / "offsets.toml")
         assert tools[T3_D2] == pytest.approx(row[:6] + row[6:])
-        store.undo_offset(kind=Kind.TOOL, **WHY).result()
-        assert set(store.tools()) == {3}
+        store.offsets.tools.undo_last_step(**WHY).result()
+        assert set(store.offsets.tools.read_rows()) == {3}
 
 
 @pytest.mark.parametrize(
@@ -53,14 +55,14 @@ def test_an_edge_is_kept_undone_and_exported(tmp_path: Path) -> None:
 )
 def test_refused(tmp_path: Path, number: int, values: dict[str, float], code: str, value: str | int) -> None:
     with Store.open(tmp_path) as store, raises_code(StoreError, code, value):
-        store.set_offset(Kind.TOOL, number, values=values, **WHY).result()
+        store.offsets.tools.change_row(number, values=values, **WHY).result()
 
 
 def test_an_edge_is_no_master(tmp_path: Path) -> None:
     with Store.open(tmp_path) as store:
-        store.set_offset(Kind.TOOL, 3, values={"x": 1.0, "z": 1.0}, **WHY).result()
+        store.offsets.tools.change_row(3, values={"x": 1.0, "z": 1.0}, **WHY).result()
         with raises_code(StoreError, "not-first-edge"):
-            store.set_offset(Kind.TOOL, T3_D2, values={"x": 1.0, "z": 1.0, "master": True}, **WHY).result()
+            store.offsets.tools.change_row(T3_D2, values={"x": 1.0, "z": 1.0, "master": True}, **WHY).result()
 
 
 def test_what_was_kept_before_is_kept() -> None:

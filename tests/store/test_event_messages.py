@@ -18,10 +18,10 @@ LINE = Message("{number} {alarm}: {cause}", number=102, alarm="FOLLOWING ERROR",
 
 def test_an_event_keeps_the_values_of_its_text(tmp_path: Path) -> None:
     with Store.open(tmp_path) as store:
-        store.log_event("alarm", LINE, 4).result()
-        store.log_event("start", "pin.nc").result()
+        store.events.log_event("alarm", LINE, 4).result()
+        store.events.log_event("start", "pin.nc").result()
     with Store.open(tmp_path) as store:
-        start, alarm = store.events()
+        start, alarm = store.events.read_events()
     assert type(start.text) is str
     assert isinstance(alarm.text, Message)
     assert (alarm.text, alarm.text.template) == (LINE, LINE.template)
@@ -32,9 +32,9 @@ def test_an_event_keeps_the_values_of_its_text(tmp_path: Path) -> None:
 
 def test_a_search_finds_the_english_text(tmp_path: Path) -> None:
     with Store.open(tmp_path) as store:
-        store.log_event("alarm", LINE).result()
-        assert [row.text for row in store.events("off its")] == [LINE]
-        assert store.events("template") == ()
+        store.events.log_event("alarm", LINE).result()
+        assert [row.text for row in store.events.read_events("off its")] == [LINE]
+        assert store.events.read_events("template") == ()
 
 
 @pytest.mark.parametrize(
@@ -49,12 +49,12 @@ def test_a_search_finds_the_english_text(tmp_path: Path) -> None:
 )
 def test_a_message_that_does_not_fit_its_text_is_not_used(tmp_path: Path, packed: str) -> None:
     with Store.open(tmp_path) as store:
-        store.log_event("alarm", LINE).result()
+        store.events.log_event("alarm", LINE).result()
     with closing(sqlite3.connect(tmp_path / FILE_NAME)) as connection:
         connection.execute("UPDATE events SET message = ?", (packed,))
         connection.commit()
     with Store.open(tmp_path) as store:
-        [event] = store.events()
+        [event] = store.events.read_events()
     assert (event.text, type(event.text)) == (str.__str__(LINE), str)
 
 

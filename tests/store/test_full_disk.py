@@ -38,9 +38,9 @@ def fill_up(store: Store, disk: Disk) -> None:
     """Full, and the log has used up the room that its file had."""
     disk.fill()
     for _ in range(200):
-        store.log_event("filler", "x" * 3000)
+        store.events.log_event("filler", "x" * 3000)
     with pytest.raises(StoreError):
-        store.log_event("filler", "last").result(60)
+        store.events.log_event("filler", "last").result(60)
     assert store.backlog is not None
 
 
@@ -50,54 +50,54 @@ def fill_up(store: Store, disk: Disk) -> None:
 def test_parts_and_events_of_a_full_disk_are_written_when_there_is_room(disk: Disk) -> None:
     with Store.open(disk.path / "home") as store:
         for _ in range(3):
-            store.count_part("pin.nc")
-        store.log_event("start", "before").result(60)
+            store.runs.add_parts("pin.nc")
+        store.events.log_event("start", "before").result(60)
         fill_up(store, disk)
         for number in range(33):
-            store.count_part("pin.nc")
-            store.log_event("part", f"part {number}")
-            store.cycle_finished("pin.nc", 3.0 + number)
+            store.runs.add_parts("pin.nc")
+            store.events.log_event("part", f"part {number}")
+            store.runs.record_cycle("pin.nc", 3.0 + number)
         with raises_code(StoreError, "disk-full"):
-            store.set_setting("theme", "light").result(60)
+            store.settings.save_setting("theme", "light").result(60)
         assert store.trouble == str(Cause.FULL.error(disk.path / "home" / FILE_NAME, ""))
         assert store.backlog is not None
         assert store.backlog.parts == 33
-        assert store.parts("pin.nc") == 36  # what is held counts on the screen
+        assert store.runs.count_parts("pin.nc") == 36  # what is held counts on the screen
         disk.make_room()
-        store.log_event("end", "after").result(60)
+        store.events.log_event("end", "after").result(60)
         assert (store.trouble, store.backlog) == ("", None)
     with Store.open(disk.path / "home") as store:
-        assert store.parts("pin.nc") == 36
-        told = [event.text for event in reversed(store.events(limit=1000))]
+        assert store.runs.count_parts("pin.nc") == 36
+        told = [event.text for event in reversed(store.events.read_events(limit=1000))]
         assert told[0] == "before"
         assert told[-34:] == [*(f"part {number}" for number in range(33)), "after"]
-        (run,) = store.runs()
+        (run,) = store.runs.read_records()
         assert (run.cycles, run.best, run.latest) == (33, 3.0, 35.0)
-        assert store.setting("theme") == "light"
+        assert store.settings.read_setting("theme") == "light"
 
 
 def test_it_is_written_by_itself_without_another_word(disk: Disk, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("core.store.store_writer.AGAIN", 0.02)
     with Store.open(disk.path / "home") as store:
         fill_up(store, disk)
-        store.count_part("pin.nc")
+        store.runs.add_parts("pin.nc")
         disk.make_room()
         tick = threading.Event()
         while store.backlog is not None:
             tick.wait(0.01)
-        assert store.parts("pin.nc") == 1
+        assert store.runs.count_parts("pin.nc") == 1
 
 
 def test_an_offset_is_refused_and_the_reason_is_the_disk(disk: Disk) -> None:
     with Store.open(disk.path / "home") as store:
-        store.set_tool(3, "x", x=1.0).result(60)
+        store.offsets.tools.change_row(3, "x", {"x": 1.0}).result(60)
         fill_up(store, disk)
         with raises_code(StoreError, "disk-full"):
-            store.set_tool(3, "x", x=2.0, remark="y" * 40).result(60)
-        assert store.tools()[3].x == 1.0  # reading works
+            store.offsets.tools.change_row(3, "x", {"x": 2.0, "remark": "y" * 40}).result(60)
+        assert store.offsets.tools.read_rows()[3].x == 1.0  # reading works
         disk.make_room()
-        store.set_tool(3, "x", x=2.0).result(60)
-        assert store.tools()[3].x == 2.0
+        store.offsets.tools.change_row(3, "x", {"x": 2.0}).result(60)
+        assert store.offsets.tools.read_rows()[3].x == 2.0
 
 
 def test_an_interrupted_job_is_kept_as_soon_as_there_is_room(disk: Disk) -> None:
@@ -139,7 +139,7 @@ def test_a_control_that_comes_up_with_a_full_disk_keeps_its_parts_later(
     while journal.trouble:
         tick.wait(0.01)
     journal.save_version("pin.nc", b"M30", "so that all is written")
-    assert journal.parts("pin.nc") == 20
+    assert journal.runs.count_parts("pin.nc") == 20
     journal.close()
 
 
@@ -175,16 +175,16 @@ def test_a_store_that_another_program_writes_is_locked_and_not_damaged(tmp_path:
         with closing(sqlite3.connect(tmp_path / "turndesk.db", isolation_level=None)) as other:
             other.execute("BEGIN IMMEDIATE")
             with raises_code(StoreError, "locked"):
-                store.set_tool(1, "x", x=1.0).result(60)
-            store.count_part("pin.nc")
+                store.offsets.tools.change_row(1, "x", {"x": 1.0}).result(60)
+            store.runs.add_parts("pin.nc")
             with raises_code(StoreError, "locked"):
-                store.log_event("part", "part 1").result(60)
+                store.events.log_event("part", "part 1").result(60)
             assert store.trouble == str(Cause.LOCKED.error(tmp_path / FILE_NAME, ""))
-            assert store.parts("pin.nc") == 1
+            assert store.runs.count_parts("pin.nc") == 1
             other.execute("ROLLBACK")
-        store.log_event("end", "after").result(60)
+        store.events.log_event("end", "after").result(60)
         assert store.trouble == ""
-        assert store.parts("pin.nc") == 1
+        assert store.runs.count_parts("pin.nc") == 1
 
 
 def test_a_store_that_nobody_may_write(tmp_path: Path) -> None:
@@ -224,35 +224,35 @@ def test_events_beyond_the_bound_are_told(tmp_path: Path, monkeypatch: pytest.Mo
         held.event(EventRow("2026-01-01T00:00:00.000Z", "stop", f"{number}"))
     with Store.open(tmp_path) as store:
         store.write(held.write).result(60)
-        texts = [event.text for event in reversed(store.events())]
+        texts = [event.text for event in reversed(store.events.read_events())]
     assert texts[:-1] == [str(n) for n in range(15, 25)]
     assert texts[-1].startswith("15 ")
 
 
 def test_a_name_that_can_never_be_kept_holds_nothing_up(tmp_path: Path) -> None:
     with Store.open(tmp_path) as store:
-        store.keep_program("bad/name", b"M30", "x")
-        store.count_part("pin.nc")
-        store.log_event("end", "after").result(60)
+        store.programs.keep_loaded_version("bad/name", b"M30", "x")
+        store.runs.add_parts("pin.nc")
+        store.events.log_event("end", "after").result(60)
         assert store.backlog is None
-        assert store.parts("pin.nc") == 1
-        assert any("bad/name" in event.text for event in store.events())
+        assert store.runs.count_parts("pin.nc") == 1
+        assert any("bad/name" in event.text for event in store.events.read_events())
 
 
 def test_a_count_put_to_nought_while_nothing_was_written(disk: Disk) -> None:
     with Store.open(disk.path / "home") as store:
-        store.correct_parts("pin.nc", 5).result(60)
+        store.runs.add_parts("pin.nc", 5).result(60)
         fill_up(store, disk)
-        store.count_part("pin.nc")
-        store.reset_parts("pin.nc")
-        store.count_part("pin.nc")
-        store.correct_parts("pin.nc", 2)
+        store.runs.add_parts("pin.nc")
+        store.runs.reset_parts("pin.nc")
+        store.runs.add_parts("pin.nc")
+        store.runs.add_parts("pin.nc", 2)
         with pytest.raises(StoreError):
-            store.log_event("x", "y").result(60)
-        assert store.parts("pin.nc") == 3
+            store.events.log_event("x", "y").result(60)
+        assert store.runs.count_parts("pin.nc") == 3
         disk.make_room()
-        store.log_event("x", "z").result(60)
-        assert store.parts("pin.nc") == 3
+        store.events.log_event("x", "z").result(60)
+        assert store.runs.count_parts("pin.nc") == 3
 
 
 # --- reading goes on ----------------------------------------------------------------------------------------
@@ -261,7 +261,7 @@ def test_a_count_put_to_nought_while_nothing_was_written(disk: Disk) -> None:
 def closed_store(folder: Path) -> Path:
     """A store with one setting, closed: nothing lies beside the file but its lock."""
     with Store.open(folder) as store:
-        store.set_setting("theme", "light").result(60)
+        store.settings.save_setting("theme", "light").result(60)
     assert sorted(each.name for each in folder.iterdir()) == ["turndesk.db", "turndesk.lock"]
     return folder
 
@@ -270,7 +270,7 @@ def test_a_full_disk_is_still_read(disk: Disk) -> None:
     home = closed_store(disk.path / "home")
     disk.fill()
     with Store.open(home, read_only=True) as store:
-        assert store.setting("theme") == "light"
+        assert store.settings.read_setting("theme") == "light"
     with raises_code(StoreError, "disk-full"):
         Store.open(home)
 

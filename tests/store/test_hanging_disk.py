@@ -58,7 +58,7 @@ def disk(monkeypatch: pytest.MonkeyPatch) -> Iterator[Disk]:
 def test_what_is_not_stored_for_two_seconds_is_reported(disk: Disk, tmp_path: Path) -> None:
     journal = Journal(tmp_path)
     journal.hear(Event(0.0, "load", "pin.nc"))
-    journal.opened().log_event("start", "before").result(LONG)
+    journal.opened().events.log_event("start", "before").result(LONG)
     disk.hang(journal.opened())
     for number in range(3):
         journal.hear(Event(0.0, "part", f"part {number}, 3.20 s"))
@@ -68,9 +68,9 @@ def test_what_is_not_stored_for_two_seconds_is_reported(disk: Disk, tmp_path: Pa
     assert journal.trouble == str(Cause.HANGS.error(tmp_path / FILE_NAME, ""))
     assert journal.held
     disk.release()
-    journal.opened().log_event("start", "behind").result(LONG)
+    journal.opened().events.log_event("start", "behind").result(LONG)
     assert (journal.trouble, journal.held) == ("", "")
-    assert journal.opened().parts("pin.nc") == 3
+    assert journal.opened().runs.count_parts("pin.nc") == 3
     assert journal.close() == ""
 
 
@@ -78,7 +78,7 @@ def test_a_disk_that_is_only_slow_is_not_reported(disk: Disk, tmp_path: Path) ->
     """Time that passes with nothing to write is no wait."""
     with Store.open(tmp_path) as store:
         for _ in range(5):
-            store.log_event("start", "stored").result(LONG)
+            store.events.log_event("start", "stored").result(LONG)
             disk.now += 10.0 * HANGS
             assert (store.trouble, store.backlog) == ("", None)
 

@@ -28,11 +28,11 @@ def begun(store: Store, job: int) -> None:
 
 
 def made(store: Store) -> list[tuple[str, int, int]]:
-    return [(row.program, row.made, row.wanted) for row in store.jobs()]
+    return [(row.program, row.made, row.wanted) for row in store.jobs.read_jobs()]
 
 
 def count(store: Store, program: str, parts: int) -> None:
-    store.correct_parts(program, parts).result()
+    store.runs.add_parts(program, parts).result()
 
 
 def test_only_parts_of_the_job_under_way_are_counted_for_it(store: Store) -> None:
@@ -43,12 +43,12 @@ def test_only_parts_of_the_job_under_way_are_counted_for_it(store: Store) -> Non
     begun(store, job)
     count(store, "pin.nc", 3)
     count(store, "cap.nc", 9)
-    (row,) = store.jobs()
+    (row,) = store.jobs.read_jobs()
     assert (row.made, row.left, row.done, row.target, row.note) == (3, 2, False, 47, "order 12")
     count(store, "pin.nc", -1)  # scrap
-    assert store.jobs()[0].made == 2
+    assert store.jobs.read_jobs()[0].made == 2
     count(store, "pin.nc", 4)
-    (row,) = store.jobs()
+    (row,) = store.jobs.read_jobs()
     assert (row.made, row.left, row.done) == (6, 0, True)
 
 
@@ -63,19 +63,19 @@ def test_another_job_on_the_desk_leaves_what_was_made(store: Store) -> None:
     begun(store, pins)
     count(store, "pin.nc", 1)
     assert made(store) == [("pin.nc", 4, 5), ("cap.nc", 1, 2)]
-    assert [row.under_way for row in store.jobs()] == [True, False]
-    assert store.damaged() == ()
+    assert [row.under_way for row in store.jobs.read_jobs()] == [True, False]
+    assert store.find_damaged_rows() == ()
 
 
 def test_a_count_that_is_put_to_nought_takes_nothing_from_the_job(store: Store) -> None:
     count(store, "pin.nc", 10)
     begun(store, added(store, "pin.nc", 5))
     count(store, "pin.nc", 3)
-    store.reset_parts("pin.nc").result()
-    (row,) = store.jobs()
+    store.runs.reset_parts("pin.nc").result()
+    (row,) = store.jobs.read_jobs()
     assert (row.made, row.target) == (3, 2)
     count(store, "pin.nc", 2)
-    assert store.jobs()[0].done
+    assert store.jobs.read_jobs()[0].done
 
 
 def test_two_jobs_of_one_program_do_not_count_together(store: Store) -> None:
@@ -91,20 +91,20 @@ def test_moved_changed_removed_cleared(store: Store) -> None:
     a, b, c = (added(store, name, 1) for name in ("a.nc", "b.nc", "c.nc"))
     store.write(lambda con: job_queue.move(con, c, 1)).result()
     store.write(lambda con: job_queue.move(con, a, 99)).result()
-    assert [row.program for row in store.jobs()] == ["c.nc", "b.nc", "a.nc"]
+    assert [row.program for row in store.jobs.read_jobs()] == ["c.nc", "b.nc", "a.nc"]
     store.write(lambda con: job_queue.change(con, b, 7, "blue")).result()
     store.write(lambda con: job_queue.remove(con, c)).result()
     begun(store, a)
     count(store, "a.nc", 1)
     assert store.write(lambda con: job_queue.clear(con, everything=False)).result() == 1
-    assert [(row.program, row.wanted, row.note) for row in store.jobs()] == [("b.nc", 7, "blue")]
+    assert [(row.program, row.wanted, row.note) for row in store.jobs.read_jobs()] == [("b.nc", 7, "blue")]
     assert store.write(lambda con: job_queue.clear(con, everything=True)).result() == 1
 
 
 def test_a_renamed_program_keeps_its_job(store: Store) -> None:
     begun(store, added(store, "pin.nc", 5))
     count(store, "pin.nc", 2)
-    store.rename_program("pin.nc", "pin2.nc").result()
+    store.programs.rename_program("pin.nc", "pin2.nc").result()
     assert made(store) == [("pin2.nc", 2, 5)]
 
 
@@ -123,7 +123,7 @@ def test_what_is_no_job_is_refused(
 ) -> None:
     with raises_code(StoreError, code, value):
         added(store, program, wanted, note)
-    assert store.jobs() == ()
+    assert store.jobs.read_jobs() == ()
 
 
 def test_a_job_that_has_gone_is_told(store: Store) -> None:
@@ -160,12 +160,12 @@ def test_a_damaged_job_is_left_out_told_and_cleared(folder: Path) -> None:
         outside.execute("UPDATE jobs SET wanted = 300 WHERE program = 'a.nc'")
         outside.commit()
     with Store.open(folder) as store:
-        assert [row.program for row in store.jobs()] == ["b.nc"]
-        (told,) = store.damaged()
+        assert [row.program for row in store.jobs.read_jobs()] == ["b.nc"]
+        (told,) = store.find_damaged_rows()
         assert told.startswith(named("jobs", 1))
         assert "turndesk jobs clear" in told
         assert store.write(lambda c: job_queue.clear(c, everything=False)).result() == 1
-        assert store.damaged() == ()
+        assert store.find_damaged_rows() == ()
 
 
 def test_an_older_store_gets_its_queue(tmp_path: Path) -> None:
@@ -174,9 +174,9 @@ def test_an_older_store_gets_its_queue(tmp_path: Path) -> None:
         database.migrate(connection, database.migrations()[:11])
         connection.execute("INSERT INTO part_counts VALUES ('pin.nc', 4, '2026-11-20T10:00:00.000Z')")
     with Store.open(tmp_path) as store:
-        assert store.jobs() == ()
-        assert store.parts("pin.nc") == 4
-        assert store.damaged() == ()
+        assert store.jobs.read_jobs() == ()
+        assert store.runs.count_parts("pin.nc") == 4
+        assert store.find_damaged_rows() == ()
 
 
 KILLED = """
@@ -189,7 +189,7 @@ store = Store.open(Path(sys.argv[1]))
 job = store.write(lambda c: job_queue.add(c, "pin.nc", 50)).result()
 store.write(lambda c: job_queue.begin(c, job)).result()
 for _ in range(7):
-    store.count_part("pin.nc").result()
+    store.runs.add_parts("pin.nc").result()
 os.kill(os.getpid(), signal.SIGKILL)
 """
 
@@ -198,7 +198,7 @@ def test_a_killed_control_has_its_queue_with_its_counts(folder: Path) -> None:
     ended = subprocess.run([sys.executable, "-c", KILLED, str(folder)], check=False)
     assert ended.returncode == -9
     with Store.open(folder) as store:
-        (row,) = store.jobs()
+        (row,) = store.jobs.read_jobs()
         assert (row.program, row.made, row.wanted, row.under_way) == ("pin.nc", 7, 50, True)
 
 

@@ -23,7 +23,7 @@ from core.store.store_rows import Kind
 from core.store.store import Store
 
 store = Store.open(Path(sys.argv[1]))
-number = len(store.versions("part"))
+number = len(store.programs.list_versions("part"))
 
 def both(connection):
     program_records.save(connection, "part", b"%d " % number * 2000, "kill")
@@ -54,10 +54,10 @@ def test_killed_writers_lose_nothing_that_was_acknowledged(folder: Path) -> None
         last = _write_and_kill(folder)
         assert backup.problems(folder / FILE_NAME) == ()
         with Store.open(folder, read_only=True) as store:
-            versions = store.versions("part")
+            versions = store.programs.list_versions("part")
             assert [row.number for row in versions] == list(range(len(versions), 0, -1))
             newest = versions[0].number
             assert newest in (last, last + 1)  # one may have been stored and not yet told
-            assert store.load_program("part") == b"%d " % newest * 2000
-            assert store.tools()[1].x == newest % 1000
-            assert len(store.history(limit=10**6)) == newest
+            assert store.programs.load_version("part") == b"%d " % newest * 2000
+            assert store.offsets.tools.read_rows()[1].x == newest % 1000
+            assert len(store.offsets.read_history(limit=10**6)) == newest

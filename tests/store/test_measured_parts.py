@@ -100,10 +100,10 @@ def test_a_reading_that_is_no_number(store: Store) -> None:
 def test_a_reading_knows_with_which_offsets_its_part_was_made(store: Store) -> None:
     """Part 1 before the wear, part 2 begun before it and ended after, part 3 after; part 9 is unknown."""
     of = feature(store)
-    store.set_tool(3, "touched off", x=1.0, z=2.0).result(60)
+    store.offsets.tools.change_row(3, "touched off", {"x": 1.0, "z": 2.0}).result(60)
     cycle(store, "1", 1)
     cycle(store, "2", 0)
-    store.set_tool(3, "wear", wear_x=-0.01).result(60)
+    store.offsets.tools.change_row(3, "wear", {"wear_x": -0.01}).result(60)
     cycle(store, "2", 2, ended="2026-01-01T00:03:00Z")
     cycle(store, "3", 3)
     for part in (1, 2, 3, 9):
@@ -117,13 +117,13 @@ def test_a_reading_knows_with_which_offsets_its_part_was_made(store: Store) -> N
 
 
 def test_corrections_stand_between_the_parts(store: Store) -> None:
-    store.set_tool(3, "touched off", x=1.0, z=2.0).result(60)
+    store.offsets.tools.change_row(3, "touched off", {"x": 1.0, "z": 2.0}).result(60)
     for part in (1, 2):
         cycle(store, str(part), part)
-    store.set_tool(3, "wear", wear_x=-0.01).result(60)
+    store.offsets.tools.change_row(3, "wear", {"wear_x": -0.01}).result(60)
     cycle(store, "3", 3)
-    store.set_tool(3, "remark", remark="new").result(60)
-    store.set_secondary(4, "D", x=0.02).result(60)
+    store.offsets.tools.change_row(3, "remark", {"remark": "new"}).result(60)
+    store.offsets.secondary.change_row(4, "D", {"x": 0.02}).result(60)
     with store.read() as connection:
         rows = part_cycles.corrections(connection, "pin.nc", 100)
     assert [(row.kind, row.number, row.was_x, row.x, row.part) for row in rows] == [
@@ -184,7 +184,7 @@ def test_a_tool_that_is_none_has_no_life(store: Store, number: int) -> None:
 def test_all_of_it_goes_with_another_name(store: Store) -> None:
     read(store, feature(store), 1, 12.7)
     cycle(store, "1", 1)
-    store.rename_program("pin.nc", "axle.nc").result(60)
+    store.programs.rename_program("pin.nc", "axle.nc").result(60)
     assert [row.value for row in readings(store, "axle.nc")] == [12.7]
     assert readings(store) == []
     with store.read() as connection:
@@ -194,7 +194,7 @@ def test_all_of_it_goes_with_another_name(store: Store) -> None:
 def test_features_of_two_programs_are_not_mixed_by_a_name(store: Store) -> None:
     feature(store)
     feature(store, SPIGOT._replace(program="axle.nc"))
-    store.rename_program("pin.nc", "axle.nc").result(60)
+    store.programs.rename_program("pin.nc", "axle.nc").result(60)
     with store.read() as connection:
         assert [row.program for row in measured_parts.features(connection)] == ["axle.nc", "pin.nc"]
 

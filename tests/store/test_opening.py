@@ -31,14 +31,14 @@ def digest(path: Path) -> str:
 def closed(folder: Path) -> Path:
     """A closed store with something in it; the path of its file."""
     with Store.open(folder) as store:
-        store.set_tool(1, "x", x=1.0)
-        store.save_program("big", b"G90 X1.2345\n" * 20000, "x").result()
+        store.offsets.tools.change_row(1, "x", {"x": 1.0})
+        store.programs.save_version("big", b"G90 X1.2345\n" * 20000, "x").result()
     return folder / FILE_NAME
 
 
 def test_what_is_stored_is_there_next_time(closed: Path) -> None:
     with Store.open(closed.parent) as store:
-        assert store.tools() == {1: ToolRow(1.0, 0.0, 0.0)}
+        assert store.offsets.tools.read_rows() == {1: ToolRow(1.0, 0.0, 0.0)}
 
 
 def test_file_says_whose_it_is_and_commits_reach_the_disk(closed: Path) -> None:
@@ -55,15 +55,15 @@ def test_file_says_whose_it_is_and_commits_reach_the_disk(closed: Path) -> None:
 
 
 def test_second_writer_is_refused_and_a_reader_is_not(store: Store, folder: Path) -> None:
-    store.set_tool(2, "x", x=3.0).result()
+    store.offsets.tools.change_row(2, "x", {"x": 3.0}).result()
     with raises_code(StoreError, "in-use", f"process {os.getpid()}"):
         Store.open(folder)
     with Store.open(folder, read_only=True) as reader:
-        assert reader.tools() == {2: ToolRow(3.0, 0.0, 0.0)}
+        assert reader.offsets.tools.read_rows() == {2: ToolRow(3.0, 0.0, 0.0)}
         with raises_code(StoreError, "read-only"):
-            reader.set_tool(2, "x", x=4.0)
-    store.set_tool(2, "x", x=5.0).result()
-    assert store.tools()[2].x == 5.0
+            reader.offsets.tools.change_row(2, "x", {"x": 4.0})
+    store.offsets.tools.change_row(2, "x", {"x": 5.0}).result()
+    assert store.offsets.tools.read_rows()[2].x == 5.0
 
 
 def test_another_process_is_refused_too(store: Store, folder: Path) -> None:
@@ -80,8 +80,8 @@ def test_another_process_is_refused_too(store: Store, folder: Path) -> None:
 
 def test_reader_of_nothing_sees_an_empty_store_and_makes_no_file(folder: Path) -> None:
     with Store.open(folder, read_only=True) as reader:
-        assert reader.tools() == {}
-        assert reader.programs() == ()
+        assert reader.offsets.tools.read_rows() == {}
+        assert reader.programs.list_programs() == ()
     assert not folder.exists()
 
 
@@ -92,7 +92,7 @@ def test_refused_opening_gives_the_lock_back(closed: Path) -> None:
         Store.open(closed.parent)
     closed.write_bytes(good)
     with Store.open(closed.parent) as store:
-        assert store.tools()
+        assert store.offsets.tools.read_rows()
 
 
 def _not_a_database(path: Path) -> None:
@@ -166,25 +166,25 @@ def test_creation_that_was_cut_off_is_begun_again(folder: Path) -> None:
     folder.mkdir()
     (folder / "turndesk.db.new").write_bytes(b"half of a store")
     with Store.open(folder) as store:
-        assert store.tools() == {}
+        assert store.offsets.tools.read_rows() == {}
     assert not (folder / "turndesk.db.new").exists()
 
 
 def test_full_disk_is_told_and_the_store_is_as_before(store: Store) -> None:
-    store.set_tool(1, "x", x=1.0).result()
+    store.offsets.tools.change_row(1, "x", {"x": 1.0}).result()
     store.write(lambda c: c.execute("PRAGMA max_page_count = 1").close()).result()  # as large as it is now
     with raises_code(StoreError, "disk-full"):
-        store.save_program("big", b"G90\n" * 100000, "x").result()
+        store.programs.save_version("big", b"G90\n" * 100000, "x").result()
     assert store.trouble == str(Cause.FULL.error(store.path, ""))
-    assert store.programs() == ()
+    assert store.programs.list_programs() == ()
     store.write(lambda c: c.execute("PRAGMA max_page_count = 1000000").close()).result()
-    assert store.save_program("big", b"G90\n" * 100000, "x").result() == 1
+    assert store.programs.save_version("big", b"G90\n" * 100000, "x").result() == 1
 
 
 def test_closed_store_refuses_questions(store: Store) -> None:
     store.close()
     with raises_code(StoreError, "closed"):
-        store.tools()
+        store.offsets.tools.read_rows()
 
 
 def test_a_new_folder_is_on_the_disk_under_its_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -220,7 +220,7 @@ def test_older_store_is_brought_up_and_kept_beside(closed: Path, monkeypatch: py
     with raises_code(StoreError, "older-version"):
         Store.open(closed.parent, read_only=True)
     with Store.open(closed.parent) as store:
-        assert store.tools() == {1: ToolRow(1.0, 0.0, 0.0)}
+        assert store.offsets.tools.read_rows() == {1: ToolRow(1.0, 0.0, 0.0)}
     assert database.check_file(closed, thorough=True) == len(newer)
     kept = closed.with_name(f"turndesk-version-{len(newer) - 1}.db")
     assert database.check_file(kept, thorough=True) == len(newer) - 1
@@ -283,7 +283,7 @@ def test_an_open_store_keeps_sqlites_locks_whatever_else_the_desk_does(
     """Without them the next other program that opens the store takes its log, and all that is saved later."""
     path = folder / FILE_NAME
     with Store.open(folder) as store:
-        store.set_setting("language", "es").result()
+        store.settings.save_setting("language", "es").result()
         assert locks_held(path) == 2
         if look == "backup":
             backup.backup(folder, tmp_path / "b.db")
@@ -301,7 +301,7 @@ def test_another_program_that_reads_an_open_store_leaves_its_log(folder: Path, t
     """What is saved behind that would be gone with a desk that is killed."""
     look = "import sqlite3, sys; c = sqlite3.connect(sys.argv[1]); c.execute('SELECT * FROM runs'); c.close()"
     with Store.open(folder) as store:
-        store.set_setting("language", "es").result()
+        store.settings.save_setting("language", "es").result()
         backup.backup(folder, tmp_path / "b.db")
         log = (folder / f"{FILE_NAME}-wal").stat().st_ino
         subprocess.run([sys.executable, "-c", look, str(folder / FILE_NAME)], check=True)

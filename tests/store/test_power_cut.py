@@ -138,7 +138,7 @@ def test_a_record_of_the_scope_stays_whole(tmp_path: Path) -> None:
 
 
 def test_an_export_is_a_whole_folder_or_none(tmp_path: Path, store: Store) -> None:
-    store.save_program("pin.nc", NEW, "saved").result()
+    store.programs.save_version("pin.nc", NEW, "saved").result()
     folder, number = tmp_path / "export", iter(range(99))
 
     def again() -> None:

@@ -35,7 +35,7 @@ def modes(folder: Path) -> dict[str, int]:
 
 def test_a_new_folder_is_its_owners(folder: Path, tmp_path: Path) -> None:
     with Store.open(folder) as store:
-        store.set_setting("a", 1).result()
+        store.settings.save_setting("a", 1).result()
         assert {f"{FILE_NAME}-wal", f"{FILE_NAME}-shm", "turndesk.lock"} < set(modes(folder))
         assert set(modes(folder).values()) == {0o600}
         backup.backup(folder, tmp_path / "b.db")

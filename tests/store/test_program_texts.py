@@ -12,8 +12,7 @@ from app.desk.programs.program_folder import ProgramFolders
 from app.programs.program_rows import Program, list_programs
 from core.language.source import load_source
 from core.store import program_records
-from core.store import store as store_module
-from core.store.production import job_queue
+from core.store.production import job_queue, run_records
 from core.store.store import Store
 
 GOOD, BAD = "G90G94\nX.5F10\nM30\n", "G90G94\nX1.5F10\nQ\nM30\n"
@@ -27,11 +26,11 @@ def load(journal: Journal, path: Path) -> None:
 def made(journal: Journal, path: Path, parts: int, seconds: float) -> None:
     """Load, prove and run it."""
     load(journal, path)
-    journal.program_proved(path.name, "PROVED", seconds, load_source(path).text)
+    journal.runs.record_proof(path.name, "PROVED", seconds, load_source(path).text)
     store = journal.opened()
     for _ in range(parts):
-        store.count_part(path.name)
-        store.cycle_finished(path.name, seconds).result(60)
+        store.runs.add_parts(path.name)
+        store.runs.record_cycle(path.name, seconds).result(60)
 
 
 def listed(journal: Journal, folder: Path) -> dict[str, Program]:
@@ -55,12 +54,12 @@ def test_another_text_under_the_same_name_has_no_proof_count_or_time(own: Path, 
     path.write_text(BAD)
     run = listed(journal, own)["pin.nc"].run
     assert (run.proof, run.parts, run.best, run.started) == ("", 0, None, None)
-    assert journal.parts("pin.nc") == 3  # of the text that is still loaded
+    assert journal.runs.count_parts("pin.nc") == 3  # of the text that is still loaded
     load(journal, path)
-    assert journal.parts("pin.nc") == 0
+    assert journal.runs.count_parts("pin.nc") == 0
     path.write_text(GOOD)  # the first text again
     load(journal, path)
-    assert journal.parts("pin.nc") == 3
+    assert journal.runs.count_parts("pin.nc") == 3
     journal.close()
 
 
@@ -73,9 +72,9 @@ def test_a_copy_and_a_renamed_program_retain_them(own: Path, tmp_path: Path) -> 
     journal.renamed("pin.nc", "bolt.nc")
     for program in listed(journal, own).values():
         assert (program.run.proof, program.run.parts, program.run.best) == ("PROVED", 2, 9.0)
-    assert journal.parts("bolt.nc") == 2
+    assert journal.runs.count_parts("bolt.nc") == 2
     load(journal, own / "copy.nc")
-    assert journal.parts("copy.nc") == 2
+    assert journal.runs.count_parts("copy.nc") == 2
     journal.close()
 
 
@@ -83,8 +82,8 @@ def test_a_proof_of_another_text_is_not_that_of_the_loaded_one(own: Path, tmp_pa
     journal, path = Journal(tmp_path / "store"), own / "pin.nc"
     path.write_text(GOOD)
     made(journal, path, 1, 9.0)
-    journal.program_proved("pin.nc", "1 ERRORS: Q", None, BAD)
-    journal.opened().set_setting("done", 1).result(60)
+    journal.runs.record_proof("pin.nc", "1 ERRORS: Q", None, BAD)
+    journal.opened().settings.save_setting("done", 1).result(60)
     assert listed(journal, own)["pin.nc"].run.proof == "PROVED"
     path.write_text(BAD)
     assert listed(journal, own)["pin.nc"].run.proof == "1 ERRORS: Q"
@@ -93,14 +92,14 @@ def test_a_proof_of_another_text_is_not_that_of_the_loaded_one(own: Path, tmp_pa
 
 def test_a_job_retains_its_parts_when_the_text_is_edited(tmp_path: Path) -> None:
     with Store.open(tmp_path) as store:
-        store.keep_program("pin.nc", GOOD.encode(), "loaded to run").result(60)
+        store.programs.keep_loaded_version("pin.nc", GOOD.encode(), "loaded to run").result(60)
         job = store.write(lambda c: job_queue.add(c, "pin.nc", 10)).result(60)
         store.write(lambda c: job_queue.begin(c, job)).result(60)
-        store.correct_parts("pin.nc", 4).result(60)
-        store.keep_program("pin.nc", BAD.encode(), "loaded to run").result(60)
-        assert store.parts("pin.nc") == 0
-        store.count_part("pin.nc").result(60)
-        (row,) = store.jobs()
+        store.runs.add_parts("pin.nc", 4).result(60)
+        store.programs.keep_loaded_version("pin.nc", BAD.encode(), "loaded to run").result(60)
+        assert store.runs.count_parts("pin.nc") == 0
+        store.runs.add_parts("pin.nc").result(60)
+        (row,) = store.jobs.read_jobs()
         assert (row.made, row.target) == (5, 6)
 
 
@@ -113,16 +112,16 @@ def test_records_stored_by_name_go_to_the_text_that_was_proved(
     def later() -> str:
         return f"2026-01-01T00:{next(ticks):02d}:00.000Z"
 
-    for module in (program_records, store_module):
+    for module in (program_records, run_records):
         monkeypatch.setattr(module, "utc_now", later)
     with Store.open(tmp_path) as store:
-        store.save_program("pin.nc", GOOD.encode(), "loaded to run").result(60)
-        store.count_part("pin.nc")
-        store.program_proved("pin.nc", "PROVED", 9.0).result(60)
-        assert [row.program for row in store.runs()] == ["pin.nc"]
-        store.save_program("pin.nc", BAD.encode(), "saved in the editor").result(60)
-        store.keep_program("pin.nc", BAD.encode(), "loaded to run").result(60)
-        assert store.parts("pin.nc") == 0
-        store.keep_program("pin.nc", GOOD.encode(), "loaded to run").result(60)
-        (row,) = store.runs()
+        store.programs.save_version("pin.nc", GOOD.encode(), "loaded to run").result(60)
+        store.runs.add_parts("pin.nc")
+        store.runs.record_proof("pin.nc", "PROVED", 9.0).result(60)
+        assert [row.program for row in store.runs.read_records()] == ["pin.nc"]
+        store.programs.save_version("pin.nc", BAD.encode(), "saved in the editor").result(60)
+        store.programs.keep_loaded_version("pin.nc", BAD.encode(), "loaded to run").result(60)
+        assert store.runs.count_parts("pin.nc") == 0
+        store.programs.keep_loaded_version("pin.nc", GOOD.encode(), "loaded to run").result(60)
+        (row,) = store.runs.read_records()
         assert (row.program, row.parts, row.proof) == ("pin.nc", 1, "PROVED")

@@ -4,94 +4,100 @@ from __future__ import annotations
 
 import pytest
 
+from core.store.offsets.offset_tables import Reason
 from core.store.store import Store, StoreError
+from core.store.store_export import import_all
 from core.store.store_rows import EventRow
 from tests.coded import raises_code
 
 
 def test_every_save_is_a_version(store: Store) -> None:
-    assert store.save_program("PIN.nc", b"G90\r\n", "new").result() == 1
-    assert store.save_program("PIN.nc", b"G91\r\n", "wrong mode").result() == 2
-    assert store.load_program("PIN.nc") == b"G91\r\n"
-    assert store.load_program("PIN.nc", 1) == b"G90\r\n"
-    newest, first = store.versions("PIN.nc")
+    assert store.programs.save_version("PIN.nc", b"G90\r\n", "new").result() == 1
+    assert store.programs.save_version("PIN.nc", b"G91\r\n", "wrong mode").result() == 2
+    assert store.programs.load_version("PIN.nc") == b"G91\r\n"
+    assert store.programs.load_version("PIN.nc", 1) == b"G90\r\n"
+    newest, first = store.programs.list_versions("PIN.nc")
     assert (newest.number, newest.why, first.number, first.size) == (2, "wrong mode", 1, 5)
-    assert [(row.name, row.version) for row in store.programs()] == [("PIN.nc", 2)]
+    assert [(row.name, row.version) for row in store.programs.list_programs()] == [("PIN.nc", 2)]
 
 
 def test_the_same_text_makes_no_new_version(store: Store) -> None:
-    store.save_program("a", b"G90", "x")
-    assert store.save_program("a", b"G90", "again").result() == 1
-    assert len(store.versions("a")) == 1
+    store.programs.save_version("a", b"G90", "x")
+    assert store.programs.save_version("a", b"G90", "again").result() == 1
+    assert len(store.programs.list_versions("a")) == 1
 
 
 def test_going_back_to_an_old_text_is_a_version(store: Store) -> None:
     for text in (b"1", b"2", b"1"):
-        store.save_program("a", text, "x").result()
-    assert [row.number for row in store.versions("a")] == [3, 2, 1]
+        store.programs.save_version("a", text, "x").result()
+    assert [row.number for row in store.programs.list_versions("a")] == [3, 2, 1]
 
 
 def test_bytes_survive_whatever_they_are(store: Store) -> None:
     text = bytes(range(256))
-    store.save_program("odd", text, "x").result()
-    assert store.load_program("odd") == text
+    store.programs.save_version("odd", text, "x").result()
+    assert store.programs.load_version("odd") == text
 
 
 @pytest.mark.parametrize("name", ["", ".", "..", "a/b", "a\\b", "a\0", " a", "a\n", "x" * 201, "C:a"])
 def test_name_that_is_no_file_name_is_refused(store: Store, name: str) -> None:
     with raises_code(StoreError, "invalid-name"):
-        store.save_program(name, b"", "x").result()
-    assert store.programs() == ()
+        store.programs.save_version(name, b"", "x").result()
+    assert store.programs.list_programs() == ()
 
 
 def test_missing_program_and_version_are_refused(store: Store) -> None:
-    store.save_program("a", b"", "x").result()
+    store.programs.save_version("a", b"", "x").result()
     with raises_code(StoreError, "no-program", "'b'"):
-        store.load_program("b")
+        store.programs.load_version("b")
     with raises_code(StoreError, "no-program", "version 2 of program 'a'"):
-        store.load_program("a", 2)
-    assert store.versions("b") == ()
+        store.programs.load_version("a", 2)
+    assert store.programs.list_versions("b") == ()
 
 
 def test_spoilt_text_is_not_handed_out(store: Store) -> None:
-    store.save_program("a", b"X1.000", "x").result()
+    store.programs.save_version("a", b"X1.000", "x").result()
     store.write(lambda c: c.execute("UPDATE program_versions SET text = X'58'").close()).result()
     with raises_code(StoreError, "damaged-version"):
-        store.load_program("a")
+        store.programs.load_version("a")
 
 
 def test_parts_are_counted_by_program(store: Store) -> None:
-    store.count_part("a")
-    store.count_part("a")
-    store.count_part("b").result()
-    assert (store.parts("a"), store.parts("b"), store.parts("c")) == (2, 1, 0)
-    store.reset_parts("a").result()
-    assert (store.parts("a"), store.parts("b")) == (0, 1)
+    store.runs.add_parts("a")
+    store.runs.add_parts("a")
+    store.runs.add_parts("b").result()
+    assert (store.runs.count_parts("a"), store.runs.count_parts("b"), store.runs.count_parts("c")) == (
+        2,
+        1,
+        0,
+    )
+    store.runs.reset_parts("a").result()
+    assert (store.runs.count_parts("a"), store.runs.count_parts("b")) == (0, 1)
 
 
 def test_events_newest_first_and_searched(store: Store) -> None:
     rows = [EventRow("2026-01-01T00:00:00.000Z", "alarm", "X following error", 12, "one-alarm102.scope")]
     rows.append(EventRow("2026-01-01T00:00:01.000Z", "start", "PIN.nc"))
-    store.log_events(rows)
-    store.log_event("stop", "feed hold").result()
-    assert [row.kind for row in store.events()] == ["stop", "start", "alarm"]
-    assert store.events(search="FOLLOWING") == (rows[0],)
-    assert store.events(search="%") == ()  # no pattern, a text
-    assert len(store.events(limit=1)) == 1
+    store.events.log_events(rows)
+    store.events.log_event("stop", "feed hold").result()
+    assert [row.kind for row in store.events.read_events()] == ["stop", "start", "alarm"]
+    assert store.events.read_events(search="FOLLOWING") == (rows[0],)
+    assert store.events.read_events(search="%") == ()  # no pattern, a text
+    assert len(store.events.read_events(limit=1)) == 1
 
 
 def test_settings_are_json(store: Store) -> None:
-    store.set_setting("theme", {"dark": True, "size": [1, 2]}).result()
-    assert store.setting("theme") == {"dark": True, "size": [1, 2]}
-    store.set_setting("theme", None).result()
-    assert store.setting("theme") is None
+    store.settings.save_setting("theme", {"dark": True, "size": [1, 2]}).result()
+    assert store.settings.read_setting("theme") == {"dark": True, "size": [1, 2]}
+    store.settings.save_setting("theme", None).result()
+    assert store.settings.read_setting("theme") is None
 
 
 def test_setting_that_is_no_json_is_refused(store: Store) -> None:
     with raises_code(StoreError, "unstorable-setting", "theme"):
-        store.set_setting("theme", object()).result()
+        store.settings.save_setting("theme", object()).result()
     with raises_code(StoreError, "unstorable-setting", "pot"):
-        store.set_setting("pot", float("nan")).result()
+        store.settings.save_setting("pot", float("nan")).result()
 
 
 def test_a_failing_operation_is_rolled_back_and_the_writer_goes_on(store: Store) -> None:
@@ -103,28 +109,30 @@ def test_a_failing_operation_is_rolled_back_and_the_writer_goes_on(store: Store)
     with raises_code(StoreError, "constraint"):
         store.write(lambda c: c.execute("INSERT INTO settings VALUES ('k', NULL)").close()).result()
     assert store.trouble == ""  # nothing is wrong with the disk
-    assert store.save_program("a", b"", "x").result() == 1
-    assert store.setting("k") is None
+    assert store.programs.save_version("a", b"", "x").result() == 1
+    assert store.settings.read_setting("k") is None
 
 
 def test_half_of_an_import_is_none_of_it(store: Store) -> None:
     with raises_code(StoreError, "invalid-name"):
-        store.import_all({"good": b"1", "bad/name": b"2"}, {}, {}, "import").result()
-    assert store.programs() == ()
+        store.write(
+            lambda c: import_all(c, {"good": b"1", "bad/name": b"2"}, {}, Reason("import", "import"))
+        ).result()
+    assert store.programs.list_programs() == ()
 
 
 def test_closed_store_refuses_writes(store: Store) -> None:
     store.close()
     with raises_code(StoreError, "closed"):
-        store.log_event("start", "late")
+        store.events.log_event("start", "late")
 
 
 def test_a_count_is_corrected_by_hand_and_never_below_nought(store: Store) -> None:
-    store.correct_parts("a", 2).result()
-    assert store.parts("a") == 2
-    store.count_part("a")
-    store.correct_parts("a", -1).result()
-    assert store.parts("a") == 2
-    store.correct_parts("a", -5).result()
-    assert store.parts("a") == 0
-    assert store.parts("b") == 0
+    store.runs.add_parts("a", 2).result()
+    assert store.runs.count_parts("a") == 2
+    store.runs.add_parts("a")
+    store.runs.add_parts("a", -1).result()
+    assert store.runs.count_parts("a") == 2
+    store.runs.add_parts("a", -5).result()
+    assert store.runs.count_parts("a") == 0
+    assert store.runs.count_parts("b") == 0

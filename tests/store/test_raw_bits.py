@@ -16,7 +16,7 @@ from core.store.production.measured_parts import FeatureRow, ReadingRow
 from core.store.store import Store
 from core.store.store_errors import StoreError
 from core.store.store_file import FILE_NAME
-from core.store.store_rows import Kind, RunRow, ToolRow
+from core.store.store_rows import RunRow, ToolRow
 from tests.coded import raises_code
 
 PIN = FeatureRow(0, "pin.nc", "OD", "diameter", 12.0, -0.01, 0.02, "tool", 3, 1, 5, 3)
@@ -26,11 +26,11 @@ PIN = FeatureRow(0, "pin.nc", "OD", "diameter", 12.0, -0.01, 0.02, "tool", 3, 1,
 def kept(folder: Path) -> Path:
     """T3 with a wear, a setting, a count, a run, a job under way, a feature with two readings."""
     with Store.open(folder) as store:
-        store.set_tool(3, "touched", x=-12.7, z=-2.5, remark="FINISHER").result()
-        store.set_tool(3, "worn", wear_x=-0.02).result()
-        store.set_setting("units", "metric").result()
-        store.correct_parts("pin.nc", 40).result()
-        store.cycle_finished("pin.nc", 33.25).result()
+        store.offsets.tools.change_row(3, "touched", {"x": -12.7, "z": -2.5, "remark": "FINISHER"}).result()
+        store.offsets.tools.change_row(3, "worn", {"wear_x": -0.02}).result()
+        store.settings.save_setting("units", "metric").result()
+        store.runs.add_parts("pin.nc", 40).result()
+        store.runs.record_cycle("pin.nc", 33.25).result()
         job = store.write(lambda c: job_queue.add(c, "pin.nc", 500)).result()
         store.write(lambda c: job_queue.begin(c, job)).result()
         feature = store.write(lambda c: measured_parts.save_feature(c, PIN)).result()
@@ -66,12 +66,16 @@ def test_an_index_that_is_damaged_hides_nothing_and_is_made_anew(kept: Path) -> 
     spoil_page(kept, "sqlite_autoindex_part_counts_1", b"pin.nc", b"pin.nb")
     assert "missing from index" in backup.problems(kept / FILE_NAME)[0]
     with Store.open(kept, read_only=True) as store:
-        assert (store.setting("units"), store.parts("pin.nc")) == ("metric", 40)
+        assert (store.settings.read_setting("units"), store.runs.count_parts("pin.nc")) == ("metric", 40)
     with Store.open(kept) as store:
         assert store.repaired == (database.INDEX_REBUILT,)
-        assert store.events()[0].text == database.INDEX_REBUILT
-        store.count_part("pin.nc").result()
-        assert (store.setting("units"), store.parts("pin.nc"), store.damaged()) == ("metric", 41, ())
+        assert store.events.read_events()[0].text == database.INDEX_REBUILT
+        store.runs.add_parts("pin.nc").result()
+        assert (
+            store.settings.read_setting("units"),
+            store.runs.count_parts("pin.nc"),
+            store.find_damaged_rows(),
+        ) == ("metric", 41, ())
     assert backup.all_problems(kept / FILE_NAME) == ()
 
 
@@ -106,27 +110,29 @@ def test_an_entry_of_the_history_that_was_flipped_undoes_nothing(kept: Path, dam
     assert told.startswith(named("offset_changes", 2))
     with Store.open(kept) as store:
         with raises_code(StoreError, "damaged-history", "entry 2"):
-            store.undo_offset(kind=Kind.TOOL).result()
-        assert store.tools() == {3: ToolRow(x=-12.7, z=-2.5, wear_x=-0.02, remark="FINISHER")}
+            store.offsets.tools.undo_last_step().result()
+        assert store.offsets.tools.read_rows() == {
+            3: ToolRow(x=-12.7, z=-2.5, wear_x=-0.02, remark="FINISHER")
+        }
 
 
 def test_an_entry_that_has_gone_is_missed(kept: Path) -> None:
     spoil(kept, "DELETE FROM offset_changes WHERE id = 2")
     assert backup.all_problems(kept / FILE_NAME)[0].startswith(named("offset_changes", 2))
     with Store.open(kept) as store, raises_code(StoreError, "damaged-history", "entry 2"):
-        store.undo_offset(kind=Kind.TOOL).result()
+        store.offsets.tools.undo_last_step().result()
 
 
 def test_behind_a_damaged_entry_there_is_a_history_again(kept: Path, tmp_path: Path) -> None:
     spoil(kept, "UPDATE offset_changes SET old_x = -25.4 WHERE id = 2")
     with Store.open(kept) as store:
-        store.set_tool(3, "worn", wear_x=-0.03).result()
-        assert [row.new for row in store.undo_offset(kind=Kind.TOOL).result()] == [
+        store.offsets.tools.change_row(3, "worn", {"wear_x": -0.03}).result()
+        assert [row.new for row in store.offsets.tools.undo_last_step().result()] == [
             ToolRow(x=-12.7, z=-2.5, wear_x=-0.02, remark="FINISHER")
         ]
-        assert [row.id for row in store.history(Kind.TOOL, limit=2)] == [4, 3]
+        assert [row.id for row in store.offsets.tools.read_history(limit=2)] == [4, 3]
         with raises_code(StoreError, "damaged-history", "entry 2"):
-            store.history(Kind.TOOL)
+            store.offsets.tools.read_history()
         backup.backup(kept, tmp_path / "still.db")  # it makes no backup worthless
     assert backup.problems(tmp_path / "still.db") == ()
 
@@ -137,21 +143,23 @@ def test_behind_a_damaged_entry_there_is_a_history_again(kept: Path, tmp_path: P
 def test_a_count_that_is_not_believed_is_shown_nowhere(kept: Path) -> None:
     spoil(kept, "UPDATE part_counts SET count = 168")
     with Store.open(kept) as store:
-        assert [(row.program, row.parts, row.cycles) for row in store.runs()] == [("pin.nc", 0, 1)]
-        assert store.parts("pin.nc") == 0
-        [told] = store.damaged()
+        assert [(row.program, row.parts, row.cycles) for row in store.runs.read_records()] == [
+            ("pin.nc", 0, 1)
+        ]
+        assert store.runs.count_parts("pin.nc") == 0
+        [told] = store.find_damaged_rows()
     assert told.startswith(named("part_counts", "pin.nc"))
 
 
 def test_a_record_of_runs_that_was_flipped_begins_anew(kept: Path) -> None:
     spoil(kept, "UPDATE runs SET best = 1.25")
     with Store.open(kept, read_only=True) as store:
-        assert store.runs() == (RunRow("pin.nc", 40),)
+        assert store.runs.read_records() == (RunRow("pin.nc", 40),)
     with Store.open(kept) as store:
         [told] = store.repaired
         assert told.startswith(named("runs", "pin.nc"))
-        store.cycle_finished("pin.nc", 34.0).result()
-        assert [(row.cycles, row.best) for row in store.runs()] == [(1, 34.0)]
+        store.runs.record_cycle("pin.nc", 34.0).result()
+        assert [(row.cycles, row.best) for row in store.runs.read_records()] == [(1, 34.0)]
     assert backup.all_problems(kept / FILE_NAME) == ()
 
 
@@ -187,10 +195,10 @@ def test_a_text_whose_type_was_flipped_is_none(kept: Path) -> None:
     spoil(kept, "UPDATE tool_offsets SET remark = CAST(remark AS BLOB)")
     spoil(kept, "UPDATE settings SET value = CAST(value AS BLOB)")
     with Store.open(kept, read_only=True) as store:
-        assert (store.tools(), store.setting("units")) == ({}, None)
+        assert (store.offsets.tools.read_rows(), store.settings.read_setting("units")) == ({}, None)
     with Store.open(kept) as store:
-        assert store.tools()[3].remark == "FINISHER"
-        [told] = store.damaged()
+        assert store.offsets.tools.read_rows()[3].remark == "FINISHER"
+        [told] = store.find_damaged_rows()
         assert told.startswith(named("settings", "units"))
 
 
@@ -199,27 +207,27 @@ def test_a_sum_whose_key_is_no_text_any_more_is_told(kept: Path) -> None:
     spoil(kept, "UPDATE row_sums SET key = CAST(key AS BLOB) WHERE tbl = 'settings'")
     assert len(backup.problems(kept / FILE_NAME)) == 2
     with Store.open(kept) as store:
-        [told] = store.damaged()
+        [told] = store.find_damaged_rows()
         assert told.startswith(named("settings", "units"))
-        assert store.setting("units") is None
-        store.set_setting("units", "metric").result()
-        assert (store.setting("units"), store.damaged()) == ("metric", ())
+        assert store.settings.read_setting("units") is None
+        store.settings.save_setting("units", "metric").result()
+        assert (store.settings.read_setting("units"), store.find_damaged_rows()) == ("metric", ())
     assert backup.all_problems(kept / FILE_NAME) == ()
 
 
 def test_two_rows_that_changed_places_with_their_sums_are_none(kept: Path) -> None:
     """The number of a tool is in its sum."""
     with Store.open(kept) as store:
-        store.set_tool(5, "touched", x=-25.4, z=-5.0).result()
+        store.offsets.tools.change_row(5, "touched", {"x": -25.4, "z": -5.0}).result()
     for table, key in (("tool_offsets", "number"), ("row_sums", "key")):
         of_tools = " AND tbl = 'tool_offsets'" if table == "row_sums" else ""
         for before, after in ((3, 30), (5, 3), (30, 5)):
             spoil(kept, f"UPDATE {table} SET {key} = ? WHERE {key} = ?{of_tools}", after, before)
     with Store.open(kept, read_only=True) as store:
-        assert store.tools() == {}
-        assert [text.split()[0] for text in store.damaged()] == ["T3", "T5"]
+        assert store.offsets.tools.read_rows() == {}
+        assert [text.split()[0] for text in store.find_damaged_rows()] == ["T3", "T5"]
     with Store.open(kept) as store:
-        assert store.tools() == {}
+        assert store.offsets.tools.read_rows() == {}
         assert store.repaired == ()
 
 
@@ -234,8 +242,8 @@ def told_of(kept: Path) -> Path:
     cycle = "INSERT INTO part_cycles (key, program, started, offset_change) VALUES ('k', 'pin.nc', 'now', 0)"
     stop = "INSERT INTO production_stops VALUES (1, 'k', '', 'pin.nc', 'now', 3.0, 'hold', 7)"
     with Store.open(kept) as store:
-        store.log_event("alarm", "X OVERTRAVEL", 12, who="ANNA").result()
-        store.save_program("pin.nc", b"M30\n", "written", who="ANNA").result()
+        store.events.log_event("alarm", "X OVERTRAVEL", 12, who="ANNA").result()
+        store.programs.save_version("pin.nc", b"M30\n", "written", who="ANNA").result()
         store.write(lambda c: c.execute(shared, version)).result()
         store.write(
             lambda c: c.execute("INSERT INTO shared_here VALUES (?, ?)", ("pin.nc", version[0]))
@@ -312,10 +320,10 @@ def test_a_store_of_before_gets_sums_for_its_histories(kept: Path, monkeypatch: 
     spoil(kept, "UPDATE runs SET best = 1.25")
     with Store.open(kept) as store:
         assert store.repaired == ()
-        [told] = store.damaged()
+        [told] = store.find_damaged_rows()
         assert told.startswith(named("part_counts", "pin.nc"))
-        assert [row.best for row in store.runs()] == [1.25]
-        assert len(store.history(Kind.TOOL)) == 2
+        assert [row.best for row in store.runs.read_records()] == [1.25]
+        assert len(store.offsets.tools.read_history()) == 2
     spoil(kept, "UPDATE offset_changes SET old_x = 7 WHERE id = 2")
     spoil(kept, "UPDATE part_counts SET count = 40")
     assert len(backup.all_problems(kept / FILE_NAME)) == 1

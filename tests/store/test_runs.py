@@ -12,6 +12,7 @@ from app.desk.kept_part import KeptPart, kept_part
 from core.store.store import Store
 from core.store.store_errors import StoreError
 from core.store.store_export import export
+from core.store.store_file import stock_key
 from tests.coded import raises_code
 
 
@@ -24,70 +25,70 @@ def store(tmp_path: Path) -> Iterator[Store]:
 def test_no_time_at_all_is_no_best_cycle(store: Store) -> None:
     """As older versions kept it of parts that a restart had finished."""
     for seconds in (0.0, 31.5, 32.0):
-        store.cycle_finished("pin.nc", seconds).result()
-    assert store.runs()[0].best == 31.5
+        store.runs.record_cycle("pin.nc", seconds).result()
+    assert store.runs.read_records()[0].best == 31.5
 
 
 def test_best_and_latest_cycle(store: Store) -> None:
     for seconds in (31.5, 29.25, 30.0):
-        store.cycle_finished("pin.nc", seconds)
-    store.run_started("pin.nc")
-    store.run_ended("pin.nc", "COMPLETE").result(60)
-    (row,) = store.runs()
+        store.runs.record_cycle("pin.nc", seconds)
+    store.runs.record_start("pin.nc")
+    store.runs.record_end("pin.nc", "COMPLETE").result(60)
+    (row,) = store.runs.read_records()
     assert (row.cycles, row.best, row.latest, row.outcome) == (3, 29.25, 30.0, "COMPLETE")
     assert row.started is not None
 
 
 def test_a_program_that_was_only_counted_or_only_proved_is_there_too(store: Store) -> None:
-    store.count_part("counted.nc")
-    store.program_proved("proved.nc", "PROVED", 12.5).result(60)
-    rows = {row.program: row for row in store.runs()}
+    store.runs.add_parts("counted.nc")
+    store.runs.record_proof("proved.nc", "PROVED", 12.5).result(60)
+    rows = {row.program: row for row in store.runs.read_records()}
     assert (rows["counted.nc"].parts, rows["counted.nc"].best) == (1, None)
     assert (rows["proved.nc"].proof, rows["proved.nc"].planned) == ("PROVED", 12.5)
 
 
 def test_everything_goes_with_another_name(store: Store) -> None:
-    store.save_program("old.nc", b"M30", "test")
-    store.count_part("old.nc")
-    store.cycle_finished("old.nc", 10.0)
-    store.rename_program("old.nc", "new.nc").result(60)
-    assert [row.program for row in store.runs()] == ["new.nc"]
-    assert store.parts("new.nc") == 1
-    assert store.load_program("new.nc") == b"M30"
-    assert store.versions("old.nc") == ()
+    store.programs.save_version("old.nc", b"M30", "test")
+    store.runs.add_parts("old.nc")
+    store.runs.record_cycle("old.nc", 10.0)
+    store.programs.rename_program("old.nc", "new.nc").result(60)
+    assert [row.program for row in store.runs.read_records()] == ["new.nc"]
+    assert store.runs.count_parts("new.nc") == 1
+    assert store.programs.load_version("new.nc") == b"M30"
+    assert store.programs.list_versions("old.nc") == ()
 
 
 def test_versions_under_the_new_name_are_not_mixed_with_those_of_the_old(store: Store) -> None:
-    store.save_program("old.nc", b"old", "test")
-    store.save_program("new.nc", b"deleted long ago", "test")
-    store.rename_program("old.nc", "new.nc").result(60)
-    assert store.load_program("new.nc") == b"deleted long ago"
-    assert store.load_program("old.nc") == b"old"
+    store.programs.save_version("old.nc", b"old", "test")
+    store.programs.save_version("new.nc", b"deleted long ago", "test")
+    store.programs.rename_program("old.nc", "new.nc").result(60)
+    assert store.programs.load_version("new.nc") == b"deleted long ago"
+    assert store.programs.load_version("old.nc") == b"old"
 
 
 @pytest.mark.parametrize("name", ["", "a/b", "..", " x"])
 def test_a_name_that_is_none_is_refused_and_nothing_is_changed(store: Store, name: str) -> None:
-    store.count_part("pin.nc").result(60)
+    store.runs.add_parts("pin.nc").result(60)
     with raises_code(StoreError, "invalid-name"):
-        store.rename_program("pin.nc", name).result(60)
-    assert store.parts("pin.nc") == 1
+        store.programs.rename_program("pin.nc", name).result(60)
+    assert store.runs.count_parts("pin.nc") == 1
 
 
 def test_events_of_some_kinds(store: Store) -> None:
     for kind, text in (("alarm", "Z"), ("start", "pin"), ("alarm", "spindle"), ("end", "pin")):
-        store.log_event(kind, text).result(60)
-    assert [event.text for event in store.events(kinds={"alarm"})] == ["spindle", "Z"]
-    assert [event.text for event in store.events("SPIN", kinds={"alarm", "end"})] == ["spindle"]
-    assert len(store.events()) == 4
-    assert store.events(kinds={"nothing"}) == ()
+        store.events.log_event(kind, text).result(60)
+    assert [event.text for event in store.events.read_events(kinds={"alarm"})] == ["spindle", "Z"]
+    assert [event.text for event in store.events.read_events("SPIN", kinds={"alarm", "end"})] == ["spindle"]
+    assert len(store.events.read_events()) == 4
+    assert store.events.read_events(kinds={"nothing"}) == ()
 
 
 def test_an_export_has_them_for_a_spreadsheet(store: Store, tmp_path: Path) -> None:
-    store.run_started("pin.nc")
-    store.cycle_finished("pin.nc", 30.5)
-    store.run_ended("pin.nc", 'ALARM 102, "X"')
-    store.count_part("pin.nc")
-    store.program_proved("ring.nc", "2 ERRORS: line 4", None).result(60)
+    store.runs.record_start("pin.nc")
+    store.runs.record_cycle("pin.nc", 30.5)
+    store.runs.record_end("pin.nc", 'ALARM 102, "X"')
+    store.runs.add_parts("pin.nc")
+    store.runs.record_proof("ring.nc", "2 ERRORS: line 4", None).result(60)
     export(store, tmp_path / "out")
     with (tmp_path / "out" / "runs.csv").open(newline="", encoding="utf-8") as file:
         pin, ring = csv.DictReader(file)
@@ -111,26 +112,29 @@ def test_an_export_without_runs_has_the_head_alone(store: Store, tmp_path: Path)
 
 def test_the_stock_of_a_program_is_kept_renamed_and_forgotten(tmp_path: Path) -> None:
     with Store.open(tmp_path) as store:
-        assert store.stock_of("PIN") == ""
-        store.keep_stock("PIN", "bar:.5").result()
-        store.keep_stock("KNOB", "bar:30mm").result()
-        store.rename_program("PIN", "KNOB").result()
-        assert (store.stock_of("PIN"), store.stock_of("KNOB")) == ("", "bar:.5")
-        store.keep_stock("KNOB", "").result()
+        assert store.settings.read_setting(stock_key("PIN")) is None
+        store.settings.save_setting(stock_key("PIN"), "bar:.5").result()
+        store.settings.save_setting(stock_key("KNOB"), "bar:30mm").result()
+        store.programs.rename_program("PIN", "KNOB").result()
+        assert (
+            store.settings.read_setting(stock_key("PIN")),
+            store.settings.read_setting(stock_key("KNOB")),
+        ) == (None, "bar:.5")
+        store.settings.save_setting(stock_key("KNOB"), None).result()
     with Store.open(tmp_path, read_only=True) as store:
-        assert store.stock_of("KNOB") == ""
+        assert store.settings.read_setting(stock_key("KNOB")) is None
         with raises_code(StoreError, "read-only"):
-            store.keep_stock("KNOB", "bar:1")
+            store.settings.save_setting(stock_key("KNOB"), "bar:1")
 
 
 def test_what_is_kept_of_a_part_goes_with_its_program(tmp_path: Path) -> None:
     with Store.open(tmp_path) as store:
         said = KeptPart("bar:1", 20.0, {"cuts-air": "it waits there"})
         for key, value in said.settings("PIN").items():
-            store.set_setting(key, value).result()
-        store.rename_program("PIN", "KNOB").result()
-        assert kept_part(store.setting, "PIN") == KeptPart()
-        assert kept_part(store.setting, "KNOB") == said
+            store.settings.save_setting(key, value).result()
+        store.programs.rename_program("PIN", "KNOB").result()
+        assert kept_part(store.settings.read_setting, "PIN") == KeptPart()
+        assert kept_part(store.settings.read_setting, "KNOB") == said
 
 
 def test_what_nobody_could_have_kept_of_a_part_counts_as_not_there() -> None:

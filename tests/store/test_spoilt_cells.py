@@ -13,7 +13,7 @@ from core.store.damaged_rows import named
 from core.store.store import Store, StoreError
 from core.store.store_export import export
 from core.store.store_file import FILE_NAME
-from core.store.store_rows import Kind, ToolRow
+from core.store.store_rows import ToolRow
 from tests.coded import raises_code
 
 
@@ -21,10 +21,10 @@ from tests.coded import raises_code
 def kept(folder: Path) -> Path:
     """T1 with two changes, and a program."""
     with Store.open(folder) as store:
-        store.set_tool(1, "touched", x=1.0).result()
-        store.set_tool(1, "worn", x=2.0).result()
-        store.save_program("pin.nc", b"G90\nM30\n", "written").result()
-        store.count_part("pin.nc").result()
+        store.offsets.tools.change_row(1, "touched", {"x": 1.0}).result()
+        store.offsets.tools.change_row(1, "worn", {"x": 2.0}).result()
+        store.programs.save_version("pin.nc", b"G90\nM30\n", "written").result()
+        store.runs.add_parts("pin.nc").result()
     return folder
 
 
@@ -41,12 +41,12 @@ def test_an_entry_of_the_history_that_is_no_figure_is_told_and_undone_by_nobody(
     spoil(kept, "UPDATE offset_changes SET old_x = ? WHERE id = 2", value)
     with Store.open(kept) as store:
         with raises_code(StoreError, "damaged-history", "entry 2"):
-            store.history(Kind.TOOL)
+            store.offsets.tools.read_history()
         with raises_code(StoreError, "damaged-history", "entry 2"):
-            store.undo_last().result()
-        assert store.tools() == {1: ToolRow(x=2.0)}
-        store.set_tool(1, "worn", x=3.0).result()  # the table itself is whole
-        assert store.tools() == {1: ToolRow(x=3.0)}
+            store.offsets.undo_last_step().result()
+        assert store.offsets.tools.read_rows() == {1: ToolRow(x=2.0)}
+        store.offsets.tools.change_row(1, "worn", {"x": 3.0}).result()  # the table itself is whole
+        assert store.offsets.tools.read_rows() == {1: ToolRow(x=3.0)}
 
 
 def test_a_program_that_is_no_bytes_is_not_what_was_saved(kept: Path) -> None:
@@ -54,7 +54,7 @@ def test_a_program_that_is_no_bytes_is_not_what_was_saved(kept: Path) -> None:
     [problem] = backup.problems(kept / FILE_NAME)
     assert problem.startswith("'pin.nc' version 1 ")
     with Store.open(kept) as store, raises_code(StoreError, "damaged-version", "version 1"):
-        store.load_program("pin.nc")
+        store.programs.load_version("pin.nc")
 
 
 def test_a_schema_whose_names_are_no_text_any_more_is_a_damaged_file(kept: Path) -> None:
@@ -84,7 +84,7 @@ def test_a_type_or_a_name_of_a_column_that_is_no_text_says_what_to_do(
 def test_a_name_with_a_line_end_stays_in_its_sentence(kept: Path) -> None:
     spoil(kept, "UPDATE part_counts SET program = ?", "a\nb")
     with Store.open(kept) as store:
-        [first, *_] = store.damaged()
+        [first, *_] = store.find_damaged_rows()
         assert first.startswith(named("part_counts", "a b"))
 
 
@@ -103,7 +103,7 @@ def test_a_version_whose_number_has_a_line_end_stays_in_its_sentence(kept: Path)
     spoil(kept, "UPDATE program_versions SET number = ?, text = ?", "a\nb", b"M30\n")
     assert backup.problems(kept / FILE_NAME)[0].startswith("'pin.nc' version a b ")
     with Store.open(kept) as store, raises_code(StoreError, "damaged-version", "version a b"):
-        store.load_program("pin.nc")
+        store.programs.load_version("pin.nc")
 
 
 @pytest.mark.parametrize("step", [float("inf"), 1e308, 2**63 - 1, "x", b"\xff"])
@@ -112,8 +112,8 @@ def test_an_offset_is_entered_behind_a_step_of_the_history_that_is_no_number(
 ) -> None:
     spoil(kept, "UPDATE offset_changes SET step = ? WHERE id = 2", step)
     with Store.open(kept) as store:
-        store.set_tool(1, "worn", x=3.0).result()
-        assert store.tools() == {1: ToolRow(x=3.0)}
+        store.offsets.tools.change_row(1, "worn", {"x": 3.0}).result()
+        assert store.offsets.tools.read_rows() == {1: ToolRow(x=3.0)}
     with closing(sqlite3.connect(kept / FILE_NAME)) as connection:
         assert connection.execute("SELECT step FROM offset_changes WHERE id = 3").fetchone() == (2,)
 

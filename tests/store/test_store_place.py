@@ -41,7 +41,7 @@ def look(path: Path) -> tuple[int, int]:
 @pytest.fixture
 def good(tmp_path: Path) -> Path:
     with Store.open(tmp_path / "other") as store:
-        store.set_tool(3, "touched", x=1.0).result()
+        store.offsets.tools.change_row(3, "touched", {"x": 1.0}).result()
     backup.backup(tmp_path / "other", tmp_path / "b.db")
     return tmp_path / "b.db"
 
@@ -83,17 +83,17 @@ def test_a_store_on_another_disk_stays_there(folder: Path, tmp_path: Path, good:
     disk.mkdir()
     folder.mkdir()
     with Store.open(tmp_path / "made") as store:
-        store.set_tool(3, "touched", x=2.0).result()
+        store.offsets.tools.change_row(3, "touched", {"x": 2.0}).result()
     (tmp_path / "made" / FILE_NAME).rename(disk / "shop.db")
     (folder / FILE_NAME).symlink_to(disk / "shop.db")
     with Store.open(folder) as store:
-        assert store.tools()[3].x == 2.0
+        assert store.offsets.tools.read_rows()[3].x == 2.0
     backup.restore(folder, good)
     assert (folder / FILE_NAME).is_symlink()
     for each in (folder, disk):
         assert not [path for path in each.iterdir() if path.name.endswith(("-wal", ".unfinished"))]
     with Store.open(folder) as store:
-        assert store.tools()[3].x == 1.0
+        assert store.offsets.tools.read_rows()[3].x == 1.0
 
 
 def test_what_is_a_store_or_nothing_is_as_before(folder: Path) -> None:

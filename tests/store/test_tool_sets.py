@@ -86,5 +86,5 @@ def test_any_order_of_touches_and_masters(steps: list[tuple[str, object]]) -> No
             assert sum(row.master for row in offset_tables.tools(connection).values()) <= 1
         made = connection.execute("SELECT max(step) FROM offset_changes").fetchone()[0] - len(START)
         for _ in range(made):
-            offset_history.undo(connection, WHY)
+            offset_history.undo(connection, WHY, Kind.TOOL)
         assert offset_tables.tools(connection) == START

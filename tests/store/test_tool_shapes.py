@@ -11,52 +11,52 @@ import pytest
 from core.store import database
 from core.store.store import Store, StoreError
 from core.store.store_file import FILE_NAME
-from core.store.store_rows import Kind, ShapeRow, ToolRow
+from core.store.store_rows import ShapeRow, ToolRow
 from tests.coded import raises_code
 
 DRILL = ShapeRow("drill", diameter=6.35, point=118.0, flutes=2)
 
 
 def set_shape(store: Store, number: int, **values: float | str) -> None:
-    store.set_offset(Kind.SHAPE, number, "entered", values).result()
+    store.offsets.shapes.change_row(number, "entered", values).result()
 
 
 def test_shape_is_kept_beside_the_offset_of_its_tool(store: Store) -> None:
     set_shape(store, 5, kind="drill", diameter=6.35, point=118.0, flutes=2)
-    assert store.shapes() == {5: DRILL}
-    assert store.tools() == {}, "the tool was never touched off"
+    assert store.offsets.shapes.read_rows() == {5: DRILL}
+    assert store.offsets.tools.read_rows() == {}, "the tool was never touched off"
     set_shape(store, 5, rear=True)
-    assert store.shapes() == {5: DRILL._replace(rear=True)}
+    assert store.offsets.shapes.read_rows() == {5: DRILL._replace(rear=True)}
 
 
 def test_shapes_have_a_history_of_their_own(store: Store) -> None:
-    store.set_tool(5, "set", x=1.0, z=2.0).result()
+    store.offsets.tools.change_row(5, "set", {"x": 1.0, "z": 2.0}).result()
     set_shape(store, 5, kind="drill", diameter=6.35, point=118.0, flutes=2)
     set_shape(store, 5, diameter=6.4)
-    newest, first = store.history(Kind.SHAPE)
+    newest, first = store.offsets.shapes.read_history()
     assert (newest.old, newest.new) == (DRILL, DRILL._replace(diameter=6.4))
     assert (first.old, first.new) == (None, DRILL)
-    assert len(store.history()) == 1
-    store.undo_offset(kind=Kind.SHAPE).result()
-    assert store.shapes() == {5: DRILL}
-    store.undo_offset(kind=Kind.SHAPE).result()
-    assert store.shapes() == {}
-    assert store.tools() == {5: ToolRow(1.0, 2.0)}
+    assert len(store.offsets.tools.read_history()) == 1
+    store.offsets.shapes.undo_last_step().result()
+    assert store.offsets.shapes.read_rows() == {5: DRILL}
+    store.offsets.shapes.undo_last_step().result()
+    assert store.offsets.shapes.read_rows() == {}
+    assert store.offsets.tools.read_rows() == {5: ToolRow(1.0, 2.0)}
 
 
 def test_shape_is_taken_away_and_comes_back(store: Store) -> None:
     set_shape(store, 5, kind="drill", diameter=6.35, point=118.0, flutes=2)
-    assert store.remove_shape(5, "sold").result() is True
-    assert store.shapes() == {}
-    assert store.remove_shape(5, "again").result() is False
-    store.undo_offset(kind=Kind.SHAPE).result()
-    assert store.shapes() == {5: DRILL}
+    assert store.offsets.shapes.remove_row(5, "sold").result() is True
+    assert store.offsets.shapes.read_rows() == {}
+    assert store.offsets.shapes.remove_row(5, "again").result() is False
+    store.offsets.shapes.undo_last_step().result()
+    assert store.offsets.shapes.read_rows() == {5: DRILL}
 
 
 def test_what_is_entered_again_is_no_change(store: Store) -> None:
     set_shape(store, 5, kind="drill")
     set_shape(store, 5, kind="drill")
-    assert len(store.history(Kind.SHAPE)) == 1
+    assert len(store.offsets.shapes.read_history()) == 1
 
 
 @pytest.mark.parametrize(
@@ -80,20 +80,20 @@ def test_value_that_cannot_be_is_refused(
 ) -> None:
     with raises_code(StoreError, code, told):
         set_shape(store, 5, **values)
-    assert store.shapes() == {}
+    assert store.offsets.shapes.read_rows() == {}
 
 
 def test_tool_that_does_not_exist(store: Store) -> None:
     with raises_code(StoreError, "unknown-number", "T33"):
         set_shape(store, 33, kind="drill")
     with raises_code(StoreError, "unknown-number", "T0"):
-        store.remove_shape(0, "no").result()
+        store.offsets.shapes.remove_row(0, "no").result()
 
 
 def test_nothing_to_take_back(store: Store) -> None:
-    store.set_tool(5, "set", x=1.0, z=2.0).result()
+    store.offsets.tools.change_row(5, "set", {"x": 1.0, "z": 2.0}).result()
     with raises_code(StoreError, "nothing-to-undo"):
-        store.undo_offset(kind=Kind.SHAPE).result()
+        store.offsets.shapes.undo_last_step().result()
 
 
 def test_store_from_before_has_no_shapes_and_takes_them(folder: Path) -> None:
@@ -105,7 +105,7 @@ def test_store_from_before_has_no_shapes_and_takes_them(folder: Path) -> None:
     connection.execute("INSERT INTO tool_offsets (number, x, z, r) VALUES (3, 1.0, 2.0, 0.4)")
     connection.close()
     with Store.open(folder) as store:
-        assert store.shapes() == {}
-        assert store.tools() == {3: ToolRow(1.0, 2.0, 0.4)}
+        assert store.offsets.shapes.read_rows() == {}
+        assert store.offsets.tools.read_rows() == {3: ToolRow(1.0, 2.0, 0.4)}
         set_shape(store, 3, kind="turning", insert="CNMG432")
-        assert store.shapes() == {3: ShapeRow("turning", insert="CNMG432")}
+        assert store.offsets.shapes.read_rows() == {3: ShapeRow("turning", insert="CNMG432")}

@@ -86,7 +86,7 @@ def test_a_killed_copy_of_the_older_version_has_no_name(
     scripts = database.migrations()
     monkeypatch.setattr(database, "migrations", lambda: scripts[:-1])
     with Store.open(folder) as store:
-        store.set_tool(3, "touched", x=1.0).result()
+        store.offsets.tools.change_row(3, "touched", {"x": 1.0}).result()
     monkeypatch.setattr(database, "migrations", lambda: scripts)
 
     def cut(_finished: Path, _target: Path) -> None:
@@ -98,7 +98,7 @@ def test_a_killed_copy_of_the_older_version_has_no_name(
             Store.open(folder)
     assert not [name for name in names(folder) if "version" in name or "unfinished" in name]
     with Store.open(folder) as store:
-        assert store.tools()[3].x == 1.0
+        assert store.offsets.tools.read_rows()[3].x == 1.0
     assert backup.problems(folder / f"turndesk-version-{len(scripts) - 1}.db") == ()
 
 

@@ -57,7 +57,9 @@ class Story:
             words += ["--program", str(path)]
         for number, (x, z) in (tools or {}).items():
             with Store.open(self.home) as store:
-                store.set_tool(number, "before the story", x=x * INCH, z=z * INCH).result()
+                store.offsets.tools.change_row(
+                    number, "before the story", {"x": x * INCH, "z": z * INCH}
+                ).result()
         self.home.mkdir(exist_ok=True)
         operator = Operator(self.server, self.forks, self.home, *words, in_real_time=in_real_time)
         self.operators.append(operator)

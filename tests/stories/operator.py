@@ -144,7 +144,7 @@ class Operator:
     def events(self, *kinds: str) -> list[str]:
         """The texts of the event log, the oldest first."""
         with self.store() as store:
-            return [event.text for event in reversed(store.events(limit=1000, kinds=kinds))]
+            return [event.text for event in reversed(store.events.read_events(limit=1000, kinds=kinds))]
 
     def shows(self, text: str) -> bool:
         """Whether this stands somewhere on the screen."""

@@ -30,7 +30,7 @@ def in_the_cut(operator: Operator) -> None:
 def stored(operator: Operator) -> tuple[object, int]:
     """Return the interrupted job and the parts that the store has; it is written behind the screen."""
     with operator.store() as store:
-        return store.setting("under_way"), store.parts("part.nc")
+        return store.settings.read_setting("under_way"), store.runs.count_parts("part.nc")
 
 
 def twists_the_estop_out(operator: Operator) -> None:
@@ -73,7 +73,7 @@ def test_after_an_estop_in_the_cut_both_palms_begin_nothing_and_the_job_is_shown
     told = operator.status["interrupted"]
     assert (told["line"], told["tool"], told["part"]) == (7, 3, 1)
     with operator.store() as store:
-        kept = store.setting("under_way")
+        kept = store.settings.read_setting("under_way")
     assert isinstance(kept, dict)
     assert kept["where"][:2] == pytest.approx(stood[:2], abs=0.05)
     assert kept["why"] == "E-STOP"
@@ -115,7 +115,7 @@ def test_a_killed_control_comes_up_with_the_job_that_it_was_killed_in(story: Sto
     again.sees(opening("desk.interrupted", program="part.nc", line=7, passed="", tool=3, part=1))
     again.sees(wording("stories.power-lost"))
     with again.store() as store:
-        kept = store.setting("under_way")
+        kept = store.settings.read_setting("under_way")
     assert isinstance(kept, dict)
     assert kept["where"][1] == pytest.approx(killed[1], abs=900 / 60 * 0.005 * 25.4 * 3)  # 3 s of this feed
     again.drives_on()

@@ -28,7 +28,7 @@ def on_the_shelf(story: Story, name: str, text: str) -> None:
 
 
 def preset_is(axis: str, wanted: float, store: Store) -> bool:
-    return bool(getattr(store.presets().get(1), axis, 0.0) == wanted)
+    return bool(getattr(store.offsets.presets.read_rows().get(1), axis, 0.0) == wanted)
 
 
 def kept(operator: Operator, what: Callable[[Store], bool]) -> None:
@@ -86,7 +86,7 @@ def new_edge_on_lathe(operator: Operator) -> None:
     operator.key("F6")
     operator.enters(f"{operator.slides[1] + 2.0:.3f}")
     means(operator)
-    kept(operator, lambda store: abs(store.tools()[1].z + 2.0) < 0.01)
+    kept(operator, lambda store: abs(store.offsets.tools.read_rows()[1].z + 2.0) < 0.01)
     operator.key("F1")
     operator.key("F2")
     operator.opens("AUTOMATIC")
@@ -99,7 +99,7 @@ def new_tool_on_mill(operator: Operator) -> None:
     operator.writes("1")
     operator.key("F2")
     means(operator)
-    kept(operator, lambda store: abs(store.mill_tools()[1].length - 78.0) < 0.01)
+    kept(operator, lambda store: abs(store.offsets.mill_tools.read_rows()[1].length - 78.0) < 0.01)
     operator.key("F1")
     operator.key("F2")
     operator.opens("AUTOMATIC")
@@ -137,7 +137,13 @@ def test_on_a_mill(story: Story) -> None:
         "270"
     )  # the tip stands on a gauge block: the nose is 350 over the zero of the machine file
     operator.key("F2")
-    kept(operator, lambda store: 1 in store.mill_tools() and store.mill_tools()[1].length == 80.0)
+    kept(
+        operator,
+        lambda store: (
+            1 in store.offsets.mill_tools.read_rows()
+            and store.offsets.mill_tools.read_rows()[1].length == 80.0
+        ),
+    )
     mdi(operator, "TOOL CALL 1 Z S900", lambda: operator.shows("T1 Z"))
     operator.key("F9")
     operator.opens("PRESETS")
@@ -171,13 +177,16 @@ def test_on_a_sinumerik_lathe(story: Story) -> None:
         operator.enters("0")  # the tip touches a part that is nothing wide, and its face
         operator.sees("T1")
         assert wanted in "xz"
-    kept(operator, lambda store: 1 in store.tools())
+    kept(operator, lambda store: 1 in store.offsets.tools.read_rows())
     operator.key("F9")
     operator.opens("ZERO OFFSETS")
     operator.key("Right")
     operator.writes("1")  # the face lies 1 behind the tip
     operator.key("F2")
-    kept(operator, lambda store: 54 in store.zero_offsets() and store.zero_offsets()[54].z == -1.0)
+    kept(
+        operator,
+        lambda store: 54 in store.offsets.zero.read_rows() and store.offsets.zero.read_rows()[54].z == -1.0,
+    )
     mdi(operator, "G54 T1 D1", lambda: operator.shows("T1 D1"))
     loads(operator, "again")
     makes(operator, 1)

@@ -121,7 +121,7 @@ def test_only_the_way_out_is_asked_for_held_and_asked_for_again(story: Story) ->
     assert operator.machine["outputs"] == ["collet"]  # no coolant
     assert operator.status["interrupted"]["line"] == 8  # the job is still to be finished
     with operator.store() as store:
-        kept = store.setting("under_way")
+        kept = store.settings.read_setting("under_way")
     assert isinstance(kept, dict)
     assert kept["line"] == 8
     operator.key("F4")
@@ -178,7 +178,7 @@ def test_a_control_that_was_killed_in_a_groove_still_knows_the_way_out_of_it(sto
     os.kill(operator.popen.pid, signal.SIGKILL)
     operator.popen.wait()
     with operator.store() as store:
-        kept = store.setting("under_way")
+        kept = store.settings.read_setting("under_way")
     assert isinstance(kept, dict), json.dumps(kept)
     again = story.begins(GROOVES)
     wakes(again)

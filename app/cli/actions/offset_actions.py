@@ -77,7 +77,7 @@ _FLAGS = {"1": True, "yes": True, "true": True, "0": False, "no": False, "false"
 
 def _show(args: argparse.Namespace) -> int:
     with opened_store(read_only=True) as store:
-        rows = {kind: store.offsets(kind) for kind in Kind}
+        rows = {kind: store.offsets.table(kind).read_rows() for kind in Kind}
     if args.json:
         told = {
             kind.value: {n: _in_inches(kind, row) for n, row in table.items()}
@@ -184,7 +184,7 @@ def _check_shape(store: Store, number: int, shape: dict[str, Value], offset: dic
     """Raises CommandError where the tool's shape would contradict itself or begin without a kind."""
     from app.desk.stored_shapes import row_mistakes
 
-    row = with_fields(store.shapes().get(number, ShapeRow()), shape)
+    row = with_fields(store.offsets.shapes.read_rows().get(number, ShapeRow()), shape)
     if not row.kind:
         kinds = FIELDS[Kind.SHAPE]["kind"].range
         raise CommandError(
@@ -195,7 +195,7 @@ def _check_shape(store: Store, number: int, shape: dict[str, Value], offset: dic
             ),
             "no-shape",
         )
-    tools = store.tools()
+    tools = store.offsets.tools.read_rows()
     if offset and number not in tools and not {"x", "z"} <= offset.keys():
         text = Message(
             "{number} was never set; if you set only {offset}, the offset of the other axis remains 0",
@@ -312,11 +312,11 @@ def _clear(args: argparse.Namespace) -> int:
         if letter in {**_KIND, **_MILL_KIND}:
             table = {**_KIND, **_MILL_KIND}[letter]
             who = who_changes(store, args, act_of(table))
-            count = store.clear_offsets(table, args.why, who=who).result()
+            count = store.offsets.table(table).remove_all_rows(args.why, who=who).result()
         else:
             kind, number = _named(args.offset)
             who = who_changes(store, args, act_of(kind))
-            count = store.remove_offset(kind, number, args.why, who=who).result()
+            count = store.offsets.table(kind).remove_row(number, args.why, who=who).result()
             letter = _name(kind, number)
     if not count:
         sys.stdout.write(f"{letter} was not set, so there was nothing to clear\n")
@@ -331,9 +331,9 @@ def _history(args: argparse.Namespace) -> int:
         raise CommandError(Message("--limit {limit} is too small; use 1 or more", limit=args.limit), "limit")
     with opened_store(read_only=True) as store:
         changes = (
-            store.history(Kind(args.table), limit=args.limit)
+            store.offsets.table(Kind(args.table)).read_history(limit=args.limit)
             if args.table
-            else store.history_of_all(limit=args.limit)
+            else store.offsets.read_history(limit=args.limit)
         )
     if args.json:
         sys.stdout.write(json.dumps([_change(change) for change in changes]) + "\n")
@@ -364,9 +364,9 @@ def _undo(args: argparse.Namespace) -> int:
         kinds = [Kind(args.table)] if args.table else list(Kind)
         who = who_changes(store, args, *map(act_of, kinds))
         undone = (
-            store.undo_offset(args.why, kind=Kind(args.table), who=who)
+            store.offsets.table(Kind(args.table)).undo_last_step(args.why, who=who)
             if args.table
-            else store.undo_last(args.why, who=who)
+            else store.offsets.undo_last_step(args.why, who=who)
         )
         changes = undone.result()
     sys.stdout.write("".join(f"{_told(change)}\n" for change in changes))

@@ -21,7 +21,7 @@ _TEXT, _DRIVES = "text", "drives"
 class Settings(Protocol):
     """Settings of the store."""
 
-    def setting(self, key: str) -> object: ...
+    def read_setting(self, key: str) -> object: ...
 
 
 def key_of(machine: Machine) -> str:
@@ -38,7 +38,7 @@ def record_of(machine: Machine) -> dict[str, object]:
 
 def differences(machine: Machine, kept: Settings) -> tuple[Change, ...] | None:
     """What differs from what was accepted; None: this file was never accepted."""
-    record = kept.setting(key_of(machine))
+    record = kept.read_setting(key_of(machine))
     if not isinstance(record, dict) or not isinstance(record.get(_TEXT), str):
         return None
     told = changes(record[_TEXT], machine.text)

@@ -120,13 +120,13 @@ def remember_machine(machine_file: str | None, persistence: Persistence) -> None
     """Store which machine is in use; None: the shipped lathe."""
     path = Path(machine_file) if machine_file else None
     place = str(path.resolve()) if path is not None and path.exists() else machine_file
-    if persistence.setting(_KEY) != place:
+    if persistence.read_setting(_KEY) != place:
         persistence.save_setting(_KEY, place)
 
 
 def machine_in_use(settings: Settings) -> Machine:
     """Return the machine in use. Raises CommandError if its file cannot be read."""
-    place = settings.setting(_KEY)
+    place = settings.read_setting(_KEY)
     try:
         return read_machine(place if isinstance(place, str) else None)
     except CommandError as error:

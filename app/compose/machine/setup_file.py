@@ -32,7 +32,7 @@ from app.desk.command_errors import CommandError, as_command_error, cannot_write
 from app.desk.data_folder import data_folder
 from core.file_placing import make_folder, put_in_place, restrict, write_in_place
 from core.message import Message, error_code
-from core.store import backup, people
+from core.store import backup
 from core.store.store import Store
 from core.store.store_errors import StoreError
 from core.store.store_file import FILE_NAME
@@ -84,8 +84,8 @@ def _copy_of_store(folder: Path, beside: Path) -> Path:
     with as_command_error(StoreError):
         backup.backup(folder, home / FILE_NAME)
         with Store.open(home) as store:
-            store.set_setting(UNDER_WAY, None).result()
-            store.write(people.remove_all).result()
+            store.settings.save_setting(UNDER_WAY, None).result()
+            store.people.remove_all_people().result()
         backup.backup(home, beside / STORE)
     return beside / STORE
 

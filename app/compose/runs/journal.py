@@ -10,7 +10,7 @@ from contextlib import closing
 from pathlib import Path
 
 from app.desk.data_folder import data_folder
-from app.desk.persistence import Persistence
+from app.desk.persistence import NoRunRecords, Persistence
 from app.offsets.offset_book import OffsetBook, OffsetRows, rows_of_store
 from app.production.cycle_recorder import CycleRecorder
 from app.production.parts_book import PartsBook
@@ -18,19 +18,21 @@ from app.programs.run_history import note_cut_off_runs
 from core.executor.snapshot import CYCLE, Event, InterruptedJob, Snapshot, of_plain, plain
 from core.language.source import Source
 from core.message import Message
-from core.store import backup, people, store_connection
+from core.store import backup, store_connection
 from core.store.backup import Verdict, verdict
 from core.store.damaged_rows import OF_PROGRAMS
-from core.store.people import People, PersonRow
+from core.store.people import People
+from core.store.production.run_records import RunRecords
 from core.store.store import Store
+from core.store.store_access import Backlog
 from core.store.store_errors import StoreError
 from core.store.store_file import FILE_NAME, has_store
-from core.store.store_rows import EventRow, Kind, RunRow, ToolRow, VersionRow
-from core.store.store_writer import Backlog
+from core.store.store_rows import EventRow, Kind, ToolRow, VersionRow
 
 _log = logging.getLogger(__name__)
 HELD = 10_000  # events that are kept back while there is no store
 UNDER_WAY = "under_way"  # setting: what a power cut would leave interrupted
+CLOSED = "the data store is closed"
 AGAIN = 5.0  # s between two tries to open a store
 
 
@@ -91,11 +93,11 @@ class Journal(Persistence):
 
     def _read_what_was_left(self, store: Store) -> None:
         """Damage, runs that were cut off, the interrupted job. Raises StoreError."""
-        self.damage = (*store.repaired, *store.damaged())
+        self.damage = (*store.repaired, *store.find_damaged_rows())
         left = None
         if not self._goes_on:
-            note_cut_off_runs(store)
-            left = of_plain(store.setting(UNDER_WAY))
+            note_cut_off_runs(store.runs)
+            left = of_plain(store.settings.read_setting(UNDER_WAY))
         with self._lock:
             self._unread = False
             if not self._has_noted:
@@ -130,7 +132,7 @@ class Journal(Persistence):
 
     def _post_noted(self) -> None:
         value = plain(self._noted) if self._noted is not None else None
-        self._post(lambda store: store.set_setting(UNDER_WAY, value))
+        self._post(lambda store: store.settings.save_setting(UNDER_WAY, value))
 
     def book(self) -> OffsetBook:
         """The offsets of the store, for the screen to show and to change."""
@@ -151,7 +153,7 @@ class Journal(Persistence):
             return None
         try:
             with Store.open(self._folder, read_only=True) as store:
-                return None if store.damaged(OF_PROGRAMS) else rows_of_store(store)
+                return None if store.find_damaged_rows(OF_PROGRAMS) else rows_of_store(store)
         except StoreError:
             return None
 
@@ -183,131 +185,90 @@ class Journal(Persistence):
         with self._lock:
             self._program = snapshot.program
             if snapshot.state in CYCLE and self._store is not None:
-                self._recorder.go_on(snapshot.program, snapshot.t, self._store)
+                self._recorder.go_on(snapshot.program, snapshot.t, self._store.cycles)
 
     def _write(self, store: Store, event: Event) -> None:
-        store.log_event(event.kind, event.text, event.line, event.record)
+        store.events.log_event(event.kind, event.text, event.line, event.record)
         if event.kind == "part" and self._program:
-            store.count_part(Path(self._program).name)
-        self._recorder.hear(event, store)
+            store.runs.add_parts(Path(self._program).name)
+        self._recorder.hear(event, store.cycles)
 
     def keep(self, source: Source) -> None:
         """The text that is about to be proved and run becomes a version of its program."""
         if self._store is not None:
             name = Path(source.name).name
-            self._store.keep_program(name, source.text.encode("utf-8", "surrogateescape"), "loaded to run")
+            self._store.programs.keep_loaded_version(
+                name, source.text.encode("utf-8", "surrogateescape"), "loaded to run"
+            )
 
     def versions(self, name: str) -> tuple[VersionRow, ...]:
         """Every version of a program, newest first. Raises StoreError; not for the screen's thread."""
-        return self.opened().versions(name)
+        return self.opened().programs.list_versions(name)
 
     def text_of(self, name: str, version: int) -> bytes:
         """A version as it was kept. Raises StoreError; not for the screen's thread."""
-        return self.opened().load_program(name, version)
+        return self.opened().programs.load_version(name, version)
 
     def save_version(self, name: str, text: bytes, why: str) -> int:
         """Another version; its number once it is kept. Raises StoreError; not for the screen's thread."""
-        return self.opened().save_program(name, text, why, who=self.who()).result()
+        return self.opened().programs.save_version(name, text, why, who=self.who()).result()
 
-    def setting(self, key: str) -> object:
+    def read_setting(self, key: str) -> object:
         """A setting; None: not set, or nothing is kept."""
         store = self._store
-        return store.setting(key) if store else None
+        return store.settings.read_setting(key) if store else None
 
     def save_setting(self, key: str, value: object) -> None:
         """Post a setting."""
-        self._post(lambda store: store.set_setting(key, value))
+        self._post(lambda store: store.settings.save_setting(key, value))
 
     def keep_settings(self, values: Mapping[str, object]) -> None:
         """Settings that are on the disk when this is back. Raises StoreError; not for the screen's thread."""
         store = self.opened()
-        for written in [store.set_setting(key, value) for key, value in values.items()]:
+        for written in [store.settings.save_setting(key, value) for key, value in values.items()]:
             written.result()
 
     def note_change(self, text: str, who: str = "") -> None:
         """Post a line of the log, where people say who they are."""
         now = self.who()
         if now:
-            self._post(lambda store: store.log_event("change", text, who=who or now))
+            self._post(lambda store: store.events.log_event("change", text, who=who or now))
 
     def note_access(self, text: str, who: str) -> None:
         """Post a line of the log; without a store it goes to the log of failures."""
         if self._store is None:
             _log.warning("access: %s (%s)", text, who)
-        self._post(lambda store: store.log_event("access", text, who=who))
+        self._post(lambda store: store.events.log_event("access", text, who=who))
+
+    @property
+    def runs(self) -> RunRecords | NoRunRecords:
+        """Return the run records of the store that is open now."""
+        store = self._store
+        return store.runs if store is not None else NoRunRecords(self._trouble or CLOSED)
 
     def people(self) -> People:
         """Who works at the machine, also by a store that another process writes. Raises StoreError."""
         store = self._store
         if store is not None:
-            return store.people()
+            return store.people.read_people()
         with Store.open(self._folder, read_only=True) as other:
-            return other.people()
-
-    def keep_person(self, row: PersonRow) -> None:
-        """Back when it is on the disk. Raises StoreError."""
-        self.opened().write(lambda c: people.keep_person(c, row)).result()
-
-    def remove_person(self, name: str) -> None:
-        """Back when it is on the disk. Raises StoreError."""
-        self.opened().write(lambda c: people.remove_person(c, name)).result()
-
-    def remove_people(self) -> None:
-        """Back when it is on the disk. Raises StoreError."""
-        self.opened().write(people.remove_all).result()
-
-    def parts(self, program: str) -> int:
-        """Parts counted of this program."""
-        store = self._store
-        return store.parts(program) if store else 0
-
-    def correct_parts(self, program: str, by: int) -> None:
-        """Post parts added or taken away by hand."""
-        self._post(lambda store: store.correct_parts(program, by))
-
-    def reset_parts(self, program: str) -> None:
-        """Post its count to nought."""
-        self._post(lambda store: store.reset_parts(program))
+            return other.people.read_people()
 
     def events(self, search: str, kinds: Collection[str], limit: int) -> tuple[EventRow, ...]:
         """The log, newest first."""
-        return self.opened().events(search, limit, kinds)
-
-    def runs(self) -> tuple[RunRow, ...]:
-        """What each program has done."""
-        return self.opened().runs()
-
-    def runs_by_text(self) -> Mapping[str, RunRow]:
-        """Return what each program text has done, by its record key."""
-        return self.opened().runs_by_text()
+        return self.opened().events.read_events(search, limit, kinds)
 
     def tools_of_last_run(self, program: str) -> tuple[str, dict[int, ToolRow]]:
         """When it was started last (UTC), and its tools as they were then; on a worker. Raises StoreError."""
         store = self.opened()
-        started = next((row.started for row in store.runs() if row.program == program), None)
-        return (started, store.tools_at(started)) if started is not None else ("", {})
-
-    def run_started(self, program: str) -> None:
-        """Post that a run begins."""
-        self._post(lambda store: store.run_started(program))
-
-    def run_ended(self, program: str, outcome: str) -> None:
-        """Post how it ended."""
-        self._post(lambda store: store.run_ended(program, outcome))
-
-    def cycle_finished(self, program: str, seconds: float) -> None:
-        """Post one whole cycle."""
-        self._post(lambda store: store.cycle_finished(program, seconds))
-
-    def program_proved(self, program: str, result: str, planned: float | None, text: str) -> None:
-        """Post what proving found."""
-        self._post(lambda store: store.program_proved(program, result, planned, text))
+        started = next((row.started for row in store.runs.read_records() if row.program == program), None)
+        return (started, store.offsets.tools.read_rows_at(started)) if started is not None else ("", {})
 
     def renamed(self, old: str, new: str) -> None:
         """Versions, count and record go with the program; back when that is on the disk."""
         store = self._store
         if store is not None:
-            store.rename_program(old, new).result()
+            store.programs.rename_program(old, new).result()
 
     def backup(self, target: Path) -> None:
         """A copy of the store, also while it is written. Raises StoreError."""
@@ -390,7 +351,7 @@ class Journal(Persistence):
         """The store of this moment: another after a restore. Raises StoreError while there is none."""
         store = self._store
         if store is None:
-            raise StoreError(self._trouble or "the data store is closed")
+            raise StoreError(self._trouble or CLOSED)
         return store
 
     def close(self) -> str:

@@ -56,7 +56,7 @@ class FirstJob:
     @classmethod
     def stored(cls, persistence: Persistence) -> FirstJob:
         """Return the card at the step at which TurnDesk was closed. Raises StoreError."""
-        at = persistence.setting(STEP)
+        at = persistence.read_setting(STEP)
         return cls(at, _saved=at) if isinstance(at, int) and 0 <= at <= len(STEPS) else cls()
 
     def save(self, persistence: Persistence) -> None:

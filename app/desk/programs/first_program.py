@@ -44,7 +44,7 @@ def begin_with(desk: Desk, named: str | None) -> None:
 def _show_program_under_way(desk: Desk, named: str | None) -> None:
     """Load the program that the control runs already: it has gone on while there was no screen."""
     now = desk.snapshot()
-    last = desk.settings.persistence.setting(LAST_PROGRAM)
+    last = desk.settings.persistence.read_setting(LAST_PROGRAM)
     known = (Path(each) for each in (named, last) if isinstance(each, str))
     path = next((each for each in known if each.name == now.program), None)
     path = path or desk.program_folders.find(now.program)

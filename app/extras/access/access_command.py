@@ -113,7 +113,7 @@ def _table(*, json_wanted: bool) -> str:
 
 
 def _list(store: Store, args: argparse.Namespace) -> str:
-    people = store.people()
+    people = store.people.read_people()
     if args.json:
         rows = [{"name": row.name, "level": Level(row.level).name} for row in people.rows]
         return json.dumps({"on": people.on, "damaged": people.damaged, "people": rows}) + "\n"
@@ -127,7 +127,7 @@ def _add(store: Store, args: argparse.Namespace) -> str:
     from core.store.people import check_person
 
     level, name = _LEVELS[args.level], check_person(args.name)
-    if store.people().named(name) is not None:
+    if store.people.read_people().named(name) is not None:
         raise CommandError(
             Message("user {name} already exists; to change the PIN, use 'turndesk access pin'", name=name),
             "name-in-use",
@@ -136,7 +136,7 @@ def _add(store: Store, args: argparse.Namespace) -> str:
 
 
 def _person(store: Store, name: str) -> PersonRow:
-    row = store.people().named(name)
+    row = store.people.read_people().named(name)
     if row is None:
         raise CommandError(
             Message("user {name} does not exist; 'turndesk access list' shows all users", name=name),
@@ -163,18 +163,16 @@ def _kept(store: Store, args: argparse.Namespace, name: str, level: Level, done:
     if asked_pin("repeat the new PIN: ") != pin:
         raise CommandError("the two PINs do not match; nothing was saved", "pins-differ")
     row = people.PersonRow(name, level, *hashed(pin))
-    store.write(lambda c: people.keep_person(c, row)).result()
-    store.log_event("access", f"{name} {done}: {level.name}", who=who).result()
+    store.people.save_person(row).result()
+    store.events.log_event("access", f"{name} {done}: {level.name}", who=who).result()
     return f"{name} {done}: {level.name}\n"
 
 
 def _remove(store: Store, args: argparse.Namespace) -> str:
-    from core.store import people
-
     row = _person(store, args.name)
     who = who_changes(store, args, Act.PEOPLE)
-    store.write(lambda c: people.remove_person(c, row.name)).result()
-    store.log_event("access", Message("{row} removed", row=row.name), who=who).result()
+    store.people.remove_person(row.name).result()
+    store.events.log_event("access", Message("{row} removed", row=row.name), who=who).result()
     return f"{row.name} is taken away\n"
 
 
@@ -182,15 +180,13 @@ def _remove(store: Store, args: argparse.Namespace) -> str:
 
 
 def _reset(store: Store, _args: argparse.Namespace) -> str:
-    from core.store import people
-
-    count = store.write(people.remove_all).result()
-    store.set_setting("wrong PINs", None)
+    count = store.people.remove_all_people().result()
+    store.settings.save_setting("wrong PINs", None)
     told = Message(
         "service reset at the keyboard: {count} users and their PINs were deleted, and access levels are off",
         count=count,
     )
-    store.log_event("access", told, who=getpass.getuser()).result()
+    store.events.log_event("access", told, who=getpass.getuser()).result()
     return f"{told}\n"
 
 
@@ -203,32 +199,32 @@ _WRONG = "wrong PINs"  # the setting that the desk keeps too
 def demand_pin(store: Store, row: PersonRow, remedy: str) -> None:
     """Raises CommandError for a wrong one, which is logged, and lets the next wait."""
     from core.extras.access.pins import Hashed, hashed, is_outdated, is_pin, wait_after
-    from core.store.people import keep_person
 
     if not row.has_pin:
         raise CommandError(
             Message("no PIN is stored for user {row}; {remedy}", row=row.name, remedy=remedy), "no-pin"
         )
-    kept = store.setting(_WRONG)
+    kept = store.settings.read_setting(_WRONG)
     wrong = kept if isinstance(kept, int) else 0
     if pause := wait_after(wrong):
         sys.stderr.write(f"turndesk: {wrong} wrong PINs in a row; try again in {pause:.0f} s\n")
         time.sleep(pause)
     pin = asked_pin(Message("PIN for {row}: ", row=row.name))
-    store.set_setting(_WRONG, wrong + 1).result()  # before it is looked at: who ends us then is counted too
+    # Before the PIN is checked: ending TurnDesk then does not avoid the wait.
+    store.settings.save_setting(_WRONG, wrong + 1).result()
     stored = Hashed(row.salt, row.hash)
     if is_pin(pin, stored):
         if is_outdated(stored):
             renewed = row._replace(**hashed(pin)._asdict())
-            store.write(lambda c: keep_person(c, renewed)).result()
-        store.set_setting(_WRONG, None).result()
+            store.people.save_person(renewed).result()
+        store.settings.save_setting(_WRONG, None).result()
         return
     told = Message(
         "wrong PIN for {row} entered on the command line; consecutive wrong PINs: {wrong}",
         row=row.name,
         wrong=wrong + 1,
     )
-    store.log_event("access", told, who=getpass.getuser()).result()
+    store.events.log_event("access", told, who=getpass.getuser()).result()
     raise CommandError(
         Message("wrong PIN for user {row}; nothing was changed, and the attempt was logged", row=row.name),
         "wrong-pin",

@@ -242,7 +242,8 @@ class AccessLevels(SpecialFunction):
 
     def _keep(self, row: PersonRow, pin: str) -> None:
         """On the worker. Raises StoreError."""
-        self.persistence.keep_person(PersonRow(row.name, row.level, *hashed(pin)))
+        renewed = PersonRow(row.name, row.level, *hashed(pin))
+        self.persistence.opened().people.save_person(renewed).result()
 
     def _change(self, work: Callable[[], None], said: str, noted: str) -> None:
         """Have the people changed, read them again and say so; the log has by whom."""
@@ -279,7 +280,10 @@ class AccessLevels(SpecialFunction):
         if row is None or self.desk.refused(Act.PEOPLE):
             return
         said = tr(Message("{name} REMOVED", name=data(row.name)))
-        work = partial(self.persistence.remove_person, row.name)
+
+        def work() -> None:
+            self.persistence.opened().people.remove_person(row.name).result()
+
         asked = tr(Message("PRESS Y TO REMOVE {name}, N TO KEEP THE USER AND PIN", name=data(row.name)))
         self.desk.ask(asked, partial(self._change, work, said, Message("{row} removed", row=row.name)))
 
@@ -305,7 +309,7 @@ class AccessLevels(SpecialFunction):
 
         def remove() -> None:
             if not self.access.is_unread:
-                self.persistence.remove_people()
+                self.persistence.opened().people.remove_all_people().result()
 
         def done(_none: None) -> None:
             self.access.lift()

@@ -42,7 +42,7 @@ class SignIn:
     def reload(self) -> None:
         """Read the time of the automatic sign-out and the wrong PINs. Raises StoreError."""
         persistence = self.access.persistence
-        minutes, wrong = persistence.setting(_MINUTES), persistence.setting(_WRONG)
+        minutes, wrong = persistence.read_setting(_MINUTES), persistence.read_setting(_WRONG)
         self.minutes = minutes if isinstance(minutes, int) and minutes in MINUTES else _USUAL
         if isinstance(wrong, int) and wrong > self.wrong.count:
             self.wrong = WrongPins(wrong, self.access.clock())
@@ -70,7 +70,8 @@ class SignIn:
         right = is_pin(pin, kept)
         if right and is_outdated(kept):
             with suppress(StoreError):  # the next time that a PIN is entered it is tried again
-                self.access.persistence.keep_person(PersonRow(row.name, row.level, *hashed(pin)))
+                renewed = PersonRow(row.name, row.level, *hashed(pin))
+                self.access.persistence.opened().people.save_person(renewed).result()
         return right
 
     def _tried(self, row: PersonRow, right: bool) -> None:

@@ -58,13 +58,13 @@ def run(args: argparse.Namespace) -> int:
         who = who_changes(store, args, Act.JOBS) if args.action != "list" else COMMAND_LINE
         told = _ACTIONS[args.action](store, args)
         if who != COMMAND_LINE:
-            store.log_event("change", f"jobs: {told.strip()}", who=who).result()
+            store.events.log_event("change", f"jobs: {told.strip()}", who=who).result()
     sys.stdout.write(told)
     return EXIT_OK
 
 
 def _list(store: Store, args: argparse.Namespace) -> str:
-    jobs = store.jobs()
+    jobs = store.jobs.read_jobs()
     if args.json:
         return json.dumps({"jobs": [_told(place, row) for place, row in enumerate(jobs, 1)]}, indent=1) + "\n"
     if not jobs:
@@ -100,7 +100,6 @@ def _add(store: Store, args: argparse.Namespace) -> str:
     from app.compose.workshop import samples
     from app.desk.data_folder import data_folder
     from app.desk.programs.program_folder import ProgramFolders
-    from core.store.production import job_queue
 
     folder = data_folder() / "programs"
     path = ProgramFolders((folder, samples())).find(args.name)
@@ -113,36 +112,30 @@ def _add(store: Store, args: argparse.Namespace) -> str:
             ),
             "not-a-program",
         )
-    store.write(lambda c: job_queue.add(c, path.name, args.parts, args.note)).result()
-    return f"{path.name}, {args.parts} parts, is job {len(store.jobs())}\n"
+    store.jobs.add_job(path.name, args.parts, args.note).result()
+    return f"{path.name}, {args.parts} parts, is job {len(store.jobs.read_jobs())}\n"
 
 
 def _move(store: Store, args: argparse.Namespace) -> str:
-    from core.store.production import job_queue
-
     row = _at(store, args.place)
     _at(store, args.to)
-    store.write(lambda c: job_queue.move(c, row.id, args.to)).result()
+    store.jobs.move_job(row.id, args.to).result()
     return f"{row.program} is job {args.to}\n"
 
 
 def _remove(store: Store, args: argparse.Namespace) -> str:
-    from core.store.production import job_queue
-
     row = _at(store, args.place)
-    store.write(lambda c: job_queue.remove(c, row.id)).result()
+    store.jobs.remove_job(row.id).result()
     return f"{row.program} is taken out, {row.made} of {row.wanted} parts made\n"
 
 
 def _clear(store: Store, args: argparse.Namespace) -> str:
-    from core.store.production import job_queue
-
-    count = store.write(lambda c: job_queue.clear(c, everything=args.all)).result()
+    count = store.jobs.clear_jobs(everything=args.all).result()
     return f"{count} {'job' if count == 1 else 'jobs'} taken out\n"
 
 
 def _at(store: Store, place: int) -> JobRow:
-    jobs = store.jobs()
+    jobs = store.jobs.read_jobs()
     if not 1 <= place <= len(jobs):
         known = (
             Message("jobs in the queue: {jobs_count}", jobs_count=len(jobs)) if jobs else "the queue is empty"

@@ -32,10 +32,10 @@ def attach_jobs(desk: Desk, machine: Machine, journal: Journal | None, work: Loa
     parts = desk.attached(PartsWatch)
     if parts is None:
         return
-    kept = partial(kept_part, (journal or Persistence()).setting)
+    kept = partial(kept_part, (journal or Persistence()).read_setting)
     of_part = PartDesk(machine, shapes_at_hand, kept, work.read)
     before = journal.tools_of_last_run if journal is not None else _never
-    parts.book.readers[FEATURE] = lambda store, _program: store.jobs()
+    parts.book.readers[FEATURE] = lambda store, _program: store.jobs.read_jobs()
     watch = JobsWatch(desk, parts, JobProofs(partial(_proved, desk, machine, work, of_part, before)))
     desk.attach(watch)
     desk.watches.append(watch)

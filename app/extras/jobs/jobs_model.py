@@ -167,7 +167,7 @@ class JobsModel:
         """What was noted on the program's setup sheet (F10)."""
         if self._notes[0] != program:
             try:
-                kept = self.desk.counter.persistence.setting(notes_key(program))
+                kept = self.desk.counter.persistence.read_setting(notes_key(program))
             except StoreError:
                 kept = None
             texts = kept if isinstance(kept, list) else []

@@ -185,7 +185,7 @@ def _page(
         return asked_agent(address) if address in table.told_by_agents else asked(address)
 
     others = OtherDesks((*table.others, *table.told_by_agents), ask)
-    kept = partial(kept_part, journal.setting)
+    kept = partial(kept_part, journal.read_setting)
     pictures = thumbnails(machine, shapes_at_hand, kept, size=PICTURE)
     part = PartPicture(lambda: desk.session.now.job, still, pictures)
     alarm = AlarmDrawing(desk.recorder.folder if desk.recorder is not None else None, still)

@@ -76,7 +76,7 @@ class TrendsSection(QualitySection):
         """First hour and last of the shift, by the clock on the wall; read once."""
         if self._shift is None:
             try:
-                kept = self.desk.counter.persistence.setting(SETTING)
+                kept = self.desk.counter.persistence.read_setting(SETTING)
             except StoreError:
                 kept = None
             self._shift = hours_of(kept)

@@ -50,7 +50,7 @@ def _names(store: Store, wanted: str | None) -> list[str]:
     """The programs of which anything is kept, or the one that is asked for."""
     from core.store.production import measured_parts, part_cycles
 
-    known = {row.program for row in store.runs()}
+    known = {row.program for row in store.runs.read_records()}
     with store.read() as connection:
         known |= {row.program for row in measured_parts.features(connection)}
         known |= part_cycles.programs(connection)
@@ -96,7 +96,7 @@ def _program(store: Store, name: str) -> dict[str, object]:
     data = _data(store, name)
     return {
         "program": name,
-        "parts": store.parts(name),
+        "parts": store.runs.count_parts(name),
         "cycles": [row._asdict() for row in data.cycles],
         "features": [
             {
@@ -153,7 +153,7 @@ def _lines(store: Store, names: Sequence[str]) -> Iterator[str]:
             if times
             else ""
         )
-        yield f"{name}: parts {store.parts(name)}{mean}\n"
+        yield f"{name}: parts {store.runs.count_parts(name)}{mean}\n"
         for row in data.features:
             taken = data.readings_of(row.id)
             found = _capability(data, row.id)

@@ -80,7 +80,7 @@ class SamplePlan:
         program = self.watch.program
         if self._waits[0] != program:
             try:
-                kept = self.desk.counter.persistence.setting(_key(program)) is True
+                kept = self.desk.counter.persistence.read_setting(_key(program)) is True
             except StoreError:
                 kept = False
             self._waits = program, kept

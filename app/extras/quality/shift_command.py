@@ -78,7 +78,7 @@ def _shift(store: Store, args: argparse.Namespace) -> Shift:
         raise CommandError(
             Message("--back {back} is out of range; use 0 to 10000 shifts", back=args.back), "back"
         )
-    return shift_of(hours_of(store.setting(SETTING)), datetime.now().astimezone(), args.back)
+    return shift_of(hours_of(store.settings.read_setting(SETTING)), datetime.now().astimezone(), args.back)
 
 
 def _write(found: ShiftFigures, path: Path, *, metric: bool) -> None:

@@ -165,7 +165,7 @@ def _made(store: Store, desk: Desk, back: int) -> ShiftFigures:
     store.write(
         lambda _connection: None
     ).exception()  # what was posted before is in it, where the disk takes it
-    shift = shift_of(hours_of(store.setting(SETTING)), now, back)
+    shift = shift_of(hours_of(store.settings.read_setting(SETTING)), now, back)
     return shift_figures(store, shift, now.timestamp(), watch.book.tools)
 
 

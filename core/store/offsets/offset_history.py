@@ -11,7 +11,6 @@ from core.store.offsets import offset_tables
 from core.store.offsets.offset_tables import (
     LOGS,
     MOST_STEPS,
-    OFFSET_LOG,
     TABLES,
     Changes,
     Log,
@@ -25,13 +24,12 @@ from core.store.store_rows import Change, Kind, Row, ToolRow
 from core.tool_edges import edge_name, tool_of
 
 
-def undo(connection: sqlite3.Connection, reason: Reason, kind: Kind | None = None) -> tuple[Change, ...]:
-    """Takes the last step back that is not undone yet; answers the changes this made.
+def undo(connection: sqlite3.Connection, reason: Reason, kind: Kind) -> tuple[Change, ...]:
+    """Take back the last step of a table that is not undone yet; return the changes that this made.
 
-    With ``kind`` the last step of that table, without one that of tools and secondary offsets together.
-    Asking again goes further back. Raises StoreError when there is nothing left to undo.
+    Calling it again takes back the step before it. Raise StoreError if there is no step left.
     """
-    return _undo(connection, reason, _log_of(kind), kind)
+    return _undo(connection, reason, TABLES[kind].log, kind)
 
 
 def undo_any(connection: sqlite3.Connection, reason: Reason) -> tuple[Change, ...]:
@@ -84,14 +82,12 @@ def undoable(connection: sqlite3.Connection, kind: Kind, number: int | None) -> 
 
     ``number`` restricts it to the last step that changed this row; None: the last step of the table.
     """
-    return _step_to_undo(connection, _log_of(kind), kind, number)
+    return _step_to_undo(connection, TABLES[kind].log, kind, number)
 
 
-def history(connection: sqlite3.Connection, kind: Kind | None, limit: int) -> tuple[Change, ...]:
-    """The last changes, newest first; without ``kind`` those of tools and secondary offsets together."""
-    log = _log_of(kind)
-    if kind is None:
-        return select(connection, log, "ORDER BY id DESC LIMIT ?", (limit,))
+def history(connection: sqlite3.Connection, kind: Kind, limit: int) -> tuple[Change, ...]:
+    """Return the last changes of a table, newest first."""
+    log = TABLES[kind].log
     return select(connection, log, f"WHERE {log.kind} = ? ORDER BY id DESC LIMIT ?", (kind.value, limit))
 
 
@@ -104,14 +100,10 @@ def history_any(connection: sqlite3.Connection, limit: int) -> tuple[Change, ...
 
 def as_of(connection: sqlite3.Connection, kind: Kind, moment: str) -> dict[int, Row]:
     """The offsets of a table as they were set at a moment (UTC), by number."""
-    log = _log_of(kind)
+    log = TABLES[kind].log
     changes = select(connection, log, f"WHERE {log.kind} = ? AND at <= ? ORDER BY id", (kind.value, moment))
     rows = {each.number: each.new for each in changes}
     return {number: row for number, row in rows.items() if row is not None}
-
-
-def _log_of(kind: Kind | None) -> Log:
-    return OFFSET_LOG if kind is None else TABLES[kind].log
 
 
 def undo_step(

@@ -26,8 +26,8 @@ from core.store.store_rows import (
     Kind,
     MillRow,
     PresetRow,
-    R,
     Row,
+    RowT,
     SecondaryRow,
     ShapeRow,
     Sort,
@@ -82,7 +82,7 @@ def _columns(kind: Kind) -> tuple[str, ...]:
 
 
 # Columns of a secondary offset are the first of those of a tool: both share one history.
-OFFSET_LOG = Log("offset_changes", "number", _columns(Kind.TOOL), "kind", "no offset change to undo")
+_OFFSET_LOG = Log("offset_changes", "number", _columns(Kind.TOOL), "kind", "no offset change to undo")
 _ZEROS = Log("zero_offset_changes", "code", _columns(Kind.ZERO), "'zero'", "no G54…G59 change to undo")
 _SHAPES = Log("tool_shape_changes", "number", _columns(Kind.SHAPE), "'shape'", _NO_SHAPE)
 _MILL_TOOLS = Log(
@@ -99,10 +99,10 @@ _PRESETS = Log(
     "'preset'",
     "no preset change to undo",
 )
-LOGS = (OFFSET_LOG, _ZEROS, _SHAPES, _MILL_TOOLS, _PRESETS)
+LOGS = (_OFFSET_LOG, _ZEROS, _SHAPES, _MILL_TOOLS, _PRESETS)
 TABLES = {
-    Kind.TOOL: _Table("tool_offsets", "T", TOOL_ROWS, ToolRow, OFFSET_LOG),
-    Kind.SECONDARY: _Table("secondary_offsets", "D", OFFSETS, SecondaryRow, OFFSET_LOG),
+    Kind.TOOL: _Table("tool_offsets", "T", TOOL_ROWS, ToolRow, _OFFSET_LOG),
+    Kind.SECONDARY: _Table("secondary_offsets", "D", OFFSETS, SecondaryRow, _OFFSET_LOG),
     Kind.ZERO: _Table("zero_offsets", "G", ZERO_CODES, ZeroRow, _ZEROS),
     Kind.SHAPE: _Table("tool_shapes", "T", TOOL_ROWS, ShapeRow, _SHAPES),
     Kind.MILL_TOOL: _Table("mill_tools", "T", MILL_TOOLS, MillRow, _MILL_TOOLS),
@@ -123,7 +123,7 @@ def current(connection: sqlite3.Connection, kind: Kind) -> dict[int, Row]:
     }
 
 
-def rows_of(connection: sqlite3.Connection, kind: Kind, row: type[R]) -> dict[int, R]:
+def rows_of(connection: sqlite3.Connection, kind: Kind, row: type[RowT]) -> dict[int, RowT]:
     """The same by the type of its rows."""
     return {number: each for number, each in current(connection, kind).items() if isinstance(each, row)}
 

@@ -8,13 +8,17 @@ from __future__ import annotations
 
 import sqlite3
 from collections.abc import Mapping
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from core.message import Message
-from core.store import event_log, program_records, row_sums
+from core.store import program_records, row_sums, settings
+from core.store.store_access import StoreAccess
 from core.store.store_errors import StoreError
 from core.store.store_file import text_key
 from core.store.store_rows import utc_now
+
+if TYPE_CHECKING:
+    from concurrent.futures import Future
 
 MOST_PARTS = 9_999_999
 MOST_JOBS = 200
@@ -170,7 +174,7 @@ def load_text(connection: sqlite3.Connection, program: str, text: str) -> None:
     if before == program:
         program_records.adopt(connection, program)
     made = {row.id: row.made for row in jobs(connection) if row.under_way and row.program == program}
-    event_log.set_setting(connection, text_key(program), text)
+    settings.save_setting(connection, text_key(program), text)
     base = program_records.parts(connection, program)
     for number, count in made.items():
         connection.execute("UPDATE jobs SET made = ?, base = ? WHERE id = ?", (count, base, number))
@@ -199,3 +203,35 @@ def _check(wanted: int, note: str) -> None:
 def _demand(connection: sqlite3.Connection, job: int) -> None:
     if connection.execute("SELECT 1 FROM jobs WHERE id = ?", (job,)).fetchone() is None:
         raise StoreError("that job is not in the queue anymore", "job-gone")
+
+
+class JobQueue:
+    """The job queue of an open store. Methods raise StoreError as described in ``StoreAccess``."""
+
+    def __init__(self, store: StoreAccess) -> None:
+        self._store = store
+
+    def read_jobs(self) -> tuple[JobRow, ...]:
+        """Return the jobs in their order, with the parts that wait in memory for the disk."""
+        with self._store.read() as connection:
+            held = self._store.backlog
+            return jobs(connection, held.counts if held is not None else None)
+
+    def add_job(self, program: str, wanted: int, note: str = "") -> Future[int]:
+        """Add a job for ``wanted`` parts at the end of the queue; the result is its id.
+
+        The future raises StoreError for an invalid program name, count or note, and for a full queue.
+        """
+        return self._store.write(lambda c: add(c, program, wanted, note))
+
+    def move_job(self, job: int, place: int) -> Future[None]:
+        """Move a job to a place, counted from 1. The future raises StoreError for an unknown job."""
+        return self._store.write(lambda c: move(c, job, place))
+
+    def remove_job(self, job: int) -> Future[None]:
+        """Remove a job; part counts remain. The future raises StoreError for an unknown job."""
+        return self._store.write(lambda c: remove(c, job))
+
+    def clear_jobs(self, *, everything: bool) -> Future[int]:
+        """Remove the finished and damaged jobs, or all jobs; the result is the number of jobs removed."""
+        return self._store.write(lambda c: clear(c, everything=everything))

@@ -3,7 +3,12 @@
 from __future__ import annotations
 
 import sqlite3
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
+
+from core.store.store_access import StoreAccess
+
+if TYPE_CHECKING:
+    from concurrent.futures import Future
 
 
 class CycleRow(NamedTuple):
@@ -153,3 +158,21 @@ def stops_between(connection: sqlite3.Connection, since: str, until: str) -> tup
         (since, until),
     )
     return tuple(StopRow(*row) for row in rows)
+
+
+class CycleRecords:
+    """Records of cycles and stops in an open store. Methods raise StoreError as in ``StoreAccess``.
+
+    A full disk does not lose a record: the record waits in memory and is written later.
+    """
+
+    def __init__(self, store: StoreAccess) -> None:
+        self._store = store
+
+    def record_cycle(self, row: CycleRow) -> Future[None]:
+        """Record a cycle that starts, or the end of a cycle recorded before."""
+        return self._store.keep_latest(("cycle", row.key), lambda c: save_cycle(c, row))
+
+    def record_stop(self, row: StopRow) -> Future[None]:
+        """Record a stop that has ended."""
+        return self._store.keep_latest(("stop", row.key), lambda c: save_stop(c, row))

@@ -35,7 +35,7 @@ def test_without_levels_commands_are_as_they_were(say: Say, home: Path) -> None:
     assert say("offsets", "set", "T3", "x=1", "z=-1")[0] == 0
     assert say("offsets", "set", "T3", "x=1.01", "--as", "dora")[0] == 0
     with Store.open(home) as store:
-        assert [row.who for row in store.history()] == ["dora", "command line"]
+        assert [row.who for row in store.offsets.read_history()] == ["dora", "command line"]
 
 
 def test_a_change_needs_level_and_pin_and_keeps_the_name(
@@ -48,7 +48,7 @@ def test_a_change_needs_level_and_pin_and_keeps_the_name(
     assert say("offsets", "set", "T3", "x=1", "z=-1", "--as", "ben", typed="2580")[0] == 0
     assert say("offsets", "set", "D4", "x=-.0005")[0] == 0  # a correction is the operator's
     with Store.open(home) as store:
-        assert [(row.number, row.who) for row in store.history()] == [(4, "shop"), (3, "BEN")]
+        assert [(row.number, row.who) for row in store.offsets.read_history()] == [(4, "shop"), (3, "BEN")]
 
 
 def test_a_wrong_pin_changes_nothing_is_logged_and_lets_wait(
@@ -63,7 +63,7 @@ def test_a_wrong_pin_changes_nothing_is_logged_and_lets_wait(
     assert (status, "4 wrong PINs in a row; try again in 10 s" in told) == (0, True)
     assert waited == [5.0, 10.0]
     with Store.open(home) as store:
-        assert store.events("wrong PIN")[0].text == wording("cli.wrong-pin", name="BEN", count=4)
+        assert store.events.read_events("wrong PIN")[0].text == wording("cli.wrong-pin", name="BEN", count=4)
 
 
 def test_who_breaks_a_command_off_while_a_pin_is_looked_at_is_counted(
@@ -84,7 +84,7 @@ def test_who_breaks_a_command_off_while_a_pin_is_looked_at_is_counted(
     assert say("offsets", "clear", "T", "--as", "ben", typed="2580")[0] == 0
     assert waited == [5.0]
     with Store.open(home) as store:
-        assert store.setting("wrong PINs") is None
+        assert store.settings.read_setting("wrong PINs") is None
 
 
 @pytest.mark.parametrize("words", [
@@ -111,12 +111,12 @@ def test_a_restore_has_the_name_in_the_log(say: Say, people: None, home: Path, t
     (tmp_path / "own.toml").write_text(resources.machine_file("gt75.toml"))
     assert say("machine", "accept", tmp_path / "own.toml", "--as", "anna", typed="4711")[0] == 0
     with Store.open(home) as store:
-        restored = store.events("restored from")[0]
+        restored = store.events.read_events("restored from")[0]
         (replaced,) = home.glob("turndesk-replaced-*.db")
         saved = wording("cli.previous-data", path=replaced)
         assert restored.text == wording("cli.restored-event", path=tmp_path / "b.db", saved=saved)
         assert restored.who == "ANNA"
-        assert "accepted by ANNA" in store.events("machine file")[0].text
+        assert "accepted by ANNA" in store.events.read_events("machine file")[0].text
 
 
 def test_a_store_that_cannot_be_read_can_be_replaced(
@@ -127,7 +127,7 @@ def test_a_store_that_cannot_be_read_can_be_replaced(
     assert say("store", "restore", tmp_path / "b.db", typed="RESET", terminal=True)[0] == 0
     assert say("access", "list")[1].startswith("levels are off")
     with Store.open(home) as store:
-        assert store.events("restored from")[0].who == "shop (service reset at the keyboard)"
+        assert store.events.read_events("restored from")[0].who == "shop (service reset at the keyboard)"
 
 
 def damage_people(home: Path, change: str) -> None:
@@ -255,7 +255,7 @@ def test_the_reset_is_typed_at_the_machine(
     assert say("access", "reset", typed="RESET", terminal=True)[0] == 0
     assert say("access", "list")[1].startswith("levels are off")
     with Store.open(home) as store:
-        row = store.events("service reset")[0]
+        row = store.events.read_events("service reset")[0]
     assert (row.who, "2 users and their PINs" in row.text) == ("shop", True)
 
 

@@ -111,19 +111,19 @@ def test_an_old_hash_is_made_anew_when_its_pin_is_entered(
     old = room.access.people.rows
     monkeypatch.setattr(pins, "COST", pins.Cost(5, 8, 1))
     room.sign_in("BEN", "9999")
-    assert room.store.people().rows == old
+    assert room.store.people.read_people().rows == old
     room.at += 300.0
     room.sign_in("BEN")
-    now = room.store.people().named("BEN")
+    now = room.store.people.read_people().named("BEN")
     assert now is not None
     assert (room.access.name, room.access.people.named("BEN")) == ("BEN", now)
     assert now.hash[:3] == bytes((5, 8, 1))
     assert is_pin(PINS["BEN"], Hashed(now.salt, now.hash))
-    assert {row for row in old if row.name != "BEN"} < set(room.store.people().rows)
+    assert {row for row in old if row.name != "BEN"} < set(room.store.people.read_people().rows)
 
 
 def test_who_has_no_pin_is_let_in_by_none(room: PinRoom) -> None:
-    room.journal.keep_person(PersonRow("DORA", Level.SERVICE, b"", b""))
+    room.journal.opened().people.save_person(PersonRow("DORA", Level.SERVICE, b"", b"")).result()
     room.access.reload()
     room.sign_in("DORA", "4711")
     assert room.access.name == ""
@@ -131,7 +131,9 @@ def test_who_has_no_pin_is_let_in_by_none(room: PinRoom) -> None:
 
 
 def test_the_store_does_not_hold_the_pin(room: PinRoom, tmp_path: Path) -> None:
-    room.journal.keep_person(PersonRow("DORA", Level.SERVICE, *hashed("660391827455")))
+    room.journal.opened().people.save_person(
+        PersonRow("DORA", Level.SERVICE, *hashed("660391827455"))
+    ).result()
     room.settle()
     for path in (tmp_path / "home").glob("turndesk.db*"):
         assert b"660391827455" not in path.read_bytes()

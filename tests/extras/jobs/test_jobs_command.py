@@ -33,9 +33,9 @@ def test_added_listed_moved_removed_cleared(turndesk: Turndesk, home: Path) -> N
     assert turndesk("jobs", "add", "pin", 3).out == "pin.nc, 3 parts, is job 3\n"  # a sample
     assert turndesk("jobs", "move", 2, 1).out == "ring.nc is job 1\n"
     with Store.open(home) as store:
-        job = store.jobs()[0].id
+        job = store.jobs.read_jobs()[0].id
         store.write(lambda c: job_queue.begin(c, job)).result()
-        store.correct_parts("ring.nc", 2).result()
+        store.runs.add_parts("ring.nc", 2).result()
     assert turndesk("jobs", "list").out == (
         "  1  ring.nc  2 of 2 parts  done\n"
         "  2  cap.nc  0 of 50 parts  waiting  order 7\n"
@@ -92,7 +92,7 @@ def test_jobs_are_the_operators_and_have_the_name(
         store.write(lambda c: people.keep_person(c, ann)).result(60)
     assert turndesk("jobs", "add", "cap", 20).status == 0
     with Store.open(home) as store:
-        assert [(row.text, row.who) for row in store.events("jobs")] == [
+        assert [(row.text, row.who) for row in store.events.read_events("jobs")] == [
             ("jobs: cap.nc, 20 parts, is job 1", "shop")
         ]
 

@@ -28,14 +28,14 @@ def made(home: Path) -> Path:
             began, ended = "2026-01-01T00:00:00Z", "2026-01-01T00:01:00Z"
             made = CycleRow(f"c{part}", "peg.nc", part, began, ended, 60.0 + part, "COMPLETE")
             store.write(partial(part_cycles.save_cycle, row=made)).result(60)
-            store.count_part("peg.nc")
+            store.runs.add_parts("peg.nc")
             reading = ReadingRow(0, of, part, 12.69 if part % 2 else 12.71, "in", "2026", "gauge", "mic")
             store.write(partial(measured_parts.add_reading, row=reading)).result(60)
         stop = StopRow("s", "c1", "peg.nc", "2026-01-01T00:00:30Z", 4.0, "FEED HOLD", 7)
         store.write(lambda c: part_cycles.save_stop(c, stop)).result(60)
         store.write(lambda c: tool_lives.set_limits(c, LifeRow(1, 50))).result(60)
-        store.set_tool(1, "wear", x=0.0, z=0.0, wear_x=-0.01).result(60)
-        store.count_part("ring.nc").result(60)
+        store.offsets.tools.change_row(1, "wear", {"x": 0.0, "z": 0.0, "wear_x": -0.01}).result(60)
+        store.runs.add_parts("ring.nc").result(60)
     return home
 
 

@@ -17,7 +17,7 @@ def test_parts(turndesk: Turndesk, filled: Path) -> None:
 
 def test_shift(turndesk: Turndesk, filled: Path) -> None:
     with Store.open(filled) as store:
-        store.log_event("alarm", "FOLLOWING ERROR").result(60)
+        store.events.log_event("alarm", "FOLLOWING ERROR").result(60)
     now = datetime.now()
     first, last = (f"{now + timedelta(days=days):%Y-%m-%d %H:%M}" for days in (-2, 2))
     found = whole(turndesk("shift", "--from", first, "--to", last, "--json"))

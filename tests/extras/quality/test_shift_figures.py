@@ -132,7 +132,7 @@ def test_alarms_readings_and_lives(store: Store) -> None:
 
 
 def test_offsets_are_told_with_who_and_when(store: Store) -> None:
-    store.set_tool(1, "wear", x=1.0, wear_x=-0.01, who="proposed").result()
+    store.offsets.tools.change_row(1, "wear", {"x": 1.0, "wear_x": -0.01}, who="proposed").result()
     now = datetime.now(UTC).timestamp()
     found = shift_figures(store, Shift(now - 60.0, now + 60.0), now)
     assert [(c.number, c.why, c.who) for c in found.offsets] == [(1, "wear", "proposed")]

@@ -72,7 +72,10 @@ def test_published_seen_compared_taken_and_settled(shop: Shop) -> None:
     assert shop.share(2, "take", "CAP.NC")[0] == 0
     assert shop.program(2, "CAP.NC").read_text() == "G00 X11\nM30\n"
     with Store.open(shop.folder / "home2", read_only=True) as store:
-        kept = {store.load_program("CAP.NC", row.number) for row in store.versions("CAP.NC")}
+        kept = {
+            store.programs.load_version("CAP.NC", row.number)
+            for row in store.programs.list_versions("CAP.NC")
+        }
     assert kept == {b"G00 X1\nM30\n", b"G00 X12\nM30\n", b"G00 X11\nM30\n"}
 
 

@@ -27,7 +27,7 @@ def test_a_shared_program_has_the_name_in_the_log(say: Say, people: None, home: 
     assert say("share", "publish", *named, "ben")[0] == 0
     assert say("share", "status", *named[:2])[0] == 0  # looking is everybody's
     with Store.open(home) as store:
-        told = [(row.text, row.who) for row in store.events(kinds={"change"})]
+        told = [(row.text, row.who) for row in store.events.read_events(kinds={"change"})]
     assert told == [("share publish", "BEN"), ("share begin", "ANNA")]
 
 

@@ -56,7 +56,7 @@ def cut(jog: JogBench) -> float:
 
 
 def test_a_wear_correction_between_two_parts(jog: JogBench, tmp_path: Path) -> None:
-    jog.store.set_tool(1, "touched off", x=-1.0 * INCH, z=-2.0 * INCH).result(60)
+    jog.store.offsets.tools.change_row(1, "touched off", {"x": -1.0 * INCH, "z": -2.0 * INCH}).result(60)
     jog.desk.book.read()
     load(jog, tmp_path)
     first = cut(jog)
@@ -74,7 +74,7 @@ def test_a_wear_correction_between_two_parts(jog: JogBench, tmp_path: Path) -> N
 
 def test_a_correction_at_a_stop_counts_in_the_next_part_of_the_repeat(jog: JogBench, tmp_path: Path) -> None:
     """Gauged at M00 with Cycle Repeat on: this part ends as it began, the next one has the new wear."""
-    jog.store.set_tool(1, "touched off", x=-1.0 * INCH, z=-2.0 * INCH).result(60)
+    jog.store.offsets.tools.change_row(1, "touched off", {"x": -1.0 * INCH, "z": -2.0 * INCH}).result(60)
     jog.desk.book.read()
     load(jog, tmp_path, PROGRAM.replace("M30", "M00\nX.6Z.5\nM30"))
     jog.key(Key.Key_F1)
@@ -111,7 +111,7 @@ def test_a_correction_at_a_stop_counts_in_the_next_part_of_the_repeat(jog: JogBe
 
 
 def test_f8_under_a_running_cycle_is_refused(jog: JogBench, tmp_path: Path) -> None:
-    jog.store.set_tool(1, "touched off", x=-1.0 * INCH, z=-2.0 * INCH).result(60)
+    jog.store.offsets.tools.change_row(1, "touched off", {"x": -1.0 * INCH, "z": -2.0 * INCH}).result(60)
     jog.desk.book.read()
     load(jog, tmp_path)
     jog.key(Key.Key_F1)
@@ -121,7 +121,7 @@ def test_f8_under_a_running_cycle_is_refused(jog: JogBench, tmp_path: Path) -> N
     jog.enter("5")
     jog.run(0.02)
     assert jog.prompt == text("screen.program-runs-wear-only")
-    assert jog.store.tools()[1].x == -1.0 * INCH
+    assert jog.store.offsets.tools.read_rows()[1].x == -1.0 * INCH
     jog.key(Key.Key_F1)
     jog.key(Key.Key_F5)
     jog.down(Key.Key_Left)

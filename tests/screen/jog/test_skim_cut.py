@@ -106,7 +106,7 @@ def test_a_set_tool_shows_old_and_new_and_its_history_says_how(jog: JogBench) ->
     jog.confirm()
     jog.run(0.1)
     assert jog.desk.book.tools[1].x == pytest.approx(x - 0.15 * INCH, abs=1e-6)
-    assert jog.store.history(limit=1)[0].why == "skim cut Ø .3"
+    assert jog.store.offsets.read_history(limit=1)[0].why == "skim cut Ø .3"
 
 
 def test_a_face(jog: JogBench) -> None:

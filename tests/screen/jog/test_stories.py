@@ -70,28 +70,28 @@ def test_two_tools_are_set_by_touching(jog: JogBench) -> None:
     jog.enter("1")
     touch(jog, "x", ".5-.002")
     assert text("jog.touched-one-of-two", number=1, axis="Z") in jog.prompt
-    assert jog.store.tools() == {}
+    assert jog.store.offsets.tools.read_rows() == {}
     touch(jog, "z", "0")
     assert jog.prompt == text("screen.saved", names="T1")
     # the tip stands at diameter .498 with the slide at home: part zero is .249 further in
-    assert jog.store.tools()[1].x == pytest.approx(-0.249 * INCH, abs=1e-9)
-    assert jog.store.tools()[1].z == 0.0
+    assert jog.store.offsets.tools.read_rows()[1].x == pytest.approx(-0.249 * INCH, abs=1e-9)
+    assert jog.store.offsets.tools.read_rows()[1].z == 0.0
     step_to(jog, Key.Key_Up, 0, 10)
     step_to(jog, Key.Key_Right, 0, 5)
     jog.type("t")
     jog.enter("2")
     touch(jog, "x", ".75")
     touch(jog, "z", ".1")
-    second = jog.store.tools()[2]
+    second = jog.store.offsets.tools.read_rows()[2]
     assert second.x == pytest.approx((-1.0 - 0.375) * INCH, abs=0.0013)
     assert second.z == pytest.approx((0.5 - 0.1) * INCH, abs=0.0013)
     assert jog.page.model.tool.tip(jog.shot) == pytest.approx((0.375 * INCH, 0.1 * INCH), abs=1e-9)
-    assert [change.why for change in jog.store.history()] == [text("jog.touched-off")] * 2
+    assert [change.why for change in jog.store.offsets.read_history()] == [text("jog.touched-off")] * 2
 
 
 def set_two(jog: JogBench) -> None:
-    jog.store.set_tool(1, "x", x=-5.0, z=-50.0, wear_x=0.1)
-    jog.store.set_tool(2, "x", x=3.0, z=-40.0).result(60)
+    jog.store.offsets.tools.change_row(1, "x", {"x": -5.0, "z": -50.0, "wear_x": 0.1})
+    jog.store.offsets.tools.change_row(2, "x", {"x": 3.0, "z": -40.0}).result(60)
     jog.desk.book.read()
     jog.type("t")
     jog.enter("1")
@@ -107,12 +107,12 @@ def test_a_new_touch_shows_old_and_new_and_undo_takes_it_back(jog: JogBench) -> 
     assert change == "X R  −0.19685  →  −0.50000   WEAR X  +0.00787  →  +0.00000"  # .1 mm of radius
     jog.key(Key.Key_Return)
     jog.confirm()
-    assert jog.store.tools()[1].x == pytest.approx(-0.5 * INCH, abs=1e-9)
-    assert jog.store.tools()[1].wear_x == 0.0
-    assert jog.store.tools()[2].x == 3.0
+    assert jog.store.offsets.tools.read_rows()[1].x == pytest.approx(-0.5 * INCH, abs=1e-9)
+    assert jog.store.offsets.tools.read_rows()[1].wear_x == 0.0
+    assert jog.store.offsets.tools.read_rows()[2].x == 3.0
     jog.key(Key.Key_F4)
     jog.confirm()
-    assert jog.store.tools()[1] == ToolRow(-5.0, -50.0, wear_x=0.1)
+    assert jog.store.offsets.tools.read_rows()[1] == ToolRow(-5.0, -50.0, wear_x=0.1)
 
 
 def test_the_master_takes_all_along_or_is_set_alone(jog: JogBench) -> None:
@@ -125,8 +125,8 @@ def test_the_master_takes_all_along_or_is_set_alone(jog: JogBench) -> None:
     jog.enter("1")
     jog.confirm()
     # the face was at −50 mm, it is at −25.4 mm now: 24.6 mm for everybody
-    assert jog.store.tools()[1].z == pytest.approx(-25.4, abs=1e-9)
-    assert jog.store.tools()[2].z == pytest.approx(-15.4, abs=1e-9)
+    assert jog.store.offsets.tools.read_rows()[1].z == pytest.approx(-25.4, abs=1e-9)
+    assert jog.store.offsets.tools.read_rows()[2].z == pytest.approx(-15.4, abs=1e-9)
     jog.run(0.02)
     # F5 is TOUCH X on this page: the list of changes is on the page of F8
     assert jog.page.model.tool.old_to_new() == text("offsets.count-changed", count=2, keys="F8, F5")
@@ -134,8 +134,8 @@ def test_the_master_takes_all_along_or_is_set_alone(jog: JogBench) -> None:
     jog.type("l")
     jog.enter("0")
     jog.confirm()
-    assert jog.store.tools()[1].z == pytest.approx(0.0, abs=1e-9)
-    assert jog.store.tools()[2].z == pytest.approx(-15.4, abs=1e-9)
+    assert jog.store.offsets.tools.read_rows()[1].z == pytest.approx(0.0, abs=1e-9)
+    assert jog.store.offsets.tools.read_rows()[2].z == pytest.approx(-15.4, abs=1e-9)
 
 
 def test_a_touch_is_active_at_once_for_the_loaded_tool(jog: JogBench) -> None:
@@ -162,7 +162,7 @@ def test_fields_of_a_tool(jog: JogBench) -> None:
     touch(jog, "w", "-.001")
     assert jog.page.asked.asked.question == "T1  WEAR Z?"
     jog.enter("")
-    row = jog.store.tools()[1]
+    row = jog.store.offsets.tools.read_rows()[1]
     assert row.nose_radius == pytest.approx(0.4)
     assert (row.quadrant, row.remark) == (3, "Hardened END")
     assert row.wear_x == pytest.approx(-0.0127)
@@ -197,12 +197,12 @@ def test_fields_of_a_tool(jog: JogBench) -> None:
 )
 def test_what_is_no_answer_is_refused_and_stays(jog: JogBench, key: str, answer: str, why: str) -> None:
     set_two(jog)
-    before = jog.store.tools()
+    before = jog.store.offsets.tools.read_rows()
     jog.type(key)
     jog.enter(answer)
     assert jog.prompt.startswith(why)
     jog.saved()
-    assert jog.store.tools() == before
+    assert jog.store.offsets.tools.read_rows() == before
     assert jog.page.model.tool.asked
 
 
@@ -300,7 +300,7 @@ def test_the_tip_is_shown_in_the_unit_of_the_readout(
     jog: JogBench, monkeypatch: pytest.MonkeyPatch, units: str, shown: str, other: str
 ) -> None:
     """The readout showed millimeters, and the tip next to it inches."""
-    jog.store.set_tool(1, "test", x=0.0, z=-12.7).result(60)
+    jog.store.offsets.tools.change_row(1, "test", {"x": 0.0, "z": -12.7}).result(60)
     jog.desk.book.read()
     jog.desk.choose_setting("units", units)
     jog.type("t")

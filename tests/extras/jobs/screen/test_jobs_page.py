@@ -36,7 +36,9 @@ def day(qtbot: QtBot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterat
     (folder / "cap.nc").write_text(CAP)
     monkeypatch.setenv("TURNDESK_HOME", str(tmp_path / "home"))
     with begun(qtbot, "peg.nc", PEG) as day:
-        day.store.set_tool(1, "test", x=-12.7, z=-50.8, nose_radius=0.4, quadrant=3).result(60)
+        day.store.offsets.tools.change_row(
+            1, "test", {"x": -12.7, "z": -50.8, "nose_radius": 0.4, "quadrant": 3}
+        ).result(60)
         day.desk.book.read()
         day.run(0.02)
         day.key(Key.Key_D)
@@ -123,8 +125,8 @@ def test_a_queue_is_worked_off_and_nothing_starts_by_itself(day: Day) -> None:
     row = day.desk.offered(day.shot)
     assert row is not None
     assert row.figures == following
-    assert [each.made for each in day.store.jobs()] == [2, 0]
-    assert day.store.parts("peg.nc") == 2
+    assert [each.made for each in day.store.jobs.read_jobs()] == [2, 0]
+    assert day.store.runs.count_parts("peg.nc") == 2
     opened(day)
     day.key(Key.Key_Down)
     loaded(day, "cap.nc")
@@ -155,8 +157,8 @@ def test_what_is_missing_on_the_plate_is_named(day: Day) -> None:
 
 
 def test_another_tip_than_when_it_ran_last_is_told(day: Day) -> None:
-    day.store.run_started("peg.nc").result(60)
-    started = day.store.runs()[0].started
+    day.store.runs.record_start("peg.nc").result(60)
+    started = day.store.runs.read_records()[0].started
     assert started is not None
     day.sees(lambda: utc_now() > started)  # of one millisecond are what was set and what ran with it
     day.desk.book.change(Kind.TOOL, 1, {"nose_radius": 0.8, "quadrant": 2}, "another insert")
@@ -220,7 +222,7 @@ def test_while_a_program_runs_no_job_comes_on_the_desk(day: Day) -> None:
     day.key(Key.Key_F1, Key.Key_F2)  # the page closes, the part goes on
     day.until(lambda: day.shot.parts == 1)
     assert watch(day).under_way is None
-    assert day.store.jobs()[0].made == 0
+    assert day.store.jobs.read_jobs()[0].made == 0
 
 
 @pytest.mark.parametrize("text", ["0", "1.5", "abc", "99999999"])

@@ -33,7 +33,7 @@ def day(qtbot: QtBot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterat
     monkeypatch.setenv("TURNDESK_HOME", str(tmp_path / "home"))
     (tmp_path / "peg.nc").write_text(PEG)
     with begun(qtbot) as day:
-        day.store.set_tool(1, "test", x=-12.7, z=-50.8).result(60)
+        day.store.offsets.tools.change_row(1, "test", {"x": -12.7, "z": -50.8}).result(60)
         day.desk.book.read()
         day.run(0.02)
         day.key(Key.Key_D)
@@ -226,17 +226,17 @@ def test_the_correction_goes_the_way_of_a_typed_one_and_back(day: Day) -> None:
     day.sees(lambda: cells(day)[0][2] == "2")
     day.key(Key.Key_F8)
     assert begins(day.prompt, "measure.correct", words="T1 X −0.00060: SPIGOT 0.50120 → 0.50060")
-    assert day.store.tools()[1].wear_x == 0.0, "nothing is changed unasked"
+    assert day.store.offsets.tools.read_rows()[1].wear_x == 0.0, "nothing is changed unasked"
     yes(day.window)
     day.sees(lambda: not day.desk.book.busy)
-    assert day.store.tools()[1].wear_x == pytest.approx(-0.0003 * 25.4)
-    assert day.store.history(limit=1)[0].why == wording(
+    assert day.store.offsets.tools.read_rows()[1].wear_x == pytest.approx(-0.0003 * 25.4)
+    assert day.store.offsets.read_history(limit=1)[0].why == wording(
         "measure.reason-of-correction", name="SPIGOT", mean="0.50120", count=2, change="−0.00060"
     )
     day.key(Key.Key_F4)
     yes(day.window)
     day.sees(lambda: not day.desk.book.busy)
-    assert day.store.tools()[1].wear_x == 0.0
+    assert day.store.offsets.tools.read_rows()[1].wear_x == 0.0
 
 
 def test_what_a_correction_would_do_is_shown_before_it_is_taken_over(day: Day) -> None:
@@ -262,7 +262,7 @@ def test_what_a_correction_would_do_is_shown_before_it_is_taken_over(day: Day) -
     assert then.x[0] == taken.x[-1] + 1.0
     assert [each.value for each in plot.levels] == pytest.approx([0.5, 0.499, 0.501])
     assert shown.chart_share > 0.0
-    assert (day.prompt, day.store.tools()[1].wear_x) == (asked, 0.0)
+    assert (day.prompt, day.store.offsets.tools.read_rows()[1].wear_x) == (asked, 0.0)
     day.key(Key.Key_Escape)
     assert cells(day)[0][0].upper() == "SPIGOT", "the readings are back"
     assert (shown.chart_share, shown.drawing().plots) == (0.0, ())
@@ -314,10 +314,10 @@ def test_what_another_hand_changed_is_not_taken_back_here(day: Day) -> None:
     day.key(Key.Key_F8)
     yes(day.window)
     day.sees(lambda: not day.desk.book.busy)
-    day.store.set_tool(1, "by hand", wear_z=0.01).result(60)
+    day.store.offsets.tools.change_row(1, "by hand", {"wear_z": 0.01}).result(60)
     day.key(Key.Key_F4)
     assert shows(day.prompt, "measure.another-change-after")
-    assert day.store.tools()[1].wear_z == 0.01
+    assert day.store.offsets.tools.read_rows()[1].wear_z == 0.01
 
 
 def test_without_readings_there_is_no_proposal(day: Day) -> None:
@@ -539,9 +539,9 @@ def test_a_secondary_offset_is_corrected_as_a_radius(day: Day) -> None:
     assert begins(day.prompt, "measure.correct", words="D4 X −0.00060: GROOVE 0.50120 → 0.50060")
     yes(day.window)
     day.sees(lambda: not day.desk.book.busy)
-    assert day.store.secondary()[4].x == pytest.approx(-0.0003 * 25.4)
+    assert day.store.offsets.secondary.read_rows()[4].x == pytest.approx(-0.0003 * 25.4)
     day.sees(lambda: settled(day))
     day.key(Key.Key_F4)
     yes(day.window)
     day.sees(lambda: not day.desk.book.busy)
-    assert 4 not in day.store.secondary()
+    assert 4 not in day.store.offsets.secondary.read_rows()

@@ -27,7 +27,9 @@ def day(qtbot: QtBot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterat
     """PEG on the desk with T1 touched off; nothing is shared yet."""
     monkeypatch.setenv("TURNDESK_HOME", str(tmp_path / "home"))
     with begun(qtbot, "peg.nc", PEG) as day:
-        day.store.set_tool(1, "test", x=-12.7, z=-50.8, nose_radius=0.4, quadrant=3).result(60)
+        day.store.offsets.tools.change_row(
+            1, "test", {"x": -12.7, "z": -50.8, "nose_radius": 0.4, "quadrant": 3}
+        ).result(60)
         day.desk.book.read()
         yield day
 

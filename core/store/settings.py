@@ -1,0 +1,59 @@
+"""Settings of the store: any value that JSON can represent, by a key."""
+
+from __future__ import annotations
+
+import json
+import sqlite3
+from typing import TYPE_CHECKING
+
+from core.message import Message
+from core.store import row_sums
+from core.store.store_access import StoreAccess
+from core.store.store_errors import StoreError
+
+if TYPE_CHECKING:
+    from concurrent.futures import Future
+
+
+def read_setting(connection: sqlite3.Connection, key: str) -> object:
+    """Return the value stored under ``key``; None if it is not set or does not match its checksum."""
+    row = row_sums.whole_row(connection, "settings", key)
+    return json.loads(str(row_sums.readable(row)[1])) if row else None
+
+
+def save_setting(connection: sqlite3.Connection, key: str, value: object) -> None:
+    """Store a value under ``key``; None deletes the key. Raise StoreError if JSON cannot represent it."""
+    if value is None:
+        connection.execute("DELETE FROM settings WHERE key = ?", (key,))
+        return
+    text = setting_text(key, value)
+    connection.execute(
+        "INSERT INTO settings VALUES (?, ?) ON CONFLICT (key) DO UPDATE SET value = excluded.value",
+        (key, text),
+    )
+
+
+def setting_text(key: str, value: object) -> str:
+    """Return the value as JSON. Raise StoreError with ``key`` if JSON cannot represent it."""
+    try:
+        return json.dumps(value, allow_nan=False)
+    except (TypeError, ValueError) as error:
+        raise StoreError(
+            Message("the setting {key} cannot be stored: {error}", key=key, error=error), "unstorable-setting"
+        ) from error
+
+
+class Settings:
+    """Settings of an open store. Methods raise StoreError as described in ``StoreAccess``."""
+
+    def __init__(self, store: StoreAccess) -> None:
+        self._store = store
+
+    def read_setting(self, key: str) -> object:
+        """Return the value stored under ``key``; None if it is not set."""
+        return self._store.query(read_setting, key)
+
+    def save_setting(self, key: str, value: object) -> Future[None]:
+        """Store a value; None deletes the key. Raise StoreError if JSON cannot represent the value."""
+        setting_text(key, value)
+        return self._store.keep_latest(("setting", key), lambda c: save_setting(c, key, value))

@@ -1,0 +1,102 @@
+"""Access to an open store, as the repositories of the store are given it."""
+
+from __future__ import annotations
+
+import sqlite3
+from collections.abc import Callable, Mapping
+from contextlib import AbstractContextManager
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Concatenate, ParamSpec, Protocol, TypeVar
+
+from core.message import Message, join_messages
+from core.store.store_rows import EventRow
+
+if TYPE_CHECKING:
+    from concurrent.futures import Future
+
+T = TypeVar("T")
+P = ParamSpec("P")
+Operation = Callable[[sqlite3.Connection], T]
+
+
+@dataclass(frozen=True, slots=True)
+class Backlog:
+    """The numbers of entries that wait in memory for the disk, and the reason (``why``)."""
+
+    why: str
+    events: int = 0
+    parts: int = 0
+    others: int = 0
+    dropped: int = 0  # events for which there was no room in memory either
+    # By program: whether the count is set to zero first, and the parts to add.
+    counts: Mapping[str, tuple[bool, int]] = field(default_factory=dict)
+
+    @property
+    def words(self) -> str:
+        """Return, in words, the entries that would be lost if TurnDesk ended now."""
+        counts = ((self.parts, "part"), (self.events, "event"), (self.others, "other entry"))
+        found = [
+            Message("{count} {name}", count=count, name=_many(name, count)) for count, name in counts if count
+        ]
+        return join_messages(", ", found) if found else "nothing"
+
+
+def _many(name: str, count: int) -> str:
+    if count == 1:
+        return name
+    return name.replace("entry", "entries") if name.endswith("entry") else f"{name}s"
+
+
+class WaitingEntries(Protocol):
+    """Entries that wait in memory for the disk. ``program`` is a record key or a program name."""
+
+    def event(self, row: EventRow) -> None:
+        """Add an event."""
+
+    def count_parts(self, program: str, by: int) -> None:
+        """Add parts to a part count; subtract them if ``by`` is negative."""
+
+    def reset_parts(self, program: str) -> None:
+        """Set a part count to zero."""
+
+    def cycle(self, program: str, seconds: float) -> None:
+        """Add a whole cycle and its time in seconds."""
+
+    def latest(self, name: tuple[str, str], operation: Operation[object]) -> None:
+        """Add an operation that replaces a waiting operation under the same name."""
+
+
+Keeping = Callable[[WaitingEntries], None]
+
+
+class StoreAccess(Protocol):
+    """Read and write one open store, from any thread.
+
+    Reads return immediately and raise StoreError for a closed or damaged store. Writes return a future. Its
+    result is available when the change is on the disk; it raises StoreError when the store rejects the
+    change. Writes raise StoreError immediately for a store that is closed or open read-only.
+    """
+
+    @property
+    def backlog(self) -> Backlog | None:
+        """Return the entries that wait in memory for the disk; None if there are none."""
+
+    def read(self) -> AbstractContextManager[sqlite3.Connection]:
+        """Return the connection for reading, for one thread at a time, within one transaction."""
+
+    def query(
+        self, function: Callable[Concatenate[sqlite3.Connection, P], T], *args: P.args, **named: P.kwargs
+    ) -> T:
+        """Return the result of ``function``, called with the connection for reading and these arguments."""
+
+    def write(self, operation: Operation[T]) -> Future[T]:
+        """Run ``operation`` in its own transaction. If it fails, the change is dropped."""
+
+    def keep(self, keeping: Keeping) -> Future[None]:
+        """Store an entry that must not be lost: a full disk receives it when it has space again.
+
+        The future raises StoreError while the entry waits in memory.
+        """
+
+    def keep_latest(self, key: tuple[str, str], operation: Operation[object]) -> Future[None]:
+        """Store an operation as ``keep`` does. It replaces a waiting operation under the same ``key``."""
