@@ -6,7 +6,7 @@ import ctypes
 import gc
 import os
 
-_CURRENT, _FUTURE = 1, 2  # MCL_CURRENT and MCL_FUTURE of mlockall(2)
+_CURRENT, _FUTURE, _ON_FAULT = 1, 2, 4  # MCL_CURRENT, MCL_FUTURE and MCL_ONFAULT of mlockall(2)
 
 
 def ask_real_time(policy: str, priority: int) -> str:
@@ -18,8 +18,10 @@ def ask_real_time(policy: str, priority: int) -> str:
     return ""
 
 
-def lock_memory() -> tuple[str, int]:
+def lock_memory(*, only_used: bool = False) -> tuple[str, int]:
     """Lock the memory that there is, and what comes; collect garbage no more than needed.
+
+    ``only_used``: memory that was reserved and is not used yet is locked when it is used first.
 
     Returns why it was refused, and the limit in bytes: 0 if there is none. Under a limit only what is there
     is locked: with ``MCL_FUTURE`` the first allocation beyond the limit would fail, in the middle of a cut.
@@ -29,7 +31,8 @@ def lock_memory() -> tuple[str, int]:
     limit = _memory_limit()
     try:
         libc = ctypes.CDLL(None, use_errno=True)
-        if libc.mlockall(_CURRENT if limit else _CURRENT | _FUTURE) != 0:
+        wanted = (_CURRENT if limit else _CURRENT | _FUTURE) | (_ON_FAULT if only_used else 0)
+        if libc.mlockall(wanted) != 0:
             return os.strerror(ctypes.get_errno()), limit
     except (OSError, AttributeError) as error:
         return _cause(error), limit

@@ -40,7 +40,14 @@ def test_a_hazard_has_a_rule_a_place_a_test_and_a_word_on_hardware(row: list[str
     assert NAMED.search(row[4]), "no test is named"
 
 
-@pytest.mark.parametrize(("file", "test"), named_in(SAFETY.read_text(encoding="utf-8")), ids=str)
+LATE = ROOT / "docs" / "late.md"
+
+
+@pytest.mark.parametrize(
+    ("file", "test"),
+    [pair for page in (SAFETY, LATE) for pair in named_in(page.read_text(encoding="utf-8"))],
+    ids=str,
+)
 def test_what_is_named_exists(file: str, test: str) -> None:
     found = file_of(file)
     assert found is not None, f"no file {file} below tests or tests/drivers"

@@ -329,7 +329,7 @@ def _desk_of(machine: Machine, control: DeskControl, events: _Events, offsets: C
     journal = events.journal
     desk = _desk(machine, control, events, offsets)
     events.desk, desk.recorder = desk, control.recordings
-    desk.frame_watchers.append(BusyNotice(desk.warn).see)
+    desk.frame_watchers.append(BusyNotice(desk.say).see)
     give_scope(desk)
     if journal is not None:
         desk.log.recall(_stops(journal))

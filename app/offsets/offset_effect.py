@@ -1,8 +1,7 @@
-"""What a change of offsets does to the path and to the part, with the offsets before and after.
+"""What a change of offsets does to the path: the loaded program drawn with the offsets before and after.
 
-A tool whose offset changes moves its real tip, so both pictures of the path stand in the frame of the offsets
-before: there the path after lies beside the path before by as much as the tip will. Of the part, the table
-shows each diameter and shoulder before and after.
+A tool whose offset changes moves its real tip, so both pictures stand in the frame of the offsets before:
+there the path after lies beside the path before by as much as the tip will.
 """
 
 from __future__ import annotations
@@ -15,25 +14,21 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 
 from app.desk.background_work import Latest, Watch
-from app.desk.pages.sheet import Row, Sheet
 from app.desk.status.formats import length
-from app.desk.status.machine_status import Tone
 from app.desk.translation import tr
 from app.offsets.offset_table import OffsetTable
-from app.offsets.offset_values import Mode, signed
 from app.offsets.offsets_in_force import secondary_offsets, tool_offsets
 from core.executor.job import Job
 from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
-from core.language.diagnostics import Diagnostic
-from core.message import Message, join_messages
-from core.proving.other_offsets import SAME, Feature, FeatureKind, OtherPart, Pair
+from core.message import Message
 from core.store.store_rows import Change, Kind, SecondaryRow, ToolRow
 
 if TYPE_CHECKING:
     from app.path.path_picture import Picture
+    from core.proving.other_offsets import OtherPart
 
+    # The job with the offsets before and after; None: the program makes no part.
     ComparePart = Callable[[Job, Job, Watch], OtherPart | None]
-
 
 NOUGHT = 1e-9  # mm
 R = TypeVar("R", ToolRow, SecondaryRow)
@@ -279,63 +274,3 @@ def _before(rows: Mapping[int, R], changes: tuple[Change, ...], kind: type[R]) -
         if isinstance(change.old, kind):
             undone[change.number] = change.old
     return undone
-
-
-_NONE = "–"
-
-
-def part_table(part: OtherPart, mode: Mode) -> Sheet:
-    """Features from the face on, those that change with a lamp; then findings that come or go."""
-    unit = tr("MM") if mode.metric else tr("INCH")
-    return Sheet(
-        join_messages("  ·  ", (tr("EFFECT ON THE PART"), unit)),
-        ("FEATURE", "BEFORE", "AFTER", "DIFFERENCE"),
-        (0.4, 0.2, 0.2, 0.2),
-        tuple(_row(each, mode) for each in part.pairs),
-        notes=tuple(_note(each, gone=gone) for gone, each in _findings(part))[:3],
-        figures=frozenset({1, 2, 3}),
-    )
-
-
-def _findings(part: OtherPart) -> list[tuple[bool, Diagnostic]]:
-    return [*((False, each) for each in part.added), *((True, each) for each in part.gone)]
-
-
-def _note(found: Diagnostic, *, gone: bool) -> str:
-    if gone:
-        return tr(
-            Message("LINE {line}: FINDING {check} NO LONGER REPORTED", line=found.line, check=found.code)
-        )
-    return tr(Message("LINE {line}: {what}", line=found.line, what=tr(found.text)))
-
-
-def _row(pair: Pair, mode: Mode) -> Row:
-    one = pair.here or pair.there
-    assert one is not None
-    change = pair.difference
-    same = change is not None and abs(change) <= SAME
-    told = _NONE if same else tr("ONLY IN THE OLD OR THE NEW PART")
-    if change is not None and not same:
-        told = signed(change, mode.metric)
-    cells = (_name(one, mode), _figure(pair.here, mode), _figure(pair.there, mode), told)
-    return Row(cells, lit=not same, tone=Tone.OFF if same else Tone.PAUSE)
-
-
-def _figure(feature: Feature | None, mode: Mode) -> str:
-    return _NONE if feature is None else length(feature.at, mode.metric)
-
-
-def _name(feature: Feature, mode: Mode) -> str:
-    """``DIAMETER  Z 0 … -.5``; a shoulder by the diameters that it lies between."""
-    a, b = feature.reach
-    if feature.kind in {FeatureKind.DIAMETER, FeatureKind.BORE}:
-        word = tr("DIAMETER") if feature.kind is FeatureKind.DIAMETER else tr("BORE")
-        return f"{word}  Z {_short(a, mode)} … {_short(b, mode)}"
-    word = tr("SHOULDER") if feature.kind is FeatureKind.SHOULDER else tr("BORE SHOULDER")
-    return f"{word}  Ø {_short(2 * a, mode)} … {_short(2 * b, mode)}"
-
-
-def _short(mm: float, mode: Mode) -> str:
-    """To a thousandth of an inch, or a hundredth of a millimetre."""
-    text = f"{mm:.2f}" if mode.metric else f"{mm / 25.4:.3f}"
-    return "0" if not text.strip("-0.") else text

@@ -16,8 +16,9 @@ from PySide6.QtWidgets import QWidget
 from app.desk.programs.program_loading import Loaded
 from app.desk.status.machine_status import MachineStatus
 from app.desk.translation import tr
-from app.offsets.offset_effect import EffectDisplay, part_table
+from app.offsets.offset_effect import EffectDisplay
 from app.offsets.offset_table import OffsetTable
+from app.offsets.part_effect import part_table
 from app.path.path_pane_view import ZOOM_STEP
 from app.path.path_view import PathView
 from app.screen import page_table

@@ -203,7 +203,7 @@ ALSO = (
         "restart",
         "start",
     ),
-    *("starved", "state", "stop", "switch", "test", "thread", "uncounted", "warning"),
+    *("late", "rights", "starved", "state", "stop", "switch", "test", "thread", "uncounted", "warning"),
     # What a finding rests on; tools are names.
     "stock",
 )

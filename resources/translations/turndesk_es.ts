@@ -4265,6 +4265,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>late</source>
+      <translation>tarde</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>lead</source>
       <translation>paso</translation>
     </message>
@@ -4592,6 +4597,11 @@
       <location filename="" />
       <source>retract plane, absolute</source>
       <translation>plano de retirada, absoluto</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>rights</source>
+      <translation>derechos</translation>
     </message>
     <message>
       <location filename="" />
@@ -11355,48 +11365,8 @@
     </message>
     <message>
       <location filename="app/offsets/offset_effect.py" />
-      <source>AFTER</source>
-      <translation>DESPUÉS</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_effect.py" />
-      <source>BEFORE</source>
-      <translation>ANTERIOR</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_effect.py" />
-      <source>BORE</source>
-      <translation>MANDRINADO</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_effect.py" />
-      <source>BORE SHOULDER</source>
-      <translation>HOMBRO DEL AGUJERO</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_effect.py" />
       <source>DRAWING THE OLD AND NEW PATHS</source>
       <translation>DIBUJANDO LA TRAYECTORIA ANTERIOR Y LA NUEVA</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_effect.py" />
-      <source>EFFECT ON THE PART</source>
-      <translation>EFECTO EN LA PIEZA</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_effect.py" />
-      <source>FEATURE</source>
-      <translation>MEDIDA</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_effect.py" />
-      <source>LINE {line}: FINDING {check} NO LONGER REPORTED</source>
-      <translation>LÍNEA {line}: YA NO SE INFORMA EL HALLAZGO {check}</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_effect.py" />
-      <source>LINE {line}: {what}</source>
-      <translation>LÍNEA {line}: {what}</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_effect.py" />
@@ -11412,11 +11382,6 @@
       <location filename="app/offsets/offset_effect.py" />
       <source>NO DIAMETER OR SHOULDER ON THE PART CHANGES. F6: SHOW TABLE</source>
       <translation>NO CAMBIA NINGÚN DIÁMETRO NI HOMBRO DE LA PIEZA. F6: VER TABLA</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_effect.py" />
-      <source>ONLY IN THE OLD OR THE NEW PART</source>
-      <translation>SOLO EN LA PIEZA ANTERIOR O LA NUEVA</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_effect.py" />
@@ -11437,11 +11402,6 @@
       <location filename="app/offsets/offset_effect.py" />
       <source>PATHS DIFFER BY {far} (CIRCLED). F6: CLOSE-UP   ESC: TABLE</source>
       <translation>LAS TRAYECTORIAS DIFIEREN {far} (CÍRCULO). F6: ACERCAR   ESC: TABLA</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_effect.py" />
-      <source>SHOULDER</source>
-      <translation>HOMBRO</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_effect.py" />
@@ -11727,6 +11687,56 @@
       <location filename="app/offsets/offsets_view.py" />
       <source>TYPE VALUES IN THE TABLE. ESC: SHOW TABLE</source>
       <translation>ESCRIBA LOS VALORES EN LA TABLA. ESC: VER TABLA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/part_effect.py" />
+      <source>AFTER</source>
+      <translation>DESPUÉS</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/part_effect.py" />
+      <source>BEFORE</source>
+      <translation>ANTERIOR</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/part_effect.py" />
+      <source>BORE</source>
+      <translation>MANDRINADO</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/part_effect.py" />
+      <source>BORE SHOULDER</source>
+      <translation>HOMBRO DEL AGUJERO</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/part_effect.py" />
+      <source>EFFECT ON THE PART</source>
+      <translation>EFECTO EN LA PIEZA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/part_effect.py" />
+      <source>FEATURE</source>
+      <translation>MEDIDA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/part_effect.py" />
+      <source>LINE {line}: FINDING {check} NO LONGER REPORTED</source>
+      <translation>LÍNEA {line}: YA NO SE INFORMA EL HALLAZGO {check}</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/part_effect.py" />
+      <source>LINE {line}: {what}</source>
+      <translation>LÍNEA {line}: {what}</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/part_effect.py" />
+      <source>ONLY IN THE OLD OR THE NEW PART</source>
+      <translation>SOLO EN LA PIEZA ANTERIOR O LA NUEVA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/part_effect.py" />
+      <source>SHOULDER</source>
+      <translation>HOMBRO</translation>
     </message>
     <message>
       <location filename="app/offsets/secondary_offsets.py" />

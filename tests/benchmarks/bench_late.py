@@ -51,9 +51,10 @@ class Child:
     """Words in by standard input, a line for each look out."""
 
     def __init__(self, machine_file: str) -> None:
+        from app.compose.machine.machine_setup import read_machine  # noqa: PLC0415
         from app.compose.screen_desk import build_desk  # noqa: PLC0415  the parent needs none of it
 
-        self.desk = build_desk(machine_file)
+        self.desk = build_desk(machine_file, begun=(read_machine(machine_file), None))
         assert self.desk.lathe is not None
         self.lathe = self.desk.lathe
         thread = next(t for t in threading.enumerate() if t.name == "executor")

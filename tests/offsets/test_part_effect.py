@@ -10,8 +10,9 @@ from app.compose.machine.machine_files import load_machine
 from app.compose.stored_offsets import Offsets
 from app.compose.workshop import drawer, part_comparer, workshop
 from app.desk.desk import Desk
-from app.offsets.offset_effect import Effect, EffectDisplay, part_table
+from app.offsets.offset_effect import Effect, EffectDisplay
 from app.offsets.offset_values import Mode
+from app.offsets.part_effect import part_table
 from core.language.source import Source
 from core.store.store_rows import Kind
 from tests.desk.test_part_found import LIMIT, SHAFT, TOOLS

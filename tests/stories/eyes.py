@@ -8,6 +8,7 @@ there: ``{"ask": "freeze", "seconds": 2}``, or fingers that touch: ``{"ask": "to
 from __future__ import annotations
 
 import ctypes
+import faulthandler
 import json
 import os
 import sys
@@ -300,6 +301,7 @@ def _machine(desk: Desk) -> Told:
 
 
 def main() -> int:
+    faulthandler.enable()  # a process that dies of a signal says where
     if "STORY_IN_REAL_TIME" not in os.environ:
         patient_clock.install()
     app = QApplication(["turndesk"])

@@ -437,11 +437,18 @@ class Operator:
     def stops_the_process(self) -> None:
         """As a debugger or a suspended computer stops it: every thread of it."""
         self.ask("real time")
-        os.kill(self.popen.pid, signal.SIGSTOP)
+        self._signal(signal.SIGSTOP)
 
     def lets_it_go_on(self) -> None:
         """And on."""
-        os.kill(self.popen.pid, signal.SIGCONT)
+        self._signal(signal.SIGCONT)
+
+    def _signal(self, number: int) -> None:
+        """Send a signal to the screen, and to its control where that is a process of its own."""
+        children = Path(f"/proc/{self.popen.pid}/task/{self.popen.pid}/children").read_text().split()
+        for pid in (self.popen.pid, *map(int, children)):
+            if pid == self.popen.pid or b"control_process" in Path(f"/proc/{pid}/cmdline").read_bytes():
+                os.kill(pid, number)
 
     # --- what everybody does ---------------------------------------------------------------------------
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 import threading
 import time
 
+from app.compose.control import control_begin
 from app.screen.window import keyboard
 from drivers.waiting import RealClock
 
@@ -88,6 +89,8 @@ def install() -> None:
     setattr(RealClock, "__init__", begin)  # noqa: B010
     setattr(RealClock, "sleep_until", sleep_until)  # noqa: B010
     setattr(RealClock, "now", now)  # noqa: B010
+    # One process has one machine time: the control runs on a thread here, as it does on Windows.
+    setattr(control_begin, "OWN_PROCESS", False)  # noqa: B010
     keyboard.STALL = float("inf")
 
 

@@ -6,6 +6,7 @@ in order until a screen takes them.
 
 from __future__ import annotations
 
+import gc
 import logging
 import queue
 import threading
@@ -320,6 +321,8 @@ class ControlServer:
         if self._reading is None or not self._reading.is_same(job.reading):
             job.reading.read()
             self._reading = job.reading
+            gc.collect(1)
+            gc.freeze()  # to look through a long program for cycles would stop the executor's thread
         return replace(command, job=replace(job, reading=self._reading))
 
     # --- a screen that is silent or gone --------------------------------------------------------------

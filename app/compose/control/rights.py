@@ -58,7 +58,7 @@ def _scheduling() -> Right:
 
 
 def _memory() -> Right:
-    cause, limit = lock_memory()
+    cause, limit = lock_memory(only_used=True)
     words = (
         "the system can move memory of the control to the disk ({cause}). To prevent this, add the line "
         "'@machine - memlock unlimited' to /etc/security/limits.d/turndesk.conf and log in again"

@@ -10,13 +10,13 @@ from core.message import Message
 
 
 class BusyNotice:
-    """Looks at every snapshot; ``warn`` shows a text on the prompt line.
+    """Looks at every snapshot; ``say`` shows a text on the prompt line.
 
     It tells once for each busy time, and again if the delay has doubled.
     """
 
-    def __init__(self, warn: Callable[[str], None]) -> None:
-        self._warn = warn
+    def __init__(self, say: Callable[[str], None]) -> None:
+        self._say = say
         self._told = 0.0  # s
 
     def see(self, snapshot: Snapshot) -> None:
@@ -27,4 +27,4 @@ class BusyNotice:
         elif self._told == 0.0 or later >= 2.0 * self._told:
             self._told = later
             words = tr("COMPUTER BUSY: HOLD REACTS {seconds} S LATER")
-            self._warn(tr(Message(words, seconds=f"{later:.1f}")))
+            self._say(tr(Message(words, seconds=f"{later:.1f}")))

@@ -14,9 +14,10 @@ from app.desk.translation import tr
 from app.extras.quality.parts_data import PartsData, feature_of
 from app.extras.quality.section import ChartDrawing, correction_plot, signed_size, size
 from app.offsets.offset_changes import refusal
-from app.offsets.offset_effect import Effect, Tables, part_table
+from app.offsets.offset_effect import Effect, Tables
 from app.offsets.offset_values import Mode, added, out_of_range, signed, value_added
 from app.offsets.offsets_in_force import secondary_offsets, tool_offsets
+from app.offsets.part_effect import part_table
 from core.extras.quality.control_charts import QualityError
 from core.extras.quality.measured_feature import CorrectedBy, Proposal, propose
 from core.message import Message

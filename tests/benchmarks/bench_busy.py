@@ -1,0 +1,307 @@
+"""A shift on a busy computer: the real window, a robot at its keys, and programs that want the processors.
+
+``python -m tests.benchmarks.bench_busy [--minutes 30] [--busy 8] [--presses 2000] [--all-rights]``: an X
+server with a window manager, the demo with a program of a cut, a thread and C moves in cycle repeat. The
+robot presses OPTIONAL STOP again and again, at known times, and Feed Hold every twenty seconds. Beside it run
+busy processes and one that allocates memory in bursts. Without ``--all-rights`` the processes have the rights
+of an ordinary user. The result is printed, and kept for docs/late.md. Nothing is asserted.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import queue
+import statistics
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+from PySide6.QtCore import QEvent, QObject
+
+from app.cli.main import console
+from app.compose.control.control_client import ControlClient
+from app.screen import run_screen
+from core.store.store import Store
+from tests.benchmarks.footprint import keep_result
+from tests.stories.x11 import Server, server
+
+PROGRAM = """G90G94F300
+T1
+M03S900
+M08
+X.5Z.1
+G01F12Z-.6
+G00X.6
+Z.1
+X.45
+G33X.44Z-.5I.01K.05
+G00X.6Z.2
+M05
+M19
+C0
+G01C90F300
+G00X.5Z0.
+G01F20C180Z-.1
+G00X.7Z.3
+C0
+G04F.5
+M05
+M09
+M30
+"""
+HOLDS_EVERY = 20.0  # s
+RESUMES_AFTER = 1.0  # s
+PALMS = ("F11", "F12")
+CAPABILITIES = "-sys_nice,-ipc_lock"
+ORDINARY = [
+    *("setpriv", "--bounding-set", CAPABILITIES, f"--inh-caps={CAPABILITIES}"),
+    *("prlimit", "--memlock=8388608:8388608", "--rtprio=0:0"),
+]
+BUSY = "while True: pass"
+BURSTS = """import time
+while True:
+    kept = bytearray(600_000_000)
+    kept[::4096] = kept[::4096]
+    del kept
+    time.sleep(1.0)
+"""
+
+
+# --- the screen, in a process of its own --------------------------------------------------------------------
+
+
+def screen(words: list[str]) -> int:
+    """The screen as it is; each change of state and each second of painting is a line of JSON."""
+    take, application = ControlClient._take, run_screen._application
+    before: list[object] = [None]
+
+    def told(client: ControlClient, message: object, events: Any) -> None:
+        take(client, message, events)
+        shot = client.snapshot
+        now = (
+            shot.state.value,
+            shot.parts,
+            shot.hold_later,
+            shot.underruns,
+            [each.number for each in shot.alarms],
+        )
+        if now != before[0]:
+            before[0] = now
+            say(
+                {
+                    "t": client.hello.zero + shot.t,
+                    "state": now[0],
+                    "parts": now[1],
+                    "later": now[2],
+                    "alarms": now[3],
+                }
+            )
+
+    class Paints(QObject):
+        def __init__(self) -> None:
+            super().__init__()
+            self.times: list[float] = []
+
+        def eventFilter(self, _watched: QObject, event: QEvent) -> bool:
+            if event.type() == QEvent.Type.UpdateRequest:
+                now = time.monotonic()
+                self.times.append(now)
+                if now - self.times[0] >= 1.0:
+                    say({"paints": self.times})
+                    self.times = [now]
+            return False
+
+    paints: list[Paints] = []
+
+    def watched(theme: str) -> Any:
+        app = application(theme)
+        paints.append(Paints())
+        app.installEventFilter(paints[0])
+        return app
+
+    ControlClient._take = told  # type: ignore[method-assign, assignment]
+    run_screen._application = watched
+    sys.argv[1:] = words
+    return console()
+
+
+def say(line: dict[str, object]) -> None:
+    sys.stdout.write(json.dumps(line) + "\n")
+    sys.stdout.flush()
+
+
+# --- the robot ----------------------------------------------------------------------------------------------
+
+
+class Robot:
+    """Hands on the keys of one screen, and what that screen says."""
+
+    def __init__(self, display: Server, command: list[str], home: Path) -> None:
+        self._display = display
+        environment = display.environment | {"TURNDESK_HOME": str(home)}
+        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, env=environment, text=True)
+        self._lines: queue.SimpleQueue[dict[str, Any]] = queue.SimpleQueue()
+        self.paints: list[float] = []
+        self.later, self.alarms, self.parts, self.underruns = 0.0, set[int](), 0, 0
+        self.state, self.since = "", 0.0
+        self.states: list[tuple[float, str]] = []
+        threading.Thread(target=self._read, daemon=True).start()
+
+    def _read(self) -> None:
+        assert self.process.stdout is not None
+        for line in self.process.stdout:
+            self._lines.put(json.loads(line))
+
+    def look(self) -> None:
+        """Take what the screen has said."""
+        while not self._lines.empty():
+            line = self._lines.get()
+            if "paints" in line:
+                self.paints += line["paints"]
+                continue
+            self.later, self.parts = max(self.later, line["later"]), line["parts"]
+            self.alarms.update(line["alarms"])
+            self.underruns = line["underruns"]
+            if line["state"] != self.state:
+                self.state, self.since = line["state"], line["t"]
+                self.states.append((self.since, self.state))
+
+    def wait(self, states: set[str], limit: float = 60.0) -> bool:
+        """Wait for one of the states; False if none comes."""
+        end = time.monotonic() + limit
+        while time.monotonic() < end:
+            self.look()
+            if self.state in states:
+                return True
+            time.sleep(0.01)
+        return False
+
+    def press(self, *keys: str) -> float:
+        """Press and release keys; the time of the press, s of the monotonic clock."""
+        now = time.monotonic()
+        self._display.down(*keys)
+        time.sleep(0.03)
+        self._display.up(*reversed(keys))
+        return now
+
+
+def shift(robot: Robot, seconds: float, presses: int) -> dict[str, Any]:
+    """Make parts for so long; what came of it."""
+    assert robot.wait({"DRIVES OFF"}), robot.state
+    time.sleep(5.0)
+    robot.press("d")
+    assert robot.wait({"READY"}), robot.state
+    robot.press("c")
+    time.sleep(3.0)
+    start(robot)
+    held, missed = list[float](), 0
+    end, next_hold, every = time.monotonic() + seconds, time.monotonic() + HOLDS_EVERY, seconds / presses
+    pressed, next_press = 0, time.monotonic()
+    while time.monotonic() < end and not robot.alarms:
+        robot.look()
+        now = time.monotonic()
+        if now >= next_press:
+            robot.press("o")
+            pressed, next_press = pressed + 1, next_press + every
+        if now >= next_hold and robot.state == "RUNNING":
+            at = robot.press("Pause")
+            if robot.wait({"FEED HOLD"}, 10.0):
+                held.append(robot.since - at)
+            else:
+                missed += 1
+            time.sleep(RESUMES_AFTER)
+            start(robot)
+            next_hold = time.monotonic() + HOLDS_EVERY
+        time.sleep(0.01)
+    robot.press("Pause")
+    time.sleep(2.0)
+    return {"pressed": pressed, "held": held, "holds missed": missed}
+
+
+def start(robot: Robot) -> None:
+    """Press both palm buttons until the cycle goes on; people try again, too."""
+    for _ in range(5):
+        robot.press(*PALMS)
+        if robot.wait({"RUNNING", "WAITING"}, 3.0):
+            return
+
+
+# --- the load -----------------------------------------------------------------------------------------------
+
+
+@contextmanager
+def load(count: int) -> Iterator[None]:
+    """So many busy processes, and one that allocates memory in bursts if there are any."""
+    words = [BUSY] * count + [BURSTS] * bool(count)
+    running = [subprocess.Popen([sys.executable, "-c", each]) for each in words]
+    try:
+        yield
+    finally:
+        for each in running:
+            each.kill()
+            each.wait()
+
+
+def gaps(paints: list[float]) -> tuple[float, float]:
+    """The longest time without a picture, s, and the share of whole seconds with fewer than ten pictures."""
+    longest = max((b - a for a, b in pairwise(paints)), default=0.0)
+    counts: dict[int, int] = {}
+    for each in paints:
+        counts[int(each)] = counts.get(int(each), 0) + 1
+    return longest, sum(count < 10 for count in counts.values()) / max(len(counts), 1)
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--minutes", type=float, default=30.0)
+    parser.add_argument("--busy", type=int, default=8)
+    parser.add_argument("--presses", type=int, default=2000)
+    parser.add_argument("--all-rights", action="store_true")
+    args = parser.parse_args()
+    with tempfile.TemporaryDirectory() as folder, server(Path(folder, "x")) as display:
+        home, program = Path(folder, "home"), Path(folder, "shift.nc")
+        program.write_text(PROGRAM)
+        words = [sys.executable, "-m", "tests.benchmarks.bench_busy", "screen", "--demo"]
+        words += ["--program", str(program)]
+        robot = Robot(display, words if args.all_rights else [*ORDINARY, *words], home)
+        with load(args.busy):
+            told = shift(robot, 60.0 * args.minutes, args.presses)
+        robot.process.terminate()
+        robot.process.wait(60)
+        with Store.open(home / "demo", read_only=True) as store:
+            events = store.events.read_events("", 100_000, ())
+        switched = sum(event.kind == "switch" and "optional" in event.text.lower() for event in events)
+        held, (longest, few) = told.pop("held"), gaps(robot.paints)
+        result = {
+            "minutes": args.minutes,
+            "busy": args.busy,
+            "rights": "all" if args.all_rights else "ordinary",
+            "load": os.getloadavg()[0],
+            **told,
+            "keys that acted": switched,
+            "parts": robot.parts,
+            "alarms": sorted(robot.alarms),
+            "holds": len(held),
+            "hold, median s": statistics.median(held) if held else None,
+            "hold, worst s": max(held, default=None),
+            "holds later than announced, s": robot.later,
+            "longest time without a picture, s": longest,
+            "seconds with fewer than 10 pictures": few,
+            "holds by a low queue": robot.underruns,
+        }
+    sys.stdout.write(json.dumps(result, indent=1) + "\n")
+    keep_result("busy", result)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(screen(sys.argv[2:]) if sys.argv[1:2] == ["screen"] else main())
