@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from typing import NamedTuple
 
 LATHES, MILLS = frozenset({"omniturn", "sinumerik"}), frozenset({"klartext"})
 ALL_LANGUAGES = LATHES | MILLS
 
 
-@dataclass(frozen=True, slots=True)
-class PageEntry:
+class PageEntry(NamedTuple):
     """One page. ``view`` and ``model`` are dotted names of classes: imported when the page is first opened.
 
     The model is the one that is attached to the desk; a view without one makes what it needs of the desk. A
@@ -29,8 +28,7 @@ class PageEntry:
     shortcut: str = ""  # key that opens it from any page, as app.screen.window.keys calls it
 
 
-@dataclass(frozen=True, slots=True)
-class ProgramKey:
+class ProgramKey(NamedTuple):
     """A function key of the list of programs: it opens ``page``, and ``use`` gets the name of the program."""
 
     label: str

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from core.part import cutter as module
+from core.part import swept_edge
 from core.part.cutter import Cutter, Side
 from core.part.stock import bar
 from core.part.swept_edge import Point
@@ -24,7 +25,7 @@ def part() -> TurnedPart:
 
 
 def counted(monkeypatch: pytest.MonkeyPatch) -> list[int]:
-    count, sweep = [0], module.sweep
+    count, sweep = [0], swept_edge.sweep
 
     def counting(*args: object) -> object:
         count[0] += 1

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from app.compose.extra import Extra
+from app.compose.extra import Extra, Subcommand
 from app.desk.page_description import PageEntry
 
 if TYPE_CHECKING:
@@ -22,7 +22,9 @@ if TYPE_CHECKING:
 class Jobs(Extra):
     """The page JOBS with its special function and its key in the program list, and ``turndesk jobs``."""
 
-    commands = {"jobs": "parts"}
+    commands = {
+        "jobs": Subcommand("parts", "manage the queue of programs to run next, with their part counts"),
+    }
     pages = (
         PageEntry(
             "JOBS",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from app.compose.extra import Extra
+from app.compose.extra import Extra, Subcommand
 from app.desk.page_description import PageEntry
 
 if TYPE_CHECKING:
@@ -23,7 +23,12 @@ if TYPE_CHECKING:
 class Quality(Extra):
     """The page MEASURED PARTS, the shift report, their commands, and [gauge] of the machine file."""
 
-    commands = {"parts": "alarms", "shift": "share"}
+    commands = {
+        "parts": Subcommand(
+            "alarms", "show the stored part counts, cycle times, readings and offset changes"
+        ),
+        "shift": Subcommand("share", "print a shift report: parts, times, stops, alarms, offsets, readings"),
+    }
     pages = (
         PageEntry(
             "MEASURED PARTS",

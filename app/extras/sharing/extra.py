@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from app.compose.extra import Close, Extra, Tell
+from app.compose.extra import Close, Extra, Subcommand, Tell
 from app.desk.page_description import PageEntry
 
 if TYPE_CHECKING:
@@ -21,7 +21,9 @@ if TYPE_CHECKING:
 class Sharing(Extra):
     """The page SHARED PROGRAMS, ``turndesk share``, and [sharing] of the machine file."""
 
-    commands = {"share": "jobs"}
+    commands = {
+        "share": Subcommand("jobs", "share programs with other controls: publish, take, compare"),
+    }
     pages = (
         PageEntry(
             "SHARED PROGRAMS",
