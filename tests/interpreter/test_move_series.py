@@ -117,7 +117,7 @@ def test_any_lines(moves: list[str], most: int) -> None:
 def test_numbers_are_those_of_single_lines(moves: list[str]) -> None:
     read, alone = Columns.empty(len(moves)), Columns.empty(len(moves))
     with patch("core.interpreter.omniturn.motion.plain_moves._FEW", 1):
-        read_columns(moves, read)
+        read_columns("\n".join(moves), read)
     for at, text in enumerate(moves):
         if (move := read_move(text)) is not None:
             alone.put(at, move)

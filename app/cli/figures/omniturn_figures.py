@@ -151,7 +151,7 @@ def series_rows(moves: TimedSeries) -> str:
     series = moves.series
     line = f"%5d %5d  {series.pattern.kind:10s}%11.5f%11.5f%s%8.2f  %s\n"
     lines = series.line.tolist()
-    texts = (series.texts[each - 1] for each in lines)
+    texts = series.source_lines()
     x, z = (rounded(mm / MM_PER_INCH, 9).tolist() for mm in (series.x, series.z))
     columns = (series.n.tolist(), lines, x, z, _of_feeds(series, _feed), moves.t0.tolist(), texts)
     return "".join([line % each for each in zip(*columns, strict=True)])
@@ -170,7 +170,7 @@ def _of_feeds(series: Series, text: Callable[[Block], str]) -> Iterable[str]:
 def series_json(moves: TimedSeries) -> str:
     """The objects, a line each."""
     series, like, lines = moves.series, moves.series.pattern, moves.series.line.tolist()
-    texts = _texts_json([series.texts[each - 1] for each in lines])  # a plain move's text is its line
+    texts = _texts_json(series.source_lines())  # a plain move's text is its line
     columns = {
         "n": map(str, series.n.tolist()),
         "line": map(str, lines),
@@ -191,7 +191,7 @@ def series_json(moves: TimedSeries) -> str:
     return _woven(f"{{{line}}}\n".split(_VARIES), varying, len(series))
 
 
-def _texts_json(texts: list[str]) -> list[str]:
+def _texts_json(texts: Sequence[str]) -> list[str]:
     """Each text as JSON has it; all at once, for a call costs more than the text. None has a line end."""
     return json.dumps(texts, separators=("\n", ": "))[1:-1].split("\n")
 

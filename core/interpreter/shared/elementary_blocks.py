@@ -196,16 +196,25 @@ class Series(Sequence[Block]):
         return next(iter(self._part(slice(at, at + 1))))
 
     def __iter__(self) -> Iterator[Block]:
-        like, texts = self.pattern, self.texts
+        like = self.pattern
         kind, c, per_rev, rpm = like.kind, like.c, like.per_rev, like.rpm
         offset_x, offset_z = like.offset_x, like.offset_z
         columns = (self.n, self.line, self.x0, self.z0, self.x, self.z)
-        rows = zip(*(column.tolist() for column in columns), strict=True)
-        for (n, line, x0, z0, x, z), (modal, feed) in zip(rows, self.feeds(), strict=False):
+        rows = zip(self.source_lines(), *(column.tolist() for column in columns), strict=True)
+        for (text, n, line, x0, z0, x, z), (modal, feed) in zip(rows, self.feeds(), strict=False):
             yield Block(
-                n, line, kind, texts[line - 1], x0, z0, c, x, z, c, offset_x, offset_z,
+                n, line, kind, text, x0, z0, c, x, z, c, offset_x, offset_z,
                 modal, feed, per_rev, rpm,
             )  # fmt: skip
+
+    def source_lines(self) -> Sequence[str]:
+        """The line of the program of each block."""
+        if not len(self.line):
+            return ()
+        first, last = int(self.line[0]), int(self.line[-1])
+        if last - first + 1 == len(self.line):  # consecutive: passes of a loop are more than their lines
+            return self.texts[first - 1 : last]
+        return [self.texts[line - 1] for line in self.line.tolist()]
 
     def feeds(self) -> Iterator[tuple[Modal, float]]:
         """The state and the feed of each block; endless where F does not vary."""

@@ -6,6 +6,7 @@ word off the step or a move that takes long is told by whoever tells it of a sin
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from math import hypot
 
@@ -56,7 +57,7 @@ def _feeds(state: State, lines: Columns) -> Floats | None:
     return np.where(last < 0, state.feed, feeds[last])
 
 
-def series(state: State, lines: Columns, line: Ints, texts: tuple[str, ...]) -> Series:
+def series(state: State, lines: Columns, line: Ints, texts: Sequence[str]) -> Series:
     """The moves of these lines, which all are ``plain``; ``line`` (m,) are their numbers.
 
     ``state.fast`` must hold: a move under this state has passed all checks.
