@@ -19,9 +19,8 @@ from app.cli.crash_report import keep_interrupts, raise_interrupt, report_crash,
 from app.compose.extra import Subcommand, command_modules, extras, insert_after
 from app.desk import command_errors
 from app.desk.command_errors import EXIT_INTERRUPTED, EXIT_OK, EXIT_USAGE, CommandError
-from app.desk.data_folder import DataFolderError, check_data_folder
 from app.desk.standard_input import nothing_taken
-from core.message import Message
+from core.message import CodedError, Message
 
 COMMANDS: Mapping[str, str] = {
     "prove": "prove programs (errors, limits, cycle time) without moving the machine",
@@ -111,12 +110,16 @@ def main(argv: Sequence[str] | None = None) -> int:
         nothing_taken()
         bare = is_for_screen(argv)
         args = build_parser(None if bare else _commands_for(argv), bare=bare).parse_args(argv)
+        from app.desk.data_folder import check_data_folder
+
         with keep_interrupts():
             check_data_folder()
             status = _flushed(_dispatch(settled(args)))
             raise_interrupt()
             return status
-    except (CommandError, DataFolderError) as error:
+    except SystemExit:  # after the help, which needs none of what follows
+        raise
+    except _refusals() as error:
         return command_errors.report_refusal(error)
     except ImportError as error:
         if not _library_missing(error):
@@ -137,6 +140,13 @@ def main(argv: Sequence[str] | None = None) -> int:
         sys.stderr.write(f"turndesk: stdout cannot be written: {error.strerror}\n")
         _write_no_more()
         return EXIT_USAGE
+
+
+def _refusals() -> tuple[type[CodedError], ...]:
+    """Return the errors of commands that are reported in one line."""
+    from app.desk.data_folder import DataFolderError
+
+    return CommandError, DataFolderError
 
 
 def _library_missing(error: ImportError) -> bool:

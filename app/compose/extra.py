@@ -67,13 +67,17 @@ class Extra:
     needs: Sequence[str] = ()
     commands: Mapping[str, Subcommand] = {}
     machine_actions: Sequence[str] = ()
-    pages: Sequence[PageEntry] = ()
     threads: Mapping[str, str] = {}
     proof_workers = ""
     drawings: Sequence[str] = ()
     editor_panel: str = ""
     tables_follow: str = ""
     own_functions: Collection[str] = ()
+
+    @property
+    def pages(self) -> Sequence[PageEntry]:
+        """The pages of the main window that this feature adds."""
+        return ()
 
     def machine_tables(self) -> Sequence[Driver]:
         """Return the tables that this feature adds to the machine file."""

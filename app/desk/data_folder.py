@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 from core.message import CodedError, Message
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 HOME = "TURNDESK_HOME"
 BACKUPS = "backups"  # the folder of backups, within it
@@ -44,8 +41,6 @@ def data_folder() -> Path:
 
     Raises DataFolderError for a user without a home, as in a container.
     """
-    from pathlib import Path  # noqa: PLC0415  not for the help, which needs no folder
-
     named = os.environ.get(HOME, "")
     try:
         if named:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
+from dataclasses import dataclass
 
 LATHES, MILLS = frozenset({"omniturn", "sinumerik"}), frozenset({"klartext"})
 ALL_LANGUAGES = LATHES | MILLS
 
 
-class PageEntry(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class PageEntry:
     """One page. ``view`` and ``model`` are dotted names of classes: imported when the page is first opened.
 
     The model is the one that is attached to the desk; a view without one makes what it needs of the desk. A
@@ -28,7 +29,8 @@ class PageEntry(NamedTuple):
     shortcut: str = ""  # key that opens it from any page, as app.screen.window.keys calls it
 
 
-class ProgramKey(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class ProgramKey:
     """A function key of the list of programs: it opens ``page``, and ``use`` gets the name of the program."""
 
     label: str

@@ -24,7 +24,7 @@ except SystemExit:
     pass
 print(*sys.modules, file=sys.stderr)
 """
-HEAVY = {"numpy", "sqlite3", "dataclasses", "json", "pathlib", "importlib.metadata"}
+HEAVY = {"numpy", "sqlite3", "dataclasses", "json", "importlib.metadata"}
 
 
 def modules_of(*words: str) -> set[str]:

@@ -6,12 +6,12 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from app.compose.extra import Close, Extra, Subcommand, Tell
-from app.desk.page_description import PageEntry
 
 if TYPE_CHECKING:
     from app.compose.backends.backend_entry import Answers
     from app.compose.runs.journal import Journal
     from app.desk.desk import Desk
+    from app.desk.page_description import PageEntry
     from app.desk.programs.program_loading import LoadingSteps
     from core.json_key import Output
     from core.machine.machine_model import Machine
@@ -24,18 +24,23 @@ class Sharing(Extra):
     commands = {
         "share": Subcommand("jobs", "share programs with other controls: publish, take, compare"),
     }
-    pages = (
-        PageEntry(
-            "SHARED PROGRAMS",
-            "app.extras.sharing.sharing_view.SharedProgramsPage",
-            "app.extras.sharing.sharing_model.SharingModel",
-            "X",
-            "SHARED",
-            "programs from other TurnDesk controls; newer versions are copied on request",
-            after="JOBS",
-        ),
-    )
     threads = {"sharing": "PROGRAM SHARING"}
+
+    @property
+    def pages(self) -> Sequence[PageEntry]:
+        from app.desk.page_description import PageEntry
+
+        return (
+            PageEntry(
+                "SHARED PROGRAMS",
+                "app.extras.sharing.sharing_view.SharedProgramsPage",
+                "app.extras.sharing.sharing_model.SharingModel",
+                "X",
+                "SHARED",
+                "programs from other TurnDesk controls; newer versions are copied on request",
+                after="JOBS",
+            ),
+        )
 
     def machine_tables(self) -> Sequence[Driver]:
         from core.extras.sharing.sharing_table import DRIVER
