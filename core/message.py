@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Iterable, Mapping
 from functools import lru_cache
-from string import Formatter
 from typing import Any, Self
 
 Value = str | int | float
@@ -81,6 +79,8 @@ def worded(text: str, values: Mapping[str, object]) -> str:
 
 @lru_cache(4096)
 def _names_of(template: str) -> tuple[str, ...]:
+    from string import Formatter  # noqa: PLC0415  the help of the commands has no template
+
     return tuple(name for _, name, _, _ in Formatter().parse(template) if name)
 
 
@@ -115,6 +115,8 @@ def _plain(value: Value) -> Value:
 
 def pack_message(text: str) -> str:
     """Return template, values and case of a message as JSON, to be stored; empty for any other text."""
+    import json  # noqa: PLC0415  only what is stored is packed
+
     return json.dumps(_packed(text), ensure_ascii=False) if isinstance(text, Message) else ""
 
 
@@ -122,6 +124,8 @@ def unpack_message(packed: str, text: str) -> str:
     """Return the message that was packed; ``text`` if there is none or if it is not the same text."""
     if not packed:
         return text
+    import json  # noqa: PLC0415  only what is stored is packed
+
     try:
         made = _unpacked(json.loads(packed))
     except (ValueError, LookupError, TypeError, AttributeError):

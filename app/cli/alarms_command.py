@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 def add_parser(subparsers: SubParsers) -> None:
     """Declare the command."""
-    parser = subparsers.add_parser("alarms", help="list all alarms with number, meaning, causes and remedies")
+    parser = subparsers.add_parser("alarms")
     parser.add_argument(
         "number", nargs="*", type=int, metavar="NUMBER", help="numbers of the alarms to list (default: all)"
     )

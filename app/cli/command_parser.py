@@ -7,16 +7,20 @@ stood behind it, or are refused where the command has no such option.
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 from collections.abc import Mapping, Sequence
-from pathlib import Path
+from contextlib import suppress
 from typing import Any, NoReturn
 
 from app.desk.command_errors import EXIT_USAGE, CommandError
 from core.message import Message, nearest
 
+_USUAL_WIDTH = 80  # characters
 BEFORE = ("machine", "program", "offsets")
 """Options of the screen."""
+VALUED = frozenset(f"--{name}" for name in BEFORE)
+FLAGS = frozenset({"--version", "--demo", "--kiosk", "--help", "-h"})
 
 _INSTEAD: Mapping[str, str] = {
     "program": "write the program name after the command, without --program",
@@ -44,18 +48,49 @@ class _Once(argparse.Action):
         setattr(namespace, self.dest, values)
 
 
+class Subcommands(argparse._SubParsersAction):  # type: ignore[type-arg]
+    """Subparsers whose help is in ``help_texts``, by name, where it is not given."""
+
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        super().__init__(*args, **kwargs)
+        self.help_texts: dict[str, str] = {}
+
+    def add_parser(self, name: str, **kwargs: Any) -> Any:
+        """Return a new subparser."""
+        if name in self.help_texts:
+            kwargs.setdefault("help", self.help_texts[name])
+        return super().add_parser(name, **kwargs)
+
+
+class Help(argparse.HelpFormatter):
+    """As wide as the terminal, without loading the modules of archives for that."""
+
+    def __init__(self, prog: str, *args: Any, **kwargs: Any) -> None:
+        super().__init__(prog, *args, **{"width": _columns() - 2, **kwargs})
+
+
+def _columns() -> int:
+    """Return the width of the terminal as ``shutil.get_terminal_size`` does."""
+    words = os.environ.get("COLUMNS", "")
+    columns = int(words) if words.isdecimal() else 0
+    if columns <= 0 and sys.__stdout__ is not None:
+        with suppress(ValueError, OSError):
+            columns = os.get_terminal_size(sys.__stdout__.fileno()).columns
+    return columns or _USUAL_WIDTH
+
+
 class Parser(argparse.ArgumentParser):
     """Says what is wrong in one line, takes each option in full and once."""
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
-        super().__init__(*args, **{"allow_abbrev": False, **kwargs})
+        super().__init__(*args, **{"allow_abbrev": False, "formatter_class": Help, **kwargs})
         self.register("action", None, _Once)
         self.register("action", "store", _Once)
 
     def _check_value(self, action: argparse.Action, value: Any) -> None:
         """A command, an action or a choice that is none is told with the nearest that is."""
         if action.choices is not None and value not in action.choices:
-            if isinstance(action, argparse._SubParsersAction) and Path(str(value)).is_file():
+            if isinstance(action, argparse._SubParsersAction) and os.path.isfile(str(value)):
                 self.error(
                     Message(
                         "{value} is a file, not a command; to prove it, use: turndesk prove {value2}; to "
@@ -154,6 +189,19 @@ def add_screen_options(parser: argparse.ArgumentParser) -> None:
     for name in BEFORE:
         # A command has its own of the same name, which would else write over this one.
         parser.add_argument(f"--{name}", metavar="FILE", dest=f"before_{name}", help=texts[name])
+
+
+def is_for_screen(argv: Sequence[str]) -> bool:
+    """Whether the arguments are options of the screen alone, and so hold no command and no mistake in one."""
+    words = iter(argv)
+    for word in words:
+        name, _, value = word.partition("=")
+        if name in VALUED:
+            if not value and next(words, "-").startswith("-"):
+                return False
+        elif word not in FLAGS:
+            return False
+    return True
 
 
 def settled(args: argparse.Namespace) -> argparse.Namespace:

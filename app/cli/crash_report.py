@@ -11,11 +11,11 @@ import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from pathlib import Path
     from sys import UnraisableHookArgs
 
 _dropped: list[type[BaseException]] = []
@@ -39,6 +39,7 @@ def keep_crash(kind: type[BaseException], error: BaseException, trace: Traceback
     """A crash file of its own in the log folder, else in the system's folder for such; where it lies."""
     import tempfile
     import traceback
+    from pathlib import Path
 
     text = "".join(traceback.format_exception(kind, error, trace))
     head = (

@@ -23,9 +23,7 @@ if TYPE_CHECKING:
 
 def add_parser(subparsers: SubParsers) -> None:
     """Declare the command."""
-    parser = subparsers.add_parser(
-        "expand", help="show each single motion and action that the control would execute"
-    )
+    parser = subparsers.add_parser("expand")
     parser.add_argument("file", metavar="FILE")
     add_program_options(parser)
     add_ideal_option(parser)

@@ -121,7 +121,7 @@ def _save_hal(out: Path, text: str, beside: Mapping[str, str]) -> None:
 
 def add_parser(subparsers: SubParsers) -> None:
     """The subcommand with its actions."""
-    parser = subparsers.add_parser("machine", help="check a machine file")
+    parser = subparsers.add_parser("machine")
     actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
     check = actions.add_parser(
         "check", help="validate a machine file, connect, and report each drive and input"

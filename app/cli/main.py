@@ -10,32 +10,33 @@ import io
 import os
 import sys
 import threading
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from types import ModuleType
 
-from app.cli.command_parser import Parser, add_screen_options, settled
+from app import VERSION
+from app.cli.command_parser import Parser, Subcommands, add_screen_options, is_for_screen, settled
 from app.cli.crash_report import keep_interrupts, raise_interrupt, report_crash, report_thread
-from app.compose.extra import command_modules, extras, insert_after
+from app.compose.extra import Subcommand, command_modules, extras, insert_after
 from app.desk import command_errors
 from app.desk.command_errors import EXIT_INTERRUPTED, EXIT_OK, EXIT_USAGE, CommandError
-from app.desk.data_folder import DataFolderError, check_data_folder
 from app.desk.standard_input import nothing_taken
-from core.message import Message
+from core.message import CodedError, Message
 
-# Modules with add_parser(subparsers) and run(args) -> exit status; importing one costs next to nothing.
-COMMANDS = (
-    "prove",
-    "expand",
-    "trace",
-    "run",
-    "offsets",
-    "store",
-    "machine",
-    "serial",
-    "alarms",
-    "scope",
-    "setup",
-)
+COMMANDS: Mapping[str, str] = {
+    "prove": "prove programs (errors, limits, cycle time) without moving the machine",
+    "expand": "show each single motion and action that the control would execute",
+    "trace": "write the time-stamped setpoints that the drives would receive",
+    "run": "run a program with the executor and the drivers",
+    "offsets": "show and change offsets, tool shapes, and the tools and presets of a mill",
+    "store": "back up, restore, export, import or verify the stored data",
+    "machine": "check a machine file",
+    "serial": "send and receive programs over RS-232",
+    "alarms": "list all alarms with number, meaning, causes and remedies",
+    "scope": "show scope data from a saved record or from the last few minutes",
+    "setup": "copy a machine's setup, add a desktop entry, or print a shell completion script",
+}
+"""Subcommands with their help. Each has a module with add_parser(subparsers) and run(args) -> exit status.
+The help of all of them imports none."""
 
 NO_DISPLAY = """\
 turndesk: no display here (neither DISPLAY nor WAYLAND_DISPLAY is set), so no operator screen. Without one:
@@ -50,8 +51,17 @@ WITHOUT = "prove, expand, trace and run --headless do not need a screen"
 
 def all_commands() -> Sequence[str]:
     """Return every subcommand in the order of the help, with those of the optional features."""
-    added = [pair for extra in extras().values() for pair in extra.commands.items()]
+    added = [(name, each.follows) for name, each in _added().items()]
     return insert_after(COMMANDS, str, added)
+
+
+def _added() -> Mapping[str, Subcommand]:
+    """Return the subcommands of the optional features."""
+    return {name: each for extra in extras().values() for name, each in extra.commands.items()}
+
+
+def _help_of(command: str) -> str:
+    return COMMANDS[command] if command in COMMANDS else _added()[command].help
 
 
 def _module_of(command: str) -> ModuleType:
@@ -60,8 +70,11 @@ def _module_of(command: str) -> ModuleType:
     return importlib.import_module(f"app.cli.{command}_command" if own else command_modules()[command])
 
 
-def build_parser(commands: Sequence[str] | None = None) -> argparse.ArgumentParser:
-    """Return the parser with these subcommands; None: with all of them."""
+def build_parser(commands: Sequence[str] | None = None, *, bare: bool = False) -> argparse.ArgumentParser:
+    """Return the parser with these subcommands; None: with all of them.
+
+    ``bare``: the subcommands have no options, so that no module is imported.
+    """
     parser = Parser(
         prog="turndesk",
         description="Operator screen for OmniTurn-style lathes. Run turndesk without a command to open "
@@ -69,15 +82,20 @@ def build_parser(commands: Sequence[str] | None = None) -> argparse.ArgumentPars
     )
     add_screen_options(parser)
     subparsers = parser.add_subparsers(
-        title="commands", metavar="COMMAND", dest="command", parser_class=Parser
+        title="commands", metavar="COMMAND", dest="command", parser_class=Parser, action=Subcommands
     )
+    assert isinstance(subparsers, Subcommands)
     for name in all_commands() if commands is None else commands:
-        _module_of(name).add_parser(subparsers)
+        if bare:
+            subparsers.add_parser(name, help=_help_of(name))
+        else:
+            subparsers.help_texts[name] = _help_of(name)
+            _module_of(name).add_parser(subparsers)
     return parser
 
 
 def _commands_for(argv: Sequence[str]) -> Sequence[str]:
-    """Only the command that is asked for is imported; help and mistakes see all of them."""
+    """Only the command that is asked for is imported; mistakes see all of them."""
     if argv and argv[0] in COMMANDS:
         return (argv[0],)
     commands = all_commands()
@@ -90,13 +108,18 @@ def main(argv: Sequence[str] | None = None) -> int:
     gc.set_threshold(200_000)  # importing alone would collect a hundred times and find nothing
     try:
         nothing_taken()
-        args = build_parser(_commands_for(argv)).parse_args(argv)
+        bare = is_for_screen(argv)
+        args = build_parser(None if bare else _commands_for(argv), bare=bare).parse_args(argv)
+        from app.desk.data_folder import check_data_folder
+
         with keep_interrupts():
             check_data_folder()
             status = _flushed(_dispatch(settled(args)))
             raise_interrupt()
             return status
-    except (CommandError, DataFolderError) as error:
+    except SystemExit:  # after the help, which needs none of what follows
+        raise
+    except _refusals() as error:
         return command_errors.report_refusal(error)
     except ImportError as error:
         if not _library_missing(error):
@@ -117,6 +140,13 @@ def main(argv: Sequence[str] | None = None) -> int:
         sys.stderr.write(f"turndesk: stdout cannot be written: {error.strerror}\n")
         _write_no_more()
         return EXIT_USAGE
+
+
+def _refusals() -> tuple[type[CodedError], ...]:
+    """Return the errors of commands that are reported in one line."""
+    from app.desk.data_folder import DataFolderError
+
+    return CommandError, DataFolderError
 
 
 def _library_missing(error: ImportError) -> bool:
@@ -146,9 +176,7 @@ def _forget_interrupt() -> None:
 
 def _dispatch(args: argparse.Namespace) -> int:
     if args.version:
-        from importlib.metadata import version
-
-        sys.stdout.write(f"turndesk {version('turndesk')}\n")
+        sys.stdout.write(f"turndesk {VERSION}\n")
         return EXIT_OK
     if args.command:
         status: int = _module_of(args.command).run(args)

@@ -16,9 +16,7 @@ if TYPE_CHECKING:
 
 def add_parser(subparsers: SubParsers) -> None:
     """The subcommand with its actions."""
-    parser = subparsers.add_parser(
-        "offsets", help="show and change offsets, tool shapes, and the tools and presets of a mill"
-    )
+    parser = subparsers.add_parser("offsets")
     actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
     show = actions.add_parser("show", help="show all offsets that are set")
     show.add_argument("--json", action="store_true", help="print only JSON on stdout")

@@ -33,9 +33,7 @@ if TYPE_CHECKING:
 
 def add_parser(subparsers: SubParsers) -> None:
     """Declare the command."""
-    parser = subparsers.add_parser(
-        "prove", help="prove programs (errors, limits, cycle time) without moving the machine"
-    )
+    parser = subparsers.add_parser("prove")
     parser.add_argument(
         "files", nargs="+", metavar="FILE", help="programs, or folders with programs (including subfolders)"
     )

@@ -35,7 +35,7 @@ _OF_ALARMS = ("number", "code", "text", "cause", "remedy", "line")
 
 def add_parser(subparsers: SubParsers) -> None:
     """Declare the command."""
-    parser = subparsers.add_parser("run", help="run a program with the executor and the drivers")
+    parser = subparsers.add_parser("run")
     parser.add_argument("file", metavar="FILE")
     parser.add_argument(
         "--headless", action="store_true", help="run without a screen (to open the screen, use: turndesk)"

@@ -23,9 +23,7 @@ _STDOUT = "-"
 
 def add_parser(subparsers: SubParsers) -> None:
     """Declare the command."""
-    parser = subparsers.add_parser(
-        "scope", help="show scope data from a saved record or from the last few minutes"
-    )
+    parser = subparsers.add_parser("scope")
     parser.add_argument(
         "file",
         metavar="FILE",

@@ -40,9 +40,7 @@ Both sides have to be set alike. Receive first, then send from the other side.
 def add_parser(subparsers: SubParsers) -> None:
     """The subcommand with its actions."""
     raw = argparse.RawDescriptionHelpFormatter
-    parser = subparsers.add_parser(
-        "serial", help="send and receive programs over RS-232", description=_ABOUT, formatter_class=raw
-    )
+    parser = subparsers.add_parser("serial", description=_ABOUT, formatter_class=raw)
     actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
     actions.add_parser("ports", help="list the serial ports of this computer")
     send = actions.add_parser("send", help="send a program", description=_ABOUT, formatter_class=raw)

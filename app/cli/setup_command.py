@@ -23,9 +23,7 @@ SHELLS = ("bash", "zsh", "fish")
 
 def add_parser(subparsers: SubParsers) -> None:
     """The subcommand with its actions."""
-    parser = subparsers.add_parser(
-        "setup", help="copy a machine's setup, add a desktop entry, or print a shell completion script"
-    )
+    parser = subparsers.add_parser("setup")
     actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
     save = actions.add_parser(
         "save", help="save the stored data, settings, programs and machine file in one FILE"

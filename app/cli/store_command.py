@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 def add_parser(subparsers: SubParsers) -> None:
     """The subcommand with its actions."""
-    parser = subparsers.add_parser("store", help="back up, restore, export, import or verify the stored data")
+    parser = subparsers.add_parser("store")
     actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
     for name, what, text in (
         ("backup", "FILE", "copy all stored data to FILE, even while the data is in use"),

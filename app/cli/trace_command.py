@@ -42,9 +42,7 @@ def _interval(text: str) -> float:
 
 def add_parser(subparsers: SubParsers) -> None:
     """Declare the command."""
-    parser = subparsers.add_parser(
-        "trace", help="write the time-stamped setpoints that the drives would receive"
-    )
+    parser = subparsers.add_parser("trace")
     parser.add_argument("file", metavar="FILE")
     parser.add_argument(
         "--dt", type=_interval, default=0.001, metavar="S", help="sampling interval in s (default: 0.001)"

@@ -11,7 +11,7 @@ from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 if TYPE_CHECKING:
     from app.compose.backends.backend_entry import Answers, Connected
@@ -40,14 +40,21 @@ Close = Callable[[], None]
 T = TypeVar("T")
 
 
+class Subcommand(NamedTuple):
+    """A subcommand of ``turndesk``: the one that it follows in the help, and its line there."""
+
+    follows: str
+    help: str
+
+
 class Extra:
     """What an optional feature adds. A feature overrides only the parts that it has.
 
-    ``commands`` maps each subcommand to the subcommand that it follows in the help. Its module is
-    ``app.extras.NAME.SUBCOMMAND_command``. ``threads`` maps each supervised thread to what an operator
-    misses when the thread ends. ``own_functions`` names the special functions that a page of the feature
-    shows, so that F10 does not. ``needs`` names the features without which this feature is left out.
-    ``proof_workers`` is the dotted name of a class of workers on other computers, which prove programs.
+    ``commands`` are its subcommands. The module of one is ``app.extras.NAME.SUBCOMMAND_command``.
+    ``threads`` maps each supervised thread to what an operator misses when the thread ends.
+    ``own_functions`` names the special functions that a page of the feature shows, so that F10 does not.
+    ``needs`` names the features without which this feature is left out. ``proof_workers`` is the dotted name
+    of a class of workers on other computers, which prove programs.
     ``drawings`` are the endings of drawings from which this feature makes programs: the list of programs
     shows them. ``editor_panel`` is the dotted name of a subclass of ``EditorPanel`` that writes lines in
     the place of the editor's text.
@@ -58,15 +65,19 @@ class Extra:
     """
 
     needs: Sequence[str] = ()
-    commands: Mapping[str, str] = {}
+    commands: Mapping[str, Subcommand] = {}
     machine_actions: Sequence[str] = ()
-    pages: Sequence[PageEntry] = ()
     threads: Mapping[str, str] = {}
     proof_workers = ""
     drawings: Sequence[str] = ()
     editor_panel: str = ""
     tables_follow: str = ""
     own_functions: Collection[str] = ()
+
+    @property
+    def pages(self) -> Sequence[PageEntry]:
+        """The pages of the main window that this feature adds."""
+        return ()
 
     def machine_tables(self) -> Sequence[Driver]:
         """Return the tables that this feature adds to the machine file."""

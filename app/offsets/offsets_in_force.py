@@ -7,7 +7,6 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from core.interpreter.shared.job_setup import MillTool, SecondaryOffset, Setup, ToolOffset
-from core.language.sinumerik.sinumerik_words import MOST_R
 from core.store.store_rows import MillRow, PresetRow, SecondaryRow, ToolRow
 
 if TYPE_CHECKING:
@@ -22,6 +21,8 @@ R_PARAMETERS = "r-parameters"  # the setting that keeps those that have a value,
 
 def r_parameters(kept: object) -> dict[int, float]:
     """R parameters as the setting keeps them; what is none is left out."""
+    from core.language.sinumerik.sinumerik_words import MOST_R
+
     pairs = kept.items() if isinstance(kept, dict) else ()
     return {
         int(number): float(value)

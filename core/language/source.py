@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import codecs
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
@@ -41,6 +42,7 @@ def dialect_of(name: str) -> Dialect:
 # Form feeds and Unicode's line separators end no line, or line numbers would differ from an editor's.
 _LINE_END = re.compile(r"\r\n|\r|\n")
 _LONGEST_LINE = 8192
+_LONG = 4 * 1024 * 1024  # characters of a text whose lines are not kept
 LARGEST_FILE = 64 * 1024 * 1024
 _DOS_END_OF_FILE = "\x1a"
 _UTF_16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
@@ -68,8 +70,12 @@ class Source:
         return self.said or dialect_of(self.name)
 
     @cached_property
-    def lines(self) -> tuple[str, ...]:
+    def lines(self) -> Sequence[str]:
         """The lines without their ends; a last empty line after the final newline does not count."""
+        if len(self.text) >= _LONG and self.text.isascii() and "\r" not in self.text:
+            from core.language.long_lines import LongLines  # noqa: PLC0415  with numpy
+
+            return LongLines(self.text)
         lines = _lines(self.text)
         if not lines[-1]:
             lines.pop()

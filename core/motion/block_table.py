@@ -227,7 +227,10 @@ _FIELDS = tuple(f.name for f in fields(BlockTable))
 
 
 class Row(Protocol):
-    """m straight moves of X and Z as columns (m,); in all else each of them is as ``pattern`` is."""
+    """m straight moves of X and Z as columns (m,); in all else each of them is as ``pattern`` is.
+
+    ``feed`` (m,) is None where that too is as in ``pattern``.
+    """
 
     @property
     def pattern(self) -> MotionBlock: ...
@@ -241,6 +244,8 @@ class Row(Protocol):
     def x(self) -> FloatArray: ...
     @property
     def z(self) -> FloatArray: ...
+    @property
+    def feed(self) -> FloatArray | None: ...
     def __len__(self) -> int: ...
     def __getitem__(self, at: slice, /) -> Row: ...
 
@@ -308,8 +313,10 @@ def _repeated(column: Any, counts: Sequence[int]) -> Any:
 
 
 def _put_in(table: BlockTable, at: slice, row: Row) -> None:
-    """Numbers and positions of the blocks of a row, which stand at these places."""
+    """Numbers, positions and feeds of the blocks of a row, which stand at these places."""
     like = row.pattern
     table.n[at] = row.n
+    if row.feed is not None:
+        table.feed[at] = row.feed
     for ends, x, z in ((table.start, row.x0, row.z0), (table.end, row.x, row.z)):
         ends[at, 0], ends[at, 1] = x + like.offset_x, z + like.offset_z

@@ -44,6 +44,21 @@ class _Sides:
     far: Edge
 
 
+class _Outlines(NamedTuple):
+    """Convex outlines, their least Z and r, and their greatest Z; endlessly far away without any."""
+
+    sides: list[_Sides]
+    low: Point
+    front: float
+
+    @classmethod
+    def of(cls, outlines: Iterable[FloatArray]) -> _Outlines:
+        sides = [_sides(outline) for outline in outlines]
+        z = min((float(each.near.z[0]) for each in sides), default=math.inf)
+        r = min((float(each.near.r.min()) for each in sides), default=math.inf)
+        return cls(sides, (z, r), max((float(each.near.z[-1]) for each in sides), default=-math.inf))
+
+
 class Cutter:
     """A tool's outlines (k, 2) of Z and r about its control point, made ready to be swept.
 
@@ -59,20 +74,25 @@ class Cutter:
         self.across = -1.0 if rear else 1.0  # sign of X where it works
         turned = np.array([1.0, self.across])
         outlines = tuple(cutting)
-        self._cutting = [_sides(outline * turned) for outline in outlines]
-        self._body = [_sides(outline * turned) for outline in body]
-        self._edges_low, self._body_low = _low(self._cutting), _low(self._body)
+        self._cutting = _Outlines.of(outline * turned for outline in outlines)
+        self._body = _Outlines.of(outline * turned for outline in body)
         self.height = max((float(np.ptp(outline[:, 1])) for outline in outlines), default=0.0)
+        self._clears: dict[int, float] = {}
 
     @property
     def held(self) -> bool:
         """Whether its holder is known."""
-        return bool(self._body)
+        return bool(self._body.sides)
 
     def clears(self, forward: int) -> float:
         """Degrees from Z at which the back of the edge rises behind the tip of a tool that cuts towards
         ``forward`` (sign of Z); 90 where it has none."""
-        outline = self._cutting[0]
+        if forward not in self._clears:
+            self._clears[forward] = self._clearance(forward)
+        return self._clears[forward]
+
+    def _clearance(self, forward: int) -> float:
+        outline = self._cutting.sides[0]
         edge = outline.far if self.side is Side.BORE else outline.near
         rises = -forward * edge.slope
         lengths = np.where(rises > 0.0, np.hypot(np.diff(edge.z), np.diff(edge.r)), 0.0)
@@ -91,9 +111,9 @@ class Cutter:
         """What holder and shank run into; it is taken off, so that one collision is told once."""
         met = NOTHING
         start, end = self._fronts(start, end)
-        if self._clear_of(part, self._body_low, start, end):
+        if self._clear_of(part, self._body, start, end) or self._above(part, self._body, start, end):
             return NOTHING
-        for outline in self._body:
+        for outline in self._body.sides:
             met = met.joined(self._take(part, outline, start, end, cut=True))
             if self.side is Side.BORE and not self.drills:
                 met = met.joined(_opposite(part, outline, start, end))
@@ -103,9 +123,9 @@ class Cutter:
         """What edges and body would meet, left where it is: the outline of a chuck."""
         start, end = self._fronts(start, end)
         met = NOTHING
-        for low, outlines in ((self._edges_low, self._cutting), (self._body_low, self._body)):
-            if not self._clear_of(part, low, start, end):
-                for outline in outlines:
+        for outlines in (self._cutting, self._body):
+            if not self._clear_of(part, outlines, start, end):
+                for outline in outlines.sides:
                     met = met.joined(self._take(part, outline, start, end, cut=False))
         return met if met.depth > _OVERLAP and met.width > _OVERLAP else NOTHING
 
@@ -126,12 +146,19 @@ class Cutter:
             at += 1.0
         return met
 
-    def _clear_of(self, part: TurnedPart, low: Point, start: Point, end: Point) -> bool:
-        """Whether outlines whose least Z and r these are stay before the part, or outside of it."""
-        columns = part.columns
+    def _clear_of(self, part: TurnedPart, outlines: _Outlines, start: Point, end: Point) -> bool:
+        """Whether outlines stay before the part, or outside of it."""
+        columns, low = part.columns, outlines.low
         if min(start[0], end[0]) + low[0] > columns.first + columns.step * columns.number:
             return True
         return self.side is Side.OUTSIDE and min(start[1], end[1]) + low[1] > part.largest
+
+    def _above(self, part: TurnedPart, outlines: _Outlines, start: Point, end: Point) -> bool:
+        """Whether outlines of an outside tool stay outside of all columns that they pass."""
+        if self.side is not Side.OUTSIDE or not outlines.sides:
+            return False
+        z = min(start[0], end[0]) + outlines.low[0], max(start[0], end[0]) + outlines.front
+        return min(start[1], end[1]) + outlines.low[1] > part.highest(*z)
 
     def _front(self, place: Point) -> Point:
         return place[0], place[1] * self.across
@@ -146,7 +173,9 @@ class Cutter:
     def _swept(self, part: TurnedPart, start: Point, end: Point, *, cut: bool) -> Cut:
         met = NOTHING
         start, end = self._fronts(start, end)
-        for outline in self._cutting:
+        if not cut and self._above(part, self._cutting, start, end):
+            return NOTHING
+        for outline in self._cutting.sides:
             met = met.joined(self._take(part, outline, start, end, cut=cut))
         return met
 
@@ -158,12 +187,6 @@ class Cutter:
             return part.inwards(first, -far, cut=cut)
         _, near = sweep(outline.near, start, end, part.columns)
         return part.between(first, near, -far, cut=cut)
-
-
-def _low(outlines: list[_Sides]) -> Point:
-    """The least Z and r of outlines; endlessly far away without any."""
-    ends = [(float(each.near.z[0]), float(each.near.r.min())) for each in outlines]
-    return min((z for z, _ in ends), default=math.inf), min((r for _, r in ends), default=math.inf)
 
 
 def _opposite(part: TurnedPart, outline: _Sides, start: Point, end: Point) -> Cut:

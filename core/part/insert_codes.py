@@ -17,6 +17,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from itertools import pairwise
 from math import radians, sin, tan
 
@@ -180,6 +181,7 @@ def metric_sizes(shape: str) -> dict[str, float]:
     return {**sizes, **_UNUSUAL.get(shape, {})}
 
 
+@lru_cache(maxsize=256)  # asked for every feed of a program
 def decoded(code: str) -> Insert:
     """The insert of an ISO or ANSI code. Raises InsertCodeError naming the character that means nothing.
 

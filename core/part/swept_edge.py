@@ -75,24 +75,26 @@ def sweep(edge: Edge, start: Point, end: Point, columns: Columns) -> tuple[int, 
         return _standing(edge, z1, min(r0, r1), columns)
     slope = (r0 - r1) / way
     tangent = int(edge.slope.searchsorted(slope))
-    left, right = edge.z[tangent] + z1, edge.z[tangent] + z0
-    first, last = columns.at(float(edge.z[0]) + z1), columns.at(float(edge.z[-1]) + z0)
+    low, high = float(edge.z[0]), float(edge.z[-1])
+    first, last = columns.at(low + z1), columns.at(high + z0)
     reached = np.empty(max(last - first, 0))
     if last <= first:
         return first, reached
-    a, b = max(columns.at(left), first) - first, min(columns.at(right), last) - first
-    begin = columns.first + columns.step * first
+    corner = float(edge.z[tangent])
+    a, b = max(columns.at(corner + z1), first) - first, min(columns.at(corner + z0), last) - first
+    begin, step = columns.first + columns.step * first, columns.step
     if a > 0:
-        there = begin + columns.step * np.arange(a)
+        there = begin + step * np.arange(a)
         reached[:a] = np.interp(there, edge.z[: tangent + 1] + z1, edge.r[: tangent + 1] + r1)
-    along = float(edge.r[tangent]) + r1
-    if slope == 0.0:
-        reached[a:b] = along
-    else:
-        along += slope * (begin + columns.step * a - left)
-        reached[a:b] = along + slope * columns.step * np.arange(b - a)
+    if a < b:
+        along = float(edge.r[tangent]) + r1
+        if slope == 0.0:
+            reached[a:b] = along
+        else:
+            along += slope * (begin + step * a - (corner + z1))
+            reached[a:b] = along + slope * step * np.arange(b - a)
     if b < len(reached):
-        there = begin + columns.step * np.arange(b, len(reached))
+        there = begin + step * np.arange(b, len(reached))
         reached[b:] = np.interp(there, edge.z[tangent:] + z0, edge.r[tangent:] + r0)
     return first, reached
 

@@ -151,6 +151,11 @@ class TurnedPart:
         inner = np.min(np.where(there, self.low, np.inf), axis=0)
         return np.where(np.isfinite(inner), inner, 0.0)
 
+    def highest(self, back: float, front: float) -> float:
+        """The greatest radius of the columns from Z ``back`` to ``front``, 0 where there are none."""
+        there = slice(self.columns.at(back), self.columns.at(front))
+        return float(self.high[:, there].max(initial=0.0))
+
     def _volume(self, there: slice) -> float:
         low, high = self.low[:, there], self.high[:, there]
         return math.pi * self.columns.step * float(np.sum(high * high - low * low))

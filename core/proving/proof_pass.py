@@ -141,7 +141,12 @@ def _columns(part: Part) -> Floats:
         return np.array([_figures(block) for block in part]).T
     columns = np.repeat(np.array([_figures(part.pattern)]).T, len(part), axis=1)
     columns[:4] = part.x0, part.z0, part.x, part.z
+    if part.feed is not None:
+        columns[_FEED] = part.feed
     return columns
+
+
+_FEED = 6  # of the columns
 
 
 def _figures(b: Block) -> tuple[float, ...]:

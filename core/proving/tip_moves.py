@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -124,7 +125,10 @@ class Steps:
         like = series.pattern
         dx, dz = self._part_zero(like)
         columns = (series.n, series.line, series.x0 + dx, series.z0 + dz, series.x + dx, series.z + dz)
-        for n, line, x0, z0, x, z in zip(*(column.tolist() for column in columns), strict=True):
+        rows = zip(*(column.tolist() for column in columns), strict=True)
+        for (n, line, x0, z0, x, z), (modal, feed) in zip(rows, series.feeds(), strict=False):
+            if feed != like.feed:
+                like = replace(like, modal=modal, feed=feed)
             yield _move(like, n, line, ((z0, x0), (z, x)), (dx, dz))
 
 

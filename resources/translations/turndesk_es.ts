@@ -7639,6 +7639,11 @@
       <translation>LÁMPARAS Y SONIDO</translation>
     </message>
     <message>
+      <location filename="app/extras/access/extra.py" />
+      <source>manage users, access levels and PINs</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
       <location filename="app/extras/access/sign_in.py" />
       <source>, after {minutes} min without input</source>
       <translation>, tras {minutes} min sin actividad</translation>
@@ -8534,6 +8539,11 @@
       <translation>TODAS</translation>
     </message>
     <message>
+      <location filename="app/extras/drawings/extra.py" />
+      <source>make a turning program from a drawing (DXF, SVG)</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
       <location filename="app/extras/jobs/extra.py" />
       <source>JOBS</source>
       <translation>TRABAJOS</translation>
@@ -8542,6 +8552,11 @@
       <location filename="app/extras/jobs/extra.py" />
       <source>MEASURED PARTS</source>
       <translation>PIEZAS MEDIDAS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/jobs/extra.py" />
+      <source>manage the queue of programs to run next, with their part counts</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="app/extras/jobs/extra.py" />
@@ -9112,6 +9127,16 @@
       <location filename="app/extras/quality/extra.py" />
       <source>features, readings, charts, trends</source>
       <translation>características, lecturas, gráficas, tendencias</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/extra.py" />
+      <source>print a shift report: parts, times, stops, alarms, offsets, readings</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/extras/quality/extra.py" />
+      <source>show the stored part counts, cycle times, readings and offset changes</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="app/extras/quality/features_section.py" />
@@ -9819,6 +9844,11 @@
       <translation>{row}: aún no se ha medido ninguna de las piezas empezadas desde el último cambio de {name}</translation>
     </message>
     <message>
+      <location filename="app/extras/shapes/extra.py" />
+      <source>make a program from the shapes that a file defines</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
       <location filename="app/extras/shapes/shape_form.py" />
       <source>CLASS</source>
       <translation>CLASE</translation>
@@ -9952,6 +9982,11 @@
       <location filename="app/extras/sharing/extra.py" />
       <source>programs from other TurnDesk controls; newer versions are copied on request</source>
       <translation>programas de otros controles TurnDesk; las versiones nuevas se copian si se pide</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/extra.py" />
+      <source>share programs with other controls: publish, take, compare</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="app/extras/sharing/sharing.py" />

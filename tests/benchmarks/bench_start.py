@@ -79,7 +79,10 @@ def compared_starts(home: Path, rounds: int = ROUNDS) -> dict[str, Cost]:
     short.write_text(turned_part(200))
     commands = {
         "bare interpreter": BARE,
+        "import numpy": [sys.executable, "-c", "import numpy"],
         "import PySide6.QtWidgets": QT,
+        "turndesk --help": [*TURNDESK, "--help"],
+        "turndesk --version": [*TURNDESK, "--version"],
         "prove 200 blocks": [*TURNDESK, "prove", str(short), "--offsets", offsets],
         "headless, to the first setpoint": [sys.executable, "-c", HEADLESS, program, offsets],
         "window usable": [sys.executable, "-c", WINDOW, program, offsets, "usable"],

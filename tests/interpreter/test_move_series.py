@@ -85,7 +85,7 @@ MOVE = st.builds(
     st.sampled_from(["", "", "", "", "G01", "G00", "g01", "G10", "G09"]),
     word("Xx") | st.just(""),
     word("Zz") | st.just(""),
-    st.sampled_from(["", "", "", "F.003", "F20", "F.00300", "F0", "f.003"]),
+    st.sampled_from(["", "", "", "F.003", "F20", "F.00300", "F0", "f.003", "F.004", "F300", "F9"]),
 )
 OTHERS = (
     "G90 G91 G70 G71 G72 G73 G95F.003 G94F20 G95F.06 G96S300 G97S500 G00 G01 LS3 LS20 LF T1 T2D1X1Z1 G41 G40 "
@@ -96,7 +96,7 @@ TAME = st.builds(
     "{}{}{}".format,
     word("X"),
     word("Z") | st.just(""),
-    st.sampled_from(["", "", "", "F.003", "F.0030"]),
+    st.sampled_from(["", "", "", "F.003", "F.0030", "F.004", "F.05", "F.00005", "F.051", "F.00004"]),
 )
 RUN = st.lists(TAME, min_size=1, max_size=9)
 LOOP = st.builds(lambda times, moves: [f"LS{times}", *moves, "LF"], st.integers(1, 40), RUN)
@@ -117,7 +117,7 @@ def test_any_lines(moves: list[str], most: int) -> None:
 def test_numbers_are_those_of_single_lines(moves: list[str]) -> None:
     read, alone = Columns.empty(len(moves)), Columns.empty(len(moves))
     with patch("core.interpreter.omniturn.motion.plain_moves._FEW", 1):
-        read_columns(moves, read)
+        read_columns("\n".join(moves), read)
     for at, text in enumerate(moves):
         if (move := read_move(text)) is not None:
             alone.put(at, move)
@@ -171,8 +171,39 @@ def test_passes_of_a_loop_come_in_series() -> None:
     assert assert_same(body("G95F.003", "X1Z1", "G91", "X.01", "LS1000", "X.001", "Z-.001F.003", "LF")) == 1
 
 
-def test_a_loop_that_changes_the_feed_is_gone_through_line_by_line() -> None:
-    assert assert_same(body("G95F.003", "X1Z1", "LS100", "X1.1F.004", "X1F.003", "LF")) == 0
+@pytest.mark.parametrize("feeds", [("F.004", "F.003"), ("F.004", "F.00300"), ("", "F.05")])
+def test_a_loop_that_changes_the_feed_comes_in_a_series(feeds: tuple[str, str]) -> None:
+    first, last = feeds
+    assert assert_same(body("G95F.003", "X1Z1", "LS100", f"X1.1{first}", f"X1{last}", "LF")) == 1
+
+
+@pytest.mark.parametrize(
+    ("before", "feed"),
+    [
+        ("G95F.003", "F.051"),  # warned of
+        ("G95F.003", "F.00004"),  # refused
+        ("G94F20", "F300"),  # that of the first line: a rapid
+        ("G94F20", "G00F20"),
+        ("G00X2", "F20"),  # after a rapid
+    ],
+)
+def test_a_feed_that_needs_its_statement_is_taken_line_by_line(before: str, feed: str) -> None:
+    assert assert_same(body(before, "X1Z1", "LS100", f"X1.1{feed}", "LF")) == 0
+
+
+def test_lines_with_an_f_each_come_in_one_series() -> None:
+    moves = [f"X{1 + k % 7 / 100:.4f}Z{-k / 100:.4f}F.00{1 + k % 5}" for k in range(200)]
+    assert assert_same(body("G95F.003", "X1Z1", *moves)) == 1
+    assert assert_same(body("G94F20", "X1Z1", *[f"Z-{k}F{1 + k % 9}" for k in range(50)])) == 1
+
+
+def test_slow_moves_are_told_with_their_own_feed() -> None:
+    feeds = [3, 0.1, 3, 0.2, 3]
+    text = body("G94F3", "X1Z1", *[f"Z-{k}F{feed}" for k, feed in enumerate(feeds, 1)])
+    with at_once(2):
+        found = gone_through(text, setup())[1]
+    assert [each.line for each in found if each.code == "feed-low"] == [5, 6, 8]
+    assert assert_same(text) == 1
 
 
 def test_words_off_the_step_are_told_until_there_are_too_many() -> None:

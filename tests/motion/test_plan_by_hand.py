@@ -235,6 +235,7 @@ class Columns:
     z0: FloatArray = field(default_factory=lambda: np.array([3.0, 4.0]))
     x: FloatArray = field(default_factory=lambda: np.array([2.0, 5.0]))
     z: FloatArray = field(default_factory=lambda: np.array([4.0, 8.0]))
+    feed: FloatArray | None = None
 
     def __len__(self) -> int:
         return len(self.n)
@@ -251,6 +252,12 @@ def test_a_row_of_moves_stands_in_the_table_with_its_offsets() -> None:
     assert table.start[:, :2].tolist() == [[11.0, 23.0], [12.0, 24.0]]
     assert table.end[:, :2].tolist() == [[12.0, 24.0], [15.0, 28.0]]
     assert table.feed.tolist() == [20.0, 20.0]
+
+
+def test_a_row_of_moves_has_its_own_feeds() -> None:
+    row = Columns(line((7.0, 7.0), (8.0, 8.0), 20.0), feed=np.array([20.0, 30.0]))
+    before, behind = line((0.0, 0.0), (1.0, 3.0), 5.0), line((5.0, 8.0), (9.0, 9.0), 6.0)
+    assert table_of([[before], row, [behind]], 3500.0).feed.tolist() == [5.0, 20.0, 30.0, 6.0]
 
 
 def test_a_row_of_one_move_goes_where_it_says_and_not_where_its_pattern_does() -> None:

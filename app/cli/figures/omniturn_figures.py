@@ -6,7 +6,8 @@ Long columns of numbers are rounded and written all at once, to the letter as Py
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
 from functools import cache
 from typing import TYPE_CHECKING
 
@@ -25,7 +26,7 @@ from app.cli.figures.units import (
 )
 
 if TYPE_CHECKING:
-    from core.interpreter.shared.elementary_blocks import Block, Floats, Ints, TimedSeries
+    from core.interpreter.shared.elementary_blocks import Block, Floats, Ints, Series, TimedSeries
 
 
 _SURE = 1e12  # a number of steps up to which it is a whole one, with digits to spare
@@ -103,7 +104,6 @@ def block_json(block: Block, source_line: str, t0: float, t1: float) -> Json:
     arc = block.kind == "arc"
     circular = arc or block.kind == "plane-arc"
     turned = block.kind == "rotate"  # its speed is rpm
-    feed = per_minute(block.feed) if not block.per_rev else inches(block.feed)
     return {
         **block_head(block, source_line),
         "x": inches(block.x),
@@ -115,13 +115,18 @@ def block_json(block: Block, source_line: str, t0: float, t1: float) -> Json:
         "cz": inches(block.cz) if arc else None,
         "dir": ("cw" if block.clockwise else "ccw") if circular else None,
         **_plane_json(block),
-        "feed": None if turned else feed,
+        "feed": None if turned else _feed_value(block),
         "feed_mode": None if turned else "ipr" if block.per_rev else "ipm",
         "rpm": round(block.rpm, 6) + 0.0,
         "css": None if block.css is None else round(block.css / MM_S_PER_FT_MIN, 6),
         "t0": seconds(t0),
         "t1": seconds(t1),
     }
+
+
+def _feed_value(block: Block) -> float:
+    """Feed of a block in in/min or in/rev."""
+    return inches(block.feed) if block.per_rev else per_minute(block.feed)
 
 
 def row(block: Block, t0: float) -> str:
@@ -143,19 +148,29 @@ def _feed(block: Block) -> str:
 
 def series_rows(moves: TimedSeries) -> str:
     """The lines of the table."""
-    series, like = moves.series, moves.series.pattern
-    line = f"%5d %5d  {like.kind:10s}%11.5f%11.5f{_feed(like)}%8.2f  %s\n"
+    series = moves.series
+    line = f"%5d %5d  {series.pattern.kind:10s}%11.5f%11.5f%s%8.2f  %s\n"
     lines = series.line.tolist()
-    texts = (series.texts[each - 1] for each in lines)
+    texts = series.source_lines()
     x, z = (rounded(mm / MM_PER_INCH, 9).tolist() for mm in (series.x, series.z))
-    columns = (series.n.tolist(), lines, x, z, moves.t0.tolist(), texts)
+    columns = (series.n.tolist(), lines, x, z, _of_feeds(series, _feed), moves.t0.tolist(), texts)
     return "".join([line % each for each in zip(*columns, strict=True)])
+
+
+def _of_feeds(series: Series, text: Callable[[Block], str]) -> Iterable[str]:
+    """The text of each move, which follows from its feed."""
+    like = series.pattern
+    if series.feed is None:
+        return [text(like)] * len(series)
+    feeds = series.feed.tolist()
+    texts = {each: text(replace(like, feed=each)) for each in set(feeds)}
+    return map(texts.__getitem__, feeds)
 
 
 def series_json(moves: TimedSeries) -> str:
     """The objects, a line each."""
     series, like, lines = moves.series, moves.series.pattern, moves.series.line.tolist()
-    texts = _texts_json([series.texts[each - 1] for each in lines])  # a plain move's text is its line
+    texts = _texts_json(series.source_lines())  # a plain move's text is its line
     columns = {
         "n": map(str, series.n.tolist()),
         "line": map(str, lines),
@@ -165,6 +180,7 @@ def series_json(moves: TimedSeries) -> str:
         "z": decimals(series.z / MM_PER_INCH, 9),
         "mx": decimals((series.x + like.offset_x) / MM_PER_INCH, 9),
         "mz": decimals((series.z + like.offset_z) / MM_PER_INCH, 9),
+        "feed": _of_feeds(series, lambda block: json.dumps(_feed_value(block))),
         "t0": decimals(moves.t0, 6),
         "t1": decimals(moves.t1, 6),
     }
@@ -175,7 +191,7 @@ def series_json(moves: TimedSeries) -> str:
     return _woven(f"{{{line}}}\n".split(_VARIES), varying, len(series))
 
 
-def _texts_json(texts: list[str]) -> list[str]:
+def _texts_json(texts: Sequence[str]) -> list[str]:
     """Each text as JSON has it; all at once, for a call costs more than the text. None has a line end."""
     return json.dumps(texts, separators=("\n", ": "))[1:-1].split("\n")
 

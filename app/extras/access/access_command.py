@@ -57,7 +57,7 @@ _LEVELS = {level.name.lower(): level for level in Level}
 
 def add_parser(subparsers: SubParsers) -> None:
     """The subcommand with its actions."""
-    parser = subparsers.add_parser("access", help="manage users, access levels and PINs")
+    parser = subparsers.add_parser("access")
     actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
     for name, text in (
         ("list", "list the users and their access levels"),

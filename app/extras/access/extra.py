@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from app.compose.extra import Extra
+from app.compose.extra import Extra, Subcommand
 
 if TYPE_CHECKING:
     from app.compose.runs.journal import Journal
@@ -23,7 +23,9 @@ if TYPE_CHECKING:
 class AccessByPin(Extra):
     """Signing in with a PIN, ACCESS LEVELS in F10, and ``turndesk access``."""
 
-    commands = {"access": "store"}
+    commands = {
+        "access": Subcommand("store", "manage users, access levels and PINs"),
+    }
 
     def attach(self, desk: Desk, machine: Machine, journal: Journal | None, work: LoadingSteps) -> None:
         from app.extras.access.sign_in import sign_in_of

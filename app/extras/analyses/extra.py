@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
 from app.compose.extra import Extra
-from app.desk.page_description import PageEntry
 
 if TYPE_CHECKING:
     from app.compose.runs.journal import Journal
     from app.desk.desk import Desk
+    from app.desk.page_description import PageEntry
     from app.desk.programs.program_loading import LoadingSteps
     from app.extras.analyses.analyses import Analyses
     from app.extras.analyses.drive_test_model import DriveTests
@@ -18,30 +19,37 @@ if TYPE_CHECKING:
     from core.machine.machine_model import Machine
 
 _CHART = ("app.extras.analyses.analyses_chart_view.AnalysisChart",)
-ANALYSES = PageEntry(
-    "ANALYSES",
-    "app.extras.analyses.analyses_view.AnalysesPage",
-    "app.extras.analyses.analyses.Analyses",
-    later=_CHART,
-    after="SHARED PROGRAMS",
-)
-DRIVE_TEST = PageEntry(
-    "DRIVE TEST",
-    "app.extras.analyses.drive_test_view.DriveTestPage",
-    "app.extras.analyses.drive_test_model.DriveTests",
-    later=_CHART,
-    after="ANALYSES",
-)
+_ANALYSES = "app.extras.analyses.analyses.Analyses"
+_DRIVE_TESTS = "app.extras.analyses.drive_test_model.DriveTests"
 
 
 class ScopeAnalyses(Extra):
     """The page ANALYSES, which the scope opens, and the page DRIVE TEST."""
 
-    pages = (ANALYSES, DRIVE_TEST)
+    @property
+    def pages(self) -> Sequence[PageEntry]:
+        from app.desk.page_description import PageEntry
+
+        return (
+            PageEntry(
+                "ANALYSES",
+                "app.extras.analyses.analyses_view.AnalysesPage",
+                _ANALYSES,
+                later=_CHART,
+                after="SHARED PROGRAMS",
+            ),
+            PageEntry(
+                "DRIVE TEST",
+                "app.extras.analyses.drive_test_view.DriveTestPage",
+                _DRIVE_TESTS,
+                later=_CHART,
+                after="ANALYSES",
+            ),
+        )
 
     def attach(self, desk: Desk, machine: Machine, journal: Journal | None, work: LoadingSteps) -> None:
-        desk.attach_later(ANALYSES.model, partial(_analyses, desk, machine))
-        desk.attach_later(DRIVE_TEST.model, partial(_drive_tests, desk, machine))
+        desk.attach_later(_ANALYSES, partial(_analyses, desk, machine))
+        desk.attach_later(_DRIVE_TESTS, partial(_drive_tests, desk, machine))
 
 
 def _scope_of(desk: Desk) -> Scope:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from app.compose.extra import Extra
+from app.compose.extra import Extra, Subcommand
 
 if TYPE_CHECKING:
     from app.desk.desk import Desk
@@ -17,7 +17,9 @@ class Drawings(Extra):
     """The form DRAWING in the list of shapes, ``turndesk profile``, and drawings in the list of programs."""
 
     needs = ("shapes",)
-    commands = {"profile": "shapes"}
+    commands = {
+        "profile": Subcommand("shapes", "make a turning program from a drawing (DXF, SVG)"),
+    }
     drawings = (".dxf", ".svg")
 
     def extend(self, part: object, desk: Desk, machine: Machine) -> None:

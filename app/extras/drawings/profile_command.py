@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 def add_parser(subparsers: SubParsers) -> None:
     """Declare the command."""
-    parser = subparsers.add_parser("profile", help="make a turning program from a drawing (DXF, SVG)")
+    parser = subparsers.add_parser("profile")
     parser.add_argument("file", metavar="DRAWING")
     parser.add_argument(
         "--list", action="store_true", help="list the layers, axes and contours of the drawing"

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from app.compose.extra import Extra
-from app.desk.page_description import PageEntry
+from app.compose.extra import Extra, Subcommand
 
 if TYPE_CHECKING:
     from app.compose.runs.journal import Journal
     from app.desk.background_work import Latest
     from app.desk.desk import Desk
+    from app.desk.page_description import PageEntry
     from app.desk.persistence import Persistence
     from app.desk.programs.program_loading import LoadingSteps
     from app.special.special_functions import SpecialFunction
@@ -22,19 +22,26 @@ if TYPE_CHECKING:
 class Jobs(Extra):
     """The page JOBS with its special function and its key in the program list, and ``turndesk jobs``."""
 
-    commands = {"jobs": "parts"}
-    pages = (
-        PageEntry(
-            "JOBS",
-            "app.extras.jobs.jobs_view.JobsPage",
-            "app.extras.jobs.jobs_model.JobsModel",
-            "J",
-            "JOBS",
-            "next job, number of parts, setup requirements",
-            after="MEASURED PARTS",
-            shortcut="Shift+F6",
-        ),
-    )
+    commands = {
+        "jobs": Subcommand("parts", "manage the queue of programs to run next, with their part counts"),
+    }
+
+    @property
+    def pages(self) -> Sequence[PageEntry]:
+        from app.desk.page_description import PageEntry
+
+        return (
+            PageEntry(
+                "JOBS",
+                "app.extras.jobs.jobs_view.JobsPage",
+                "app.extras.jobs.jobs_model.JobsModel",
+                "J",
+                "JOBS",
+                "next job, number of parts, setup requirements",
+                after="MEASURED PARTS",
+                shortcut="Shift+F6",
+            ),
+        )
 
     def attach(self, desk: Desk, machine: Machine, journal: Journal | None, work: LoadingSteps) -> None:
         from app.extras.jobs.jobs_desk import attach_jobs

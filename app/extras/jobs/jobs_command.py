@@ -22,9 +22,7 @@ if TYPE_CHECKING:
 
 def add_parser(subparsers: SubParsers) -> None:
     """The subcommand with its actions."""
-    parser = subparsers.add_parser(
-        "jobs", help="manage the queue of programs to run next, with their part counts"
-    )
+    parser = subparsers.add_parser("jobs")
     actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
     listing = actions.add_parser("list", help="list the queue in order, with the number of parts made")
     listing.add_argument("--json", action="store_true", help="print only JSON on stdout")

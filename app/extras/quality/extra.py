@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from app.compose.extra import Extra
-from app.desk.page_description import PageEntry
+from app.compose.extra import Extra, Subcommand
 
 if TYPE_CHECKING:
     from app.compose.runs.journal import Journal
     from app.desk.background_work import Latest
     from app.desk.desk import Desk
+    from app.desk.page_description import PageEntry
     from app.desk.persistence import Persistence
     from app.desk.programs.program_loading import LoadingSteps
     from app.special.special_functions import SpecialFunction
@@ -23,21 +23,34 @@ if TYPE_CHECKING:
 class Quality(Extra):
     """The page MEASURED PARTS, the shift report, their commands, and [gauge] of the machine file."""
 
-    commands = {"parts": "alarms", "shift": "share"}
-    pages = (
-        PageEntry(
-            "MEASURED PARTS",
-            "app.extras.quality.quality_view.MeasuredPartsPage",
-            "app.extras.quality.quality_desk.QualityFunctions",
-            "W",
-            "MEASURED",
-            "features, readings, charts, trends",
-            later=("app.extras.quality.plots_view.PlotsPane", "app.extras.quality.sections_desk.sections"),
-            after="SCOPE",
+    commands = {
+        "parts": Subcommand(
+            "alarms", "show the stored part counts, cycle times, readings and offset changes"
         ),
-    )
+        "shift": Subcommand("share", "print a shift report: parts, times, stops, alarms, offsets, readings"),
+    }
     own_functions = ("TOOL LIFE",)
     tables_follow = "dnc"
+
+    @property
+    def pages(self) -> Sequence[PageEntry]:
+        from app.desk.page_description import PageEntry
+
+        return (
+            PageEntry(
+                "MEASURED PARTS",
+                "app.extras.quality.quality_view.MeasuredPartsPage",
+                "app.extras.quality.quality_desk.QualityFunctions",
+                "W",
+                "MEASURED",
+                "features, readings, charts, trends",
+                later=(
+                    "app.extras.quality.plots_view.PlotsPane",
+                    "app.extras.quality.sections_desk.sections",
+                ),
+                after="SCOPE",
+            ),
+        )
 
     def machine_tables(self) -> Sequence[Driver]:
         from app.extras.quality.gauge_table import DRIVER

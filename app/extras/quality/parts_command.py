@@ -20,9 +20,7 @@ if TYPE_CHECKING:
 
 def add_parser(subparsers: SubParsers) -> None:
     """Declare the command."""
-    parser = subparsers.add_parser(
-        "parts", help="show the stored part counts, cycle times, readings and offset changes"
-    )
+    parser = subparsers.add_parser("parts")
     parser.add_argument("name", nargs="?", metavar="PROGRAM", help="program to show (default: all)")
     form = parser.add_mutually_exclusive_group()
     form.add_argument(

@@ -21,9 +21,7 @@ if TYPE_CHECKING:
 
 def add_parser(subparsers: SubParsers) -> None:
     """Declare the command."""
-    parser = subparsers.add_parser(
-        "shift", help="print a shift report: parts, times, stops, alarms, offsets, readings"
-    )
+    parser = subparsers.add_parser("shift")
     parser.add_argument(
         "--back",
         type=int,

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
-from app.compose.extra import Extra
+from app.compose.extra import Extra, Subcommand
 
 if TYPE_CHECKING:
     from app.compose.runs.journal import Journal
@@ -20,7 +20,9 @@ if TYPE_CHECKING:
 class ShapesAndCalculators(Extra):
     """Shift+F3 and Shift+F4 in the editor, and ``turndesk shapes``."""
 
-    commands = {"shapes": "setup"}
+    commands = {
+        "shapes": Subcommand("setup", "make a program from the shapes that a file defines"),
+    }
     editor_panel = "app.extras.shapes.shapes_view.ShapesView"
 
     def attach(self, desk: Desk, machine: Machine, journal: Journal | None, work: LoadingSteps) -> None:

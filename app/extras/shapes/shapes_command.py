@@ -47,7 +47,6 @@ def add_parser(subparsers: SubParsers) -> None:
     """Declare the command."""
     parser = subparsers.add_parser(
         "shapes",
-        help="make a program from the shapes that a file defines",
         description=_ABOUT,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )

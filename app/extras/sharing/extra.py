@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from app.compose.extra import Close, Extra, Tell
-from app.desk.page_description import PageEntry
+from app.compose.extra import Close, Extra, Subcommand, Tell
 
 if TYPE_CHECKING:
     from app.compose.backends.backend_entry import Answers
     from app.compose.runs.journal import Journal
     from app.desk.desk import Desk
+    from app.desk.page_description import PageEntry
     from app.desk.programs.program_loading import LoadingSteps
     from core.json_key import Output
     from core.machine.machine_model import Machine
@@ -21,19 +21,26 @@ if TYPE_CHECKING:
 class Sharing(Extra):
     """The page SHARED PROGRAMS, ``turndesk share``, and [sharing] of the machine file."""
 
-    commands = {"share": "jobs"}
-    pages = (
-        PageEntry(
-            "SHARED PROGRAMS",
-            "app.extras.sharing.sharing_view.SharedProgramsPage",
-            "app.extras.sharing.sharing_model.SharingModel",
-            "X",
-            "SHARED",
-            "programs from other TurnDesk controls; newer versions are copied on request",
-            after="JOBS",
-        ),
-    )
+    commands = {
+        "share": Subcommand("jobs", "share programs with other controls: publish, take, compare"),
+    }
     threads = {"sharing": "PROGRAM SHARING"}
+
+    @property
+    def pages(self) -> Sequence[PageEntry]:
+        from app.desk.page_description import PageEntry
+
+        return (
+            PageEntry(
+                "SHARED PROGRAMS",
+                "app.extras.sharing.sharing_view.SharedProgramsPage",
+                "app.extras.sharing.sharing_model.SharingModel",
+                "X",
+                "SHARED",
+                "programs from other TurnDesk controls; newer versions are copied on request",
+                after="JOBS",
+            ),
+        )
 
     def machine_tables(self) -> Sequence[Driver]:
         from core.extras.sharing.sharing_table import DRIVER

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 def add_parser(subparsers: SubParsers) -> None:
     """The subcommand with its actions."""
-    parser = subparsers.add_parser("share", help="share programs with other controls: publish, take, compare")
+    parser = subparsers.add_parser("share")
     actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
     begin = actions.add_parser(
         "begin", help="set up the shared location specified in [sharing], once for all controls"

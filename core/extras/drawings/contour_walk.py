@@ -164,10 +164,15 @@ def _at_touching_ends(elements: list[Element], gap: float) -> list[Element]:
     found: list[Element] = []
     for each, box in zip(elements, boxes, strict=True):
         check_work()
-        first = math.floor((box[2] - gap - low) / size)
-        last = math.floor((box[3] + gap - low) / size)
-        near = (p for k in range(first, last + 1) for p in cells.get(k, ()))
-        found += split(each, [q for p in near if (q := _touch(each, p, gap)) is not None])
+        if each.length <= 2.0 * gap:  # no place of it is more than a gap from both ends
+            found.append(each)
+            continue
+        reach = gap + _AXIS  # quicker than the distance from an arc, and more than its rounding
+        r0, r1, z0, z1 = box[0] - reach, box[1] + reach, box[2] - reach, box[3] + reach
+        cell = range(math.floor((z0 - low) / size), math.floor((z1 - low) / size) + 1)
+        near = (p for k in cell for p in cells.get(k, ()) if r0 <= p[0] <= r1 and z0 <= p[1] <= z1)
+        touched = [q for p in near if (q := _touch(each, p, gap)) is not None]
+        found += split(each, touched) if touched else [each]
     return found
 
 

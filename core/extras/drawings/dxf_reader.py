@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import logging
 import math
 from collections import Counter
@@ -22,7 +21,7 @@ from core.extras.drawings.drawing import (
     within_limits,
 )
 from core.extras.drawings.reader_parts import Content, Place, arcs_of, check_expansion
-from core.geometry.lines_and_arcs import Element, Point
+from core.geometry.lines_and_arcs import Element
 from core.message import Message
 
 if TYPE_CHECKING:
@@ -222,32 +221,18 @@ def _ellipse(entity: Any, near: float) -> Iterator[Element]:
 
 
 def _spline(entity: Any, near: float) -> Iterator[Element]:
+    from core.extras.drawings.spline_spans import biarcs, curve_of, spans_of
+
     curve = entity.construction_tool()
     if max(p.z for p in curve.control_points) - min(p.z for p in curve.control_points) > _FLAT:
         raise _NotFlatError
-    order = curve.order
-    knots = sorted(set(curve.knots()[order - 1 : len(curve.knots()) - order + 1]))
-    for begin, end in itertools.pairwise(knots):
-        if end - begin > 1e-12:
-            yield from arcs_of(_span(curve, begin, end), near)
-
-
-def _span(curve: Any, begin: float, end: float) -> Callable[[float], Place]:
-    """A spline between two knots; directions are those within, since a knot may be a corner."""
-    inside = 1e-6 * (end - begin)
-
-    def place(u: float) -> Place:
-        t = begin + (end - begin) * u
-        held = min(max(t, begin + inside), end - inside)
-        at = curve.point(t)
-        way = next(iter(curve.derivatives([held], 1)))[1]
-        return Place(_flat(at), _flat(way))
-
-    return place
-
-
-def _flat(v: Any) -> Point:
-    return float(v.x), float(v.y)
+    spans = spans_of(curve.control_points, curve.weights(), curve.knots(), curve.order - 1)
+    for number, fit in enumerate(biarcs(spans, near)):
+        if fit is None:
+            yield from arcs_of(curve_of(spans, number), near)
+        else:
+            yield from bulged(fit.start, fit.joint, fit.bulges[0])
+            yield from bulged(fit.joint, fit.end, fit.bulges[1])
 
 
 _READERS: dict[str, Reader] = {

@@ -10,9 +10,9 @@ from core.extras.drawings.drawing import MOST_ELEMENTS, DrawingError, bulged, li
 from core.geometry.lines_and_arcs import Element, Point
 from core.message import Message
 
-_SAMPLES = 7  # places of a piece at which it is held against the curve
+SAMPLES = 7  # places of a piece at which it is held against the curve
 _DEEPEST = 14  # halvings
-_STRAIGHT = 1e-6
+STRAIGHT = 1e-6
 
 
 class Place(NamedTuple):
@@ -54,7 +54,7 @@ def _fitted(curve: Curve, begin: float, end: float, tolerance: float, depth: int
 
 def _between(begin: float, end: float) -> Iterator[float]:
     """Yield the parameters at which a piece is compared with the curve."""
-    return (begin + (end - begin) * (k + 1) / (_SAMPLES + 1) for k in range(_SAMPLES))
+    return (begin + (end - begin) * (k + 1) / (SAMPLES + 1) for k in range(SAMPLES))
 
 
 def _is_point(curve: Curve, begin: float, end: float, at: Point, tolerance: float) -> bool:
@@ -101,7 +101,7 @@ def _bulge(at: Point, way: Point, to: Point) -> float:
     """Of the arc that leaves ``at`` along ``way`` and ends in ``to``."""
     dx, dy = to[0] - at[0], to[1] - at[1]
     half = math.atan2(way[0] * dy - way[1] * dx, way[0] * dx + way[1] * dy)
-    return 0.0 if abs(half) < _STRAIGHT else math.tan(half / 2.0)
+    return 0.0 if abs(half) < STRAIGHT else math.tan(half / 2.0)
 
 
 def _off(curve: Curve, begin: float, end: float, a: Place, joint: Point, b: Place) -> float:

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 from core.interpreter.shared.actions import Action, Dwell
 from core.interpreter.shared.checkpoint import Begin, Checkpoint
 from core.interpreter.shared.diagnostic_log import Log
-from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.elementary_blocks import Block, Floats, Kind
 from core.interpreter.shared.job_setup import Setup
 from core.interpreter.shared.modal_state import Modal
 from core.interpreter.shared.units import MM_PER_INCH
 
 if TYPE_CHECKING:
     from core.geometry.virtual_mill import PlaneMove
+
+
+Numbers = TypeVar("Numbers", float, Floats)
 
 
 class Corner(NamedTuple):
@@ -126,7 +129,7 @@ class State:
         self.scale_x = self.scale_z / 2 if modal.diameter else self.scale_z
         self.offset_x, self.offset_z = modal.offset_x, modal.offset_z
         self.dx, self.dz = modal.secondary_x, modal.secondary_z
-        self.cut = not modal.rapid and not self._first_feed_again(modal)
+        self.cut = not modal.rapid and (modal.feed is None or not self.is_first_feed(modal.feed))
         self.kind = Kind.FEED if self.cut else Kind.RAPID
         self.feed = modal.rapid_rate if modal.rapid else (modal.feed or 0.0)
         self.per_rev = modal.per_rev and not modal.rapid
@@ -137,13 +140,13 @@ class State:
         self.slow_length = 0.0  # a longer move under this feed takes too long to be meant
         self.fast = False  # whether the next plain move needs no check: set by a move that passed all
 
-    def _first_feed_again(self, modal: Modal) -> bool:
+    def is_first_feed(self, feed: float) -> bool:
         """Programs without G00 rapid by the first line's F: a move at that feed counts as a rapid."""
-        if modal.per_rev or modal.feed is None or self.first_feed is None:
+        if self.modal.per_rev or self.first_feed is None:
             return False
-        return abs(modal.feed - self.first_feed) <= 1e-9 * self.first_feed
+        return abs(feed - self.first_feed) <= 1e-9 * self.first_feed
 
-    def feed_word(self, value: float) -> float:
+    def feed_word(self, value: Numbers) -> Numbers:
         """F in mm/s under G94, in mm/rev under G95."""
         return value * self.scale_z / (1 if self.modal.per_rev else 60)
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from itertools import repeat
 from math import hypot
 from typing import TYPE_CHECKING, NamedTuple, overload
 
@@ -166,15 +167,17 @@ class Series(Sequence[Block]):
     """m straight moves of X and Z, one from the end of the other.
 
     ``n line x0 z0 x z`` (m,) are those of the blocks; everything else is the same in all and stands in
-    ``pattern``, a block such as each of them. ``texts`` are the lines of the program.
+    ``pattern``, a block such as each of them. Where F varies, ``feed`` (m,) has that of each block, else it
+    is None. ``texts`` are the lines of the program.
     """
 
-    __slots__ = ("line", "n", "pattern", "texts", "x", "x0", "z", "z0")
+    __slots__ = ("feed", "line", "n", "pattern", "texts", "x", "x0", "z", "z0")
 
     def __init__(
         self, pattern: Block, texts: Sequence[str], n: Ints, line: Ints,
-        *, x0: Floats, z0: Floats, x: Floats, z: Floats,
+        *, x0: Floats, z0: Floats, x: Floats, z: Floats, feed: Floats | None = None,
     ) -> None:  # fmt: skip
+        self.feed = feed
         self.pattern, self.texts = pattern, texts
         self.n, self.line = n, line
         self.x0, self.z0, self.x, self.z = x0, z0, x, z
@@ -193,21 +196,45 @@ class Series(Sequence[Block]):
         return next(iter(self._part(slice(at, at + 1))))
 
     def __iter__(self) -> Iterator[Block]:
-        like, texts = self.pattern, self.texts
-        kind, c, modal, feed, per_rev, rpm = like.kind, like.c, like.modal, like.feed, like.per_rev, like.rpm
+        like = self.pattern
+        kind, c, per_rev, rpm = like.kind, like.c, like.per_rev, like.rpm
         offset_x, offset_z = like.offset_x, like.offset_z
         columns = (self.n, self.line, self.x0, self.z0, self.x, self.z)
-        for n, line, x0, z0, x, z in zip(*(column.tolist() for column in columns), strict=True):
+        rows = zip(self.source_lines(), *(column.tolist() for column in columns), strict=True)
+        for (text, n, line, x0, z0, x, z), (modal, feed) in zip(rows, self.feeds(), strict=False):
             yield Block(
-                n, line, kind, texts[line - 1], x0, z0, c, x, z, c, offset_x, offset_z,
+                n, line, kind, text, x0, z0, c, x, z, c, offset_x, offset_z,
                 modal, feed, per_rev, rpm,
             )  # fmt: skip
+
+    def source_lines(self) -> Sequence[str]:
+        """The line of the program of each block."""
+        if not len(self.line):
+            return ()
+        first, last = int(self.line[0]), int(self.line[-1])
+        if last - first + 1 == len(self.line):  # consecutive: passes of a loop are more than their lines
+            return self.texts[first - 1 : last]
+        return [self.texts[line - 1] for line in self.line.tolist()]
+
+    def feeds(self) -> Iterator[tuple[Modal, float]]:
+        """The state and the feed of each block; endless where F does not vary."""
+        modal, feed = self.pattern.modal, self.pattern.feed
+        if self.feed is None:
+            return repeat((modal, feed))
+        known = {each: (with_feed(modal, each), each) for each in set(self.feed.tolist())}
+        return map(known.__getitem__, self.feed.tolist())
 
     def _part(self, at: slice) -> Series:
         return Series(
             self.pattern, self.texts, self.n[at], self.line[at],
             x0=self.x0[at], z0=self.z0[at], x=self.x[at], z=self.z[at],
+            feed=None if self.feed is None else self.feed[at],
         )  # fmt: skip
+
+
+def with_feed(modal: Modal, feed: float) -> Modal:
+    """The state after another F of a cut, mm/s or mm/rev."""
+    return modal._replace(feed=feed, cut_feed=feed)
 
 
 class TimedSeries(NamedTuple):

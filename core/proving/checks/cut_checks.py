@@ -254,37 +254,52 @@ def _feed(move: TipMove, shape: ToolShape, tool: int, *, held: bool) -> Iterator
     feed = move.per_rev or (move.speed * 60.0 / abs(move.rpm) if move.rpm else 0.0)
     if not feed or move.kind is Kind.THREAD or shape.kind is ToolKind.TAP:
         return
-    name, text = edge_name(tool), move.modal.length_text
-    shown, limit, words = move.modal.feed_text(feed, per_rev=True), 0.0, ""
-    breaks, least = _BREAKS, 0.0
+    limit, breaks, least = _feed_limit(shape, held=held)
+    if not feed > limit > 0.0:
+        return
+    words = _too_fast(move, shape, tool, feed)
+    if feed > max(breaks * limit, least):
+        yield Found("feed-breaks-tool", words)
+    else:
+        yield Found("chip-load", words)
+
+
+def _feed_limit(shape: ToolShape, *, held: bool) -> tuple[float, float, float]:
+    """Usual largest feed of a tool, mm (0: none), how many times that breaks it, and mm that never do."""
     if shape.kind in _DRILLS and held:
-        limit = (_OF_REAMER if shape.kind is ToolKind.REAMER else _OF_DRILL) * shape.diameter
-        words = Message(
+        share = _OF_REAMER if shape.kind is ToolKind.REAMER else _OF_DRILL
+        return share * shape.diameter, _BREAKS, 0.0
+    if shape.kind in GROOVERS and held:
+        return _OF_WIDTH * shape.width, _BREAKS, 0.0
+    if shape.kind in INSERTS:
+        return _COARSE * shape.nose_radius, _BREAKS_INSERT, _NEVER_BREAKS
+    return 0.0, _BREAKS, 0.0
+
+
+def _too_fast(move: TipMove, shape: ToolShape, tool: int, feed: float) -> Message:
+    """Return the words for a feed over the limit of ``_feed_limit``."""
+    name, text = edge_name(tool), move.modal.length_text
+    shown = move.modal.feed_text(feed, per_rev=True)
+    if shape.kind in _DRILLS:
+        return Message(
             "{name} feeds at {value}, which is too high for a diameter of {diameter}.",
             name=name,
             value=shown,
             diameter=text(shape.diameter),
         )
-    elif shape.kind in GROOVERS and held:
-        limit = _OF_WIDTH * shape.width
-        words = Message(
+    if shape.kind in GROOVERS:
+        return Message(
             "{name} feeds at {value}, which is too high for a cutting edge {width} wide.",
             name=name,
             value=shown,
             width=text(shape.width),
         )
-    elif shape.kind in INSERTS:
-        limit, breaks, least = _COARSE * shape.nose_radius, _BREAKS_INSERT, _NEVER_BREAKS
-        words = Message(
-            "{name} feeds at {value}, which is too high for a nose radius of {nose_radius}.",
-            name=name,
-            value=shown,
-            nose_radius=text(shape.nose_radius),
-        )
-    if feed > max(breaks * limit, least) and limit:
-        yield Found("feed-breaks-tool", words)
-    elif feed > limit > 0.0:
-        yield Found("chip-load", words)
+    return Message(
+        "{name} feeds at {value}, which is too high for a nose radius of {nose_radius}.",
+        name=name,
+        value=shown,
+        nose_radius=text(shape.nose_radius),
+    )
 
 
 def _is_along(move: TipMove) -> bool:

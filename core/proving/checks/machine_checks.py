@@ -81,7 +81,7 @@ class CuttingChecks:
         if not blocks:
             return
         own = self.dialect is Dialect.OMNITURN
-        alike: Iterable[Block] = (blocks[0],) if isinstance(blocks, Series) else blocks
+        alike: Iterable[Block] = _unlike(blocks) if isinstance(blocks, Series) else blocks
         for block in alike:
             if block.action is not None:
                 self._like = None
@@ -289,6 +289,13 @@ class CuttingChecks:
     def _add(self, found: Diagnostic) -> None:
         if len(self._found) < _MOST:
             self._found.append(found)
+
+
+def _unlike(series: Series) -> Iterator[Block]:
+    """The first move of a series, and the first that cuts: by the minute others may be too quick for that."""
+    yield series[0]
+    if series.feed is not None and not cuts(series[0]):
+        yield from (series[at] for at in (series.feed < _QUICK).nonzero()[0][:1].tolist())
 
 
 def _finding(block: Block, severity: Severity, check: str, text: str, hint: str) -> Diagnostic:

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from core.extras.drawings import dxf_reader
+from core.extras.drawings import spline_spans
 from core.extras.drawings.drawing_file import read_drawing
 from core.extras.drawings.reader_parts import Place, arcs_of
 from core.geometry.lines_and_arcs import Point
@@ -78,10 +78,10 @@ def shaft(space: Any, *middle: tuple[float, float], times: int = 60) -> None:
 
 def counting(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     count = [0]
-    span = dxf_reader._span
+    curve_of = spline_spans.curve_of
 
     def counted(*args: Any) -> Any:
-        curve = span(*args)
+        curve = curve_of(*args)
 
         def place(u: float) -> Place:
             count[0] += 1
@@ -90,7 +90,7 @@ def counting(monkeypatch: pytest.MonkeyPatch) -> list[int]:
 
         return place
 
-    monkeypatch.setattr(dxf_reader, "_span", counted)
+    monkeypatch.setattr(spline_spans, "curve_of", counted)
     return count
 
 

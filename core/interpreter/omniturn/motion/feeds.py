@@ -10,17 +10,18 @@ from collections.abc import Sequence
 from core.interpreter.omniturn.codes.code_entry import MOST_PER_REV, Limit, When
 from core.interpreter.omniturn.codes.code_rules import check_when, limit, number
 from core.interpreter.omniturn.codes.code_table import G_CODES, LETTERS
-from core.interpreter.omniturn.omniturn_state import HIGH_FEED, State
+from core.interpreter.omniturn.omniturn_state import HIGH_FEED, Numbers, State
 from core.interpreter.omniturn.omniturn_statement import ReadyLine, Statement
 from core.interpreter.omniturn.setup.spindle_and_dwell import warn_of_short_dwell
 from core.interpreter.shared import units
+from core.interpreter.shared.elementary_blocks import with_feed
 from core.interpreter.shared.modal_state import Modal
 from core.language.diagnostics import program_error
 from core.language.omniturn import Word
 from core.message import Message
 
 _LEAST = LETTERS["F"].rules["F"].least * units.MM_PER_INCH  # per minute or per revolution
-_SLOW_MOVE = 30.0  # s; a single move that takes longer was hardly meant
+SLOW_MOVE = 30.0  # s; a single move that takes longer was hardly meant
 _TAPPING_LINES = 6  # so soon after the feed the spindle turns back
 _ROUNDING = 1 + 1e-9
 
@@ -97,17 +98,43 @@ def another_feed(state: State, f: float) -> bool:
     False, and nothing is changed, where its statement is needed: after a rapid, while a cycle or compensation
     is described, under G35 and G36, for a feed that is refused or warned of.
     """
-    modal, feed = state.modal, state.feed_word(f)
-    least = _LEAST if modal.per_rev else _LEAST / 60
-    most = limit(state, Limit.FEED_IN_FORCE)
-    if modal.per_rev:
-        most = min(most, HIGH_FEED)
-    if state.steady_feed is None or modal.coarse or state.contour.active or not least <= feed <= most:
+    feed = state.feed_word(f)
+    if state.modal.coarse or state.contour.active or not _is_usual(state, feed):
         return False
     state.title_rapid = 0
     state.reported.discard("feed-missing")
-    state.adopt(modal._replace(feed=feed, cut_feed=feed))
+    state.adopt(with_feed(state.modal, feed))
     return True
+
+
+def _is_usual(state: State, feed: float) -> bool:
+    """Whether a cut is under way for which this feed, mm/s or mm/rev, is neither refused nor warned of."""
+    per_rev = state.modal.per_rev
+    most = limit(state, Limit.FEED_IN_FORCE)
+    least, most = (_LEAST, min(most, HIGH_FEED)) if per_rev else (_LEAST / 60, most)
+    return state.steady_feed is not None and least <= feed <= most
+
+
+def is_free(state: State, feed: float) -> bool:
+    """Whether a move at another feed, mm/s or mm/rev, would pass all checks but that of its length.
+
+    ``state.fast`` must hold: a move at the feed in force has passed them.
+    """
+    if not (state.cut and _is_usual(state, feed)) or state.is_first_feed(feed):
+        return False
+    return not state.modal.per_rev or speed_of(state, feed) <= state.setup.limits.max_feed * _ROUNDING
+
+
+def speed_of(state: State, feed: Numbers) -> Numbers:
+    """mm/s of feeds as they are programmed, of a spindle whose speed does not change."""
+    return feed * abs(state.rpm) / 60 if state.modal.per_rev else feed
+
+
+def set_feed(state: State, feed: float) -> None:
+    """Take the feed of the last move of a series into force; the next plain move needs no check either."""
+    state.adopt(with_feed(state.modal, feed))
+    state.slow_length = speed_of(state, feed) * SLOW_MOVE
+    state.fast = True
 
 
 def out_of_range(modal: Modal, feed: float, least: float, most: float) -> tuple[str, str, str]:
@@ -210,7 +237,7 @@ def _once(state: State, line: int, code: str, message: str, hint: str) -> None:
 
 
 def _warn_slow(state: State, line: int, length: float, speed: float) -> None:
-    state.slow_length = speed * _SLOW_MOVE
+    state.slow_length = speed * SLOW_MOVE
     if length > state.slow_length:
         seconds = length / speed
         modal = state.modal

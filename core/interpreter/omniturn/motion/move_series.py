@@ -6,17 +6,19 @@ word off the step or a move that takes long is told by whoever tells it of a sin
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
 from math import hypot
 
 import numpy as np
 
 from core.interpreter.omniturn.flow.loops_and_subroutines import Flow
-from core.interpreter.omniturn.motion.feeds import check_move
+from core.interpreter.omniturn.motion.feeds import SLOW_MOVE, check_move, is_free, set_feed, speed_of
 from core.interpreter.omniturn.motion.plain_moves import MOST, NO_CODE, Bools, Columns, Floats, Ints
 from core.interpreter.omniturn.motion.straight_moves import WHOLE, in_force, rounded, step_of
 from core.interpreter.omniturn.omniturn_program import Program
 from core.interpreter.omniturn.omniturn_state import State
-from core.interpreter.shared.elementary_blocks import Block, Series
+from core.interpreter.shared.elementary_blocks import Block, Series, with_feed
 
 
 def unchanged(state: State, lines: Columns) -> Bools:
@@ -33,8 +35,30 @@ def unchanged(state: State, lines: Columns) -> Bools:
     return answer
 
 
-def series(state: State, lines: Columns, line: Ints, texts: tuple[str, ...]) -> Series:
-    """The moves of these lines, which all are ``unchanged``; ``line`` (m,) are their numbers.
+def plain(state: State, lines: Columns) -> Bools:
+    """Lines (m,) that are ``unchanged`` but for another F of a cut, which passes all checks."""
+    answer = unchanged(state, lines)
+    if state.steady_feed is None:
+        return answer
+    fed = lines.known & ~answer & ~np.isnan(lines.f) & (lines.g != 0)
+    for f in set(lines.f[fed].tolist()):
+        if is_free(state, state.feed_word(f)):
+            answer |= fed & (lines.f == f)
+    return answer
+
+
+def _feeds(state: State, lines: Columns) -> Floats | None:
+    """The feed in force in each of the lines (m,), mm/s or mm/rev; None where none has another one."""
+    fed = ~np.isnan(lines.f)
+    feeds = np.where(fed, state.feed_word(lines.f), state.feed)
+    if (feeds == state.feed).all():
+        return None
+    last = np.maximum.accumulate(np.where(fed, np.arange(len(fed)), -1))
+    return np.where(last < 0, state.feed, feeds[last])
+
+
+def series(state: State, lines: Columns, line: Ints, texts: Sequence[str]) -> Series:
+    """The moves of these lines, which all are ``plain``; ``line`` (m,) are their numbers.
 
     ``state.fast`` must hold: a move under this state has passed all checks.
     """
@@ -44,15 +68,20 @@ def series(state: State, lines: Columns, line: Ints, texts: tuple[str, ...]) -> 
     x1, z1 = px + state.dx, pz + state.dz
     x0, z0 = np.concatenate([[state.x], x1[:-1]]), np.concatenate([[state.z], z1[:-1]])
     n = np.arange(state.blocks + 1, state.blocks + 1 + len(line))
+    feed = _feeds(state, lines)
     first = Block(
         int(n[0]), int(line[0]), state.kind, texts[line[0] - 1], state.x, state.z, state.c,
         float(x1[0]), float(z1[0]), state.c, state.offset_x, state.offset_z,
         state.modal, state.feed, state.per_rev, state.rpm,
     )  # fmt: skip
-    made = Series(first, texts, n, line, x0=x0, z0=z0, x=x1, z=z1)
+    if feed is not None:
+        first = replace(first, modal=with_feed(state.modal, float(feed[0])), feed=float(feed[0]))
+    made = Series(first, texts, n, line, x0=x0, z0=z0, x=x1, z=z1, feed=feed)
     _tell(state, made, lines, x_finer | z_finer)
     state.px, state.pz, state.x, state.z = float(px[-1]), float(pz[-1]), float(x1[-1]), float(z1[-1])
     state.blocks += len(line)
+    if feed is not None:
+        set_feed(state, float(feed[-1]))
     return made
 
 
@@ -83,7 +112,8 @@ def _on_step(state: State, letter: str, word: Floats, fine: Bools) -> tuple[Floa
 def _tell(state: State, made: Series, lines: Columns, finer: Bools) -> None:
     """Warn of words off the step and of moves that take long, line by line, while warnings are kept."""
     dx, dz = made.x - made.x0, made.z - made.z0
-    slow = (np.abs(dx) + np.abs(dz) > state.slow_length) & state.cut
+    slow_length = state.slow_length if made.feed is None else speed_of(state, made.feed) * SLOW_MOVE
+    slow = (np.abs(dx) + np.abs(dz) > slow_length) & state.cut
     for at in np.flatnonzero(finer | slow).tolist():
         if state.log.silent:
             return
@@ -92,6 +122,8 @@ def _tell(state: State, made: Series, lines: Columns, finer: Bools) -> None:
             x, z = (None if np.isnan(word) else float(word) for word in (lines.x[at], lines.z[at]))
             rounded(state, line, made.texts[line - 1], x, z)
         if slow[at]:
+            if made.feed is not None:
+                set_feed(state, float(made.feed[at]))
             check_move(state, line, float(made.x0[at]), float(made.x[at]), hypot(dx[at], dz[at]))
 
 
@@ -128,10 +160,10 @@ class SeriesLookAhead:
         if end - at < LEAST:
             self._without = range(at, end + 1)
             return None
-        if not unchanged(self._state, columns.part(slice(at, at + LEAST))).all():
+        if not plain(self._state, columns.part(slice(at, at + LEAST))).all():
             return None
         part = columns.part(slice(at, end))
-        other = np.flatnonzero(~unchanged(self._state, part))
+        other = np.flatnonzero(~plain(self._state, part))
         count = int(other[0]) if len(other) else end - at
         self._flow.at, self._without = at + count, range(0)
         numbers = np.arange(at + 1, at + 1 + count)
@@ -147,7 +179,7 @@ class SeriesLookAhead:
         if times * length < LEAST:
             return None
         body = self._ready.columns.part(slice(at, at + length))
-        if not unchanged(self._state, body).all():
+        if not plain(self._state, body).all():
             return None
         index = np.tile(np.arange(length), times)
         self._flow.passed(at - 1, times)

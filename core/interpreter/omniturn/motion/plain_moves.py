@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from core.interpreter.omniturn.omniturn_statement import PlainMove, ReadyLine
+from core.language.long_lines import LongLines
 
 Floats = npt.NDArray[np.float64]
 Bools = npt.NDArray[np.bool_]
@@ -102,9 +103,9 @@ def _words_of(column: Floats) -> list[float | None]:
     return numbers
 
 
-def read_columns(lines: Sequence[str], columns: Columns) -> None:
+def read_columns(text: str, columns: Columns) -> None:
     """Put in the lines; ``known`` stays False for any that is another kind of line, or of a rare shape."""
-    raw = "\n".join(lines).encode("ascii", "replace")  # a character, a byte
+    raw = text.encode("ascii", "replace")  # a character, a byte
     digits = np.frombuffer(raw, np.uint8)
     starts = np.concatenate([[0], np.flatnonzero(digits == _NEW_LINE) + 1])
     shapes = raw.translate(_SHAPE).split(b"\n")
@@ -201,6 +202,10 @@ class ReadyLines(Sequence[ReadyLine]):
         return [self._others[at] if move is None else move for at, move in zip(lines, moves, strict=True)]
 
 
+def _joined(lines: Sequence[str], these: range) -> str:
+    return lines.joined(these) if isinstance(lines, LongLines) else "\n".join(lines[these.start : these.stop])
+
+
 def read_lines(lines: Sequence[str], read: Callable[[int, str], ReadyLine], *, in_order: bool) -> ReadyLines:
     """The lines ready to run. ``read`` (number from 1, text) is asked, in order, for those not read at once.
 
@@ -209,12 +214,11 @@ def read_lines(lines: Sequence[str], read: Callable[[int, str], ReadyLine], *, i
     columns = Columns.empty(len(lines))
     others: dict[int, ReadyLine] = {}
     for first in range(0, len(lines), MOST):
-        texts = lines[first : first + MOST]
         part = columns.part(slice(first, first + MOST))
         if not in_order:
-            read_columns(texts, part)
+            read_columns(_joined(lines, range(first, min(first + MOST, len(lines)))), part)
         for at in np.flatnonzero(~part.known).tolist():
-            line = read(first + at + 1, texts[at])
+            line = read(first + at + 1, lines[first + at])
             if isinstance(line, tuple):
                 part.put(at, line)
             else:

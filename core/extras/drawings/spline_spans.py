@@ -1,0 +1,189 @@
+"""The spans of a spline between its knots, and those that two arcs follow, found for all spans at once.
+
+A spline in a drawing of 2 MB has tens of thousands of spans. Nearly all of them are so short that two arcs
+follow them. The fit is that of ``reader_parts.arcs_of``, which halves the other spans.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from core.extras.drawings.reader_parts import SAMPLES, STRAIGHT, Curve, Place
+from core.geometry.lines_and_arcs import Point
+
+Floats = npt.NDArray[np.float64]
+Bools = npt.NDArray[np.bool_]
+
+_SHORTEST = 1e-12  # of the parameter: equal knots
+_INSIDE = 1e-6  # of a span: directions are taken this far within, since a knot may be a corner
+_TINY = 1e-12
+_AT_ONCE = 4096  # spans: bounds the memory
+
+
+class Spans(NamedTuple):
+    """n spans: Bézier points ``control`` (n, degree+1, 3) as x·w, y·w, w, and parameter lengths (n,)."""
+
+    control: Floats
+    length: Floats
+
+
+class Biarc(NamedTuple):
+    """Two arcs from ``start`` by ``joint`` to ``end``, with the tangents of a quarter of their angles."""
+
+    start: Point
+    joint: Point
+    end: Point
+    bulges: tuple[float, float]
+
+
+def spans_of(
+    points: Iterable[Sequence[float]], weights: Iterable[float], knots: Iterable[float], degree: int
+) -> Spans:
+    """Return the spans of a spline with these control points; without weights all of them are 1.
+
+    Each Bézier point is the polar form of the spline at the knots at both ends of its span. Raises ValueError
+    for knots at which the spline would be interrupted.
+    """
+    control, knot = _homogeneous(points, weights), np.sort(np.array(list(knots), dtype=np.float64))
+    at = np.arange(degree, len(control))
+    low, inside = knot[:-degree], (knot > knot[degree]) & (knot < knot[len(control)])
+    if ((knot[degree:] == low) & inside[:-degree]).any():
+        raise ValueError("a knot is repeated too often")
+    at = at[knot[at + 1] - knot[at] > _SHORTEST]
+    made = np.empty((len(at), degree + 1, 3))
+    for number in range(degree + 1):
+        polar = control[at[:, None] + np.arange(-degree, 1)]
+        for level in range(1, degree + 1):
+            first = at[:, None] + np.arange(level - degree, 1)
+            low, high = knot[first], knot[first + degree + 1 - level]
+            argument = knot[at + 1 if level <= number else at][:, None]
+            share = ((argument - low) / (high - low))[:, :, None]
+            polar = (1.0 - share) * polar[:, :-1] + share * polar[:, 1:]
+        made[:, number] = polar[:, 0]
+    return Spans(made, knot[at + 1] - knot[at])
+
+
+def _homogeneous(points: Iterable[Sequence[float]], weights: Iterable[float]) -> Floats:
+    places = np.array([(p[0], p[1], 1.0) for p in points], dtype=np.float64)
+    factors = np.array(list(weights), dtype=np.float64)
+    return places * factors[:, None] if len(factors) else places
+
+
+def curve_of(spans: Spans, number: int) -> Curve:
+    """Return one of the spans as a curve by a parameter from 0 to 1."""
+    points: list[list[float]] = spans.control[number].tolist()
+    length = float(spans.length[number])
+    scale = (len(points) - 1) / length
+
+    def pair(u: float) -> list[list[float]]:
+        """The two points between which the curve runs at ``u``: it touches the line through them."""
+        found = points
+        while len(found) > 2:
+            found = [[a + (b - a) * u for a, b in zip(p, q, strict=True)] for p, q in pairwise(found)]
+        return found
+
+    def place(u: float) -> Place:
+        (ax, ay, aw), (bx, by, bw) = pair(u)
+        w = aw + (bw - aw) * u
+        at = (ax + (bx - ax) * u) / w, (ay + (by - ay) * u) / w
+        held = min(max(u, _INSIDE), 1.0 - _INSIDE)
+        if held != u:
+            (ax, ay, aw), (bx, by, bw) = pair(held)
+            w = aw + (bw - aw) * held
+        size = scale / (w * w)
+        return Place(at, (size * (bx * aw - ax * bw), size * (by * aw - ay * bw)))
+
+    return place
+
+
+# --- two arcs for each span; points and directions are (n, 2)
+
+
+def biarcs(spans: Spans, tolerance: float) -> Iterator[Biarc | None]:
+    """Yield for each span the two arcs that leave it by no more than ``tolerance``, or None."""
+    for first in range(0, len(spans.length), _AT_ONCE):
+        part = slice(first, first + _AT_ONCE)
+        with np.errstate(all="ignore"):
+            yield from _fitted(Spans(spans.control[part], spans.length[part]), tolerance)
+
+
+def _fitted(spans: Spans, tolerance: float) -> Iterator[Biarc | None]:
+    (a, way), (b, end_way) = _ends(spans, 0.0), _ends(spans, 1.0)
+    joint, good = _joints(a, way, b, end_way)
+    bulges = np.array([_bulges(a, way, joint), -_bulges(b, -end_way, joint)])
+    good &= np.abs(bulges).max(axis=0) <= 1.0
+    off = np.zeros(len(a))
+    for k in range(1, SAMPLES + 1):
+        p = _points(spans.control, k / (SAMPLES + 1))
+        np.maximum(off, np.minimum(_apart(p, a, joint, bulges[0]), _apart(p, joint, b, bulges[1])), out=off)
+    good &= off <= tolerance
+    for fits, *row in zip(
+        good.tolist(), a.tolist(), joint.tolist(), b.tolist(), bulges.T.tolist(), strict=True
+    ):
+        yield Biarc(*map(tuple, row)) if fits else None
+
+
+def _levels(control: Floats, u: float, keep: int) -> Floats:
+    while control.shape[1] > keep:
+        control = control[:, :-1] + (control[:, 1:] - control[:, :-1]) * u
+    return control
+
+
+def _points(control: Floats, u: float) -> Floats:
+    last = _levels(control, u, 1)[:, 0]
+    return last[:, :2] / last[:, 2:]
+
+
+def _ends(spans: Spans, u: float) -> tuple[Floats, Floats]:
+    """Points at ``u`` and directions just within."""
+    held = min(max(u, _INSIDE), 1.0 - _INSIDE)
+    pair = _levels(spans.control, held, 2)
+    p, q = pair[:, 0], pair[:, 1]
+    w = p[:, 2] + (q[:, 2] - p[:, 2]) * held
+    size = (spans.control.shape[1] - 1) / (spans.length * w * w)
+    return _points(spans.control, u), size[:, None] * (q[:, :2] * p[:, 2:] - p[:, :2] * q[:, 2:])
+
+
+def _joints(a: Floats, way: Floats, b: Floats, end_way: Floats) -> tuple[Floats, Bools]:
+    """Where both arcs meet, as in ``reader_parts``, and whether there is such a place."""
+    sizes = np.array([np.hypot(*way.T), np.hypot(*end_way.T)])
+    one, other, v = way / sizes[0][:, None], end_way / sizes[1][:, None], b - a
+    vt, vv = (v * (one + other)).sum(axis=1), (v * v).sum(axis=1)
+    both = 2.0 * (1.0 - (one * other).sum(axis=1))
+    along = (v * other).sum(axis=1)
+    straight = both < 1e-9
+    far = np.where(straight, vv / (4.0 * along), (-vt + np.sqrt(vt * vt + both * vv)) / both)
+    good = (sizes > _TINY).all(axis=0) & (vv >= 1e-24) & (far > 0.0)
+    good &= ~straight | (np.abs(along) >= _TINY)
+    return 0.5 * (a + b + far[:, None] * (one - other)), good
+
+
+def _bulges(at: Floats, way: Floats, to: Floats) -> Floats:
+    """Of the arcs that leave ``at`` along ``way`` and end in ``to``."""
+    d = to - at
+    half = np.arctan2(way[:, 0] * d[:, 1] - way[:, 1] * d[:, 0], (way * d).sum(axis=1))
+    return np.where(np.abs(half) < STRAIGHT, 0.0, np.tan(0.5 * half))
+
+
+def _apart(p: Floats, a: Floats, b: Floats, bulge: Floats) -> Floats:
+    """Distance (n,) of each point from its arc or line, where its foot lies on it; else from its ends."""
+    d = b - a
+    chord = np.hypot(*d.T)
+    from_ends = np.minimum(np.hypot(*(p - a).T), np.hypot(*(p - b).T))
+    along = ((p - a) * d).sum(axis=1) / chord
+    side = (p[:, 0] - a[:, 0]) * d[:, 1] - (p[:, 1] - a[:, 1]) * d[:, 0]
+    off = (1.0 - bulge * bulge) / (4.0 * bulge)
+    centre = 0.5 * (a + b) + off[:, None] * np.stack([-d[:, 1], d[:, 0]], axis=1)
+    radius = np.hypot(*(centre - a).T)
+    line = np.abs(bulge) < 1e-9
+    on_line = (along >= 0.0) & (along <= chord)
+    on_arc = (side * bulge >= 0.0) | (np.abs(side) < chord * radius * 1e-6)
+    to = np.where(line, np.abs(side) / chord, np.abs(np.hypot(*(p - centre).T) - radius))
+    near = np.where(np.where(line, on_line, on_arc), to, from_ends)
+    apart: Floats = np.where(chord < _TINY, np.hypot(*(p - a).T), near)
+    return apart

@@ -1,0 +1,93 @@
+"""The help and the version of the command import no command, and say what the whole parser says."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from app import VERSION
+from app.cli.command_parser import is_for_screen
+from app.cli.main import COMMANDS, all_commands, build_parser
+
+ROOT = Path(__file__).parents[2]
+LISTED = """
+import sys
+sys.argv[1:] = {words!r}
+from app.cli.main import main
+try:
+    main()
+except SystemExit:
+    pass
+print(*sys.modules, file=sys.stderr)
+"""
+HEAVY = {"numpy", "sqlite3", "dataclasses", "json", "importlib.metadata"}
+
+
+def modules_of(*words: str) -> set[str]:
+    """The modules that a command has imported."""
+    command = [sys.executable, "-c", LISTED.format(words=list(words))]
+    return set(subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True).stderr.split())
+
+
+@pytest.mark.parametrize("words", [["--help"], ["-h"], ["--version"]])
+def test_help_and_version_import_no_command(words: list[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("TURNDESK_HOME", raising=False)
+    bare = set(
+        subprocess.run(
+            [sys.executable, "-c", "import sys; print(*sys.modules)"],
+            check=True,
+            capture_output=True,
+            text=True,
+        ).stdout.split()
+    )
+    loaded = modules_of(*words)
+    assert "app.cli.main" in loaded
+    assert not [name for name in loaded if name.endswith("_command")]
+    assert not (loaded - bare) & HEAVY
+    assert len(loaded - bare) < 90
+
+
+def test_a_command_imports_its_own_module_alone() -> None:
+    loaded = modules_of("alarms", "--help")
+    assert [name for name in loaded if name.endswith("_command")] == ["app.cli.alarms_command"]
+
+
+def test_the_bare_parser_has_the_help_of_the_whole_one() -> None:
+    assert build_parser(bare=True).format_help() == build_parser().format_help()
+    assert set(COMMANDS) <= set(all_commands())
+
+
+def test_a_command_has_its_line_of_help_once() -> None:
+    text = " ".join(build_parser().format_help().split())
+    assert all(text.count(COMMANDS[name]) == 1 for name in COMMANDS)
+
+
+@pytest.mark.parametrize(
+    "words", [[], ["--help"], ["--demo", "--kiosk"], ["--program", "prove"], ["--machine=a.toml", "--demo"]]
+)
+def test_options_of_the_screen_need_no_command(words: list[str]) -> None:
+    assert is_for_screen(words)
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["prove", "--help"],
+        ["--program"],
+        ["--program", "--demo"],
+        ["--jsn"],
+        ["part.nc"],
+        ["--machine", "a.toml", "prove", "b.nc"],
+        ["--demo", "nonsense"],
+    ],
+)
+def test_a_command_or_a_mistake_needs_the_whole_parser(words: list[str]) -> None:
+    assert not is_for_screen(words)
+
+
+def test_the_version_is_that_of_the_package() -> None:
+    assert tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"] == VERSION
