@@ -191,6 +191,7 @@ def _desk_on_process(
         ClosingStep("control", client.close, CONTROL_CLOSES),
     ]
     desk.frame_watchers.append(client.see)
+    desk.open_stop_line = client.open_stop_line
     client.begin(
         ControlEvents(
             events.hear,

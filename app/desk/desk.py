@@ -14,16 +14,18 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from app.desk.access import Access
+from app.desk.late_presses import LatePresses, Starting
 from app.desk.page_description import ProgramKey
 from app.desk.pages.desk_parts import Attached, Closing, OwnStart, Watcher
 from app.desk.pages.first_job import FirstJob
 from app.desk.pages.page_entry import program_barred
+from app.desk.posted_values import PostedValues
 from app.desk.programs.program_folder import ProgramFolders
 from app.desk.programs.program_loading import Loaded, PartProved, Phase, ProgramLoader
 from app.desk.programs.program_renewal import ProgramRenewal
 from app.desk.programs.start_watch import StartWatch
 from app.desk.screen_settings import SettingsBook
-from app.desk.station_hands import OVERRIDE_MOST, StationHands, StationPanel, stepped
+from app.desk.station_hands import StationHands, StationPanel, override_of
 from app.desk.status import interrupted_notice, prompt_line
 from app.desk.status.alarm_log import AlarmLog
 from app.desk.status.interrupted_notice import NoticeRow
@@ -31,6 +33,8 @@ from app.desk.status.machine_file_changes import FileChanges
 from app.desk.status.machine_status import MachineStatus, SilenceWatch, Tone, status_of
 from app.desk.status.prompt_line import ONE_HAND, UNDER_WAY, YES, PromptAnswers
 from app.desk.status.readouts import Readout
+from app.desk.stop_keys.stop_records import BY_ESC, BY_SCREEN
+from app.desk.stop_keys.watched_keys import OpenLine
 from app.desk.translation import tr
 from app.offsets.offset_book import NONE_KEPT, OffsetBook
 from app.programs.run_history import PartCounter, RunHistory
@@ -57,7 +61,6 @@ if TYPE_CHECKING:
 SWITCHES = frozenset({"single_block", "optional_stop", "cycle_repeat", "no_count"})
 SILENT = "CONTROL SILENT"
 LAST_PROGRAM = "last_program"  # setting: the path of the program that was loaded last
-BY_SCREEN = "a key or a touch on the screen"  # who holds, for the log
 A = TypeVar("A", bound=Attached)
 
 
@@ -96,10 +99,12 @@ class Desk:
     book: OffsetBook = field(default_factory=lambda: OffsetBook(locked=NONE_KEPT))
     changes: FileChanges = field(default_factory=FileChanges)  # of the machine file, to be accepted
     stirs: Callable[[], None] = lambda: None  # called from any thread when a machine at rest has changed
+    open_stop_line: OpenLine = lambda: None  # to the control, past the screen
     stop_held: Callable[[], bool] = bool  # whether a key that stops is held down
     starts_here: bool = True  # whether the page in front is one on which cycles are started
     field_open: Callable[[], bool] = bool  # whether a field of that page has the letters
     keyboard_away: bool = False  # another window has the keyboard: no key comes here
+    late: LatePresses = field(init=False)
     hands: StationHands = field(init=False)
     log: AlarmLog = field(init=False)
     answers: PromptAnswers = field(init=False)
@@ -115,21 +120,20 @@ class Desk:
     _attached: dict[type[Attached], Attached] = field(default_factory=dict)
     _made_later: dict[str, Callable[[], Attached]] = field(default_factory=dict)  # by names of classes
     _part_told: PartProved | None = None
+    _posted: PostedValues = field(init=False)
 
     def __post_init__(self) -> None:
+        self.late = LatePresses(self.snapshot, self.clock)
+        self.post = self.late.guard(self.post)
+        self._posted = PostedValues(self.clock)
         self.log = AlarmLog(self.time_of_day)
-        self.answers = PromptAnswers(self.snapshot, self._not_kept, self._now)
+        self.answers = PromptAnswers(self.snapshot, lambda: self.not_kept(), lambda: self.hands.clock())  # noqa: PLW0108
         self.rebuilding = ProgramRenewal(self.session, self.warn)
         starting = self.answers.starting
         self.hands = StationHands(self.station, self.clock, self.say, self.clear, starting, self.barred)
+        self.hands.refuse_late(self.late)
         if self.one_hand:
             self.hands.one_palm = ONE_HAND
-
-    def _not_kept(self) -> str:
-        return self.not_kept()
-
-    def _now(self) -> float:
-        return self.hands.clock()
 
     def say(self, text: str) -> None:
         """Show an answer; it remains for 4 s or until the next key."""
@@ -348,7 +352,7 @@ class Desk:
         if name not in SWITCHES:
             raise ValueError(f"there is no switch called {name!r}")
         self.clear()
-        self.post(SetSwitch(name, not getattr(self.snapshot(), name)))
+        self.post(SetSwitch(name, self._posted.toggled(name, getattr(self.snapshot(), name))))
 
     def block_delete(self) -> None:
         """Turn Block Delete over. It is part of the job that was proved, so the program is loaded anew."""
@@ -369,9 +373,9 @@ class Desk:
             self.ask(tr(Message(words, what=waiting)), close)
         return not waiting
 
-    def feed_hold(self, by: str = BY_SCREEN) -> None:
-        """Feed hold, whatever else is going on."""
-        self.post(FeedHold(by))
+    def feed_hold(self, by: str = BY_SCREEN, press: int = 0) -> None:
+        """Feed hold, whatever else is going on; ``press`` is the number of the press of a key."""
+        self.post(FeedHold(by, press))
         self.clear()
 
     def reset(self) -> None:
@@ -438,13 +442,15 @@ class Desk:
             self.post(ConfirmStart(""))
         elif moves:
             self.clear()
-            self.feed_hold("Esc key at the screen")
+            self.feed_hold(BY_ESC)
         else:
             return False
         return True
 
     def answer(self) -> None:
         """Yes to what is asked, as long as the machine is in the state in which it was asked."""
+        if self.late.refuses(Starting.YES):
+            return
         self.answers.expire(self.snapshot())
         self.answers.yes(self.hands.at())
 
@@ -455,10 +461,10 @@ class Desk:
 
     # --- station -------------------------------------------------------------------------------------
 
-    def estop(self) -> None:
+    def estop(self, press: int = 0) -> None:
         """The mushroom of the simulated station. A real one is no key: this holds the feed, and says so."""
         if self.station is None:
-            self.feed_hold()
+            self.feed_hold(press=press)
             self.say(prompt_line.NO_MUSHROOM)
         else:
             self.hands.estop(pressed=True)
@@ -485,12 +491,9 @@ class Desk:
         self.hands.set_spindle_auto(not self.snapshot().spindle_auto)
 
     def override(self, steps: int) -> None:
-        """Change the feed override by so many steps of ten percent.
-
-        Where there is a station its pot is turned, so that knob and value never differ.
-        """
+        """Change the feed override by so many steps of ten percent, at the pot where there is a station."""
         if self.station is not None:
-            self.hands.feed_pot.set(stepped(self.hands.feed_pot.wanted, steps))
+            self.hands.turn_feed_pot(steps)
             return
-        wanted = stepped(self.snapshot().feed_override, steps)
-        self.post(FeedOverride(max(0.0, min(OVERRIDE_MOST, wanted))))
+        shown = self.snapshot().feed_override
+        self.post(FeedOverride(self._posted.changed("feed", shown, lambda now: override_of(now, steps))))

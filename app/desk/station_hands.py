@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Protocol
 
+from app.desk.late_presses import LatePresses, Starting
 from app.desk.status.prompt_line import BOTH_UP, ONE_PALM
 
 # --- palm buttons and pots ----------------------------------------------------------------------------
@@ -95,9 +96,18 @@ class Pot:
     most: float
     wanted: float = 1.0
     value: float = 1.0
+    starting: Starting = Starting.OVERRIDE
+    late: LatePresses | None = None
 
     def set(self, fraction: float) -> None:
-        """Choose where the pot shall stand; it turns there as fast as a knob can."""
+        """Choose where the pot shall stand; it turns there as fast as a knob can.
+
+        From zero on it starts something, which a late press does not.
+        """
+        if self.late is None or self.wanted or fraction <= 0.0 or not self.late.refuses(self.starting):
+            self._choose(fraction)
+
+    def _choose(self, fraction: float) -> None:
         self.wanted = max(0.0, min(self.most, fraction))
 
     def turn(self, seconds: float) -> bool:
@@ -133,11 +143,19 @@ class StationHands:
     palms: Palms = field(default_factory=Palms)
     one_palm: str = ONE_PALM  # what is said when one was pressed alone
     estop_pressed: bool = False
-    spindle_pot: Pot = field(default_factory=lambda: Pot(1.0))
+    late: LatePresses | None = None
+    spindle_pot: Pot = field(default_factory=lambda: Pot(1.0, starting=Starting.SPINDLE))
     feed_pot: Pot = field(default_factory=lambda: Pot(OVERRIDE_MOST))
     latched: str = ""  # the palm that waits for the other one, "left" or "right"
     _latched_at: float = 0.0
     _looked: float | None = None
+
+    def refuse_late(self, late: LatePresses) -> None:
+        """Have late presses start nothing at the station."""
+        self.late = self.spindle_pot.late = self.feed_pot.late = late
+
+    def _refuses(self, starting: Starting) -> bool:
+        return self.late is not None and self.late.refuses(starting)
 
     def at(self) -> float:
         """When the press that is handled now happened, by this clock."""
@@ -152,7 +170,9 @@ class StationHands:
         station = self.station
         if station is None:
             return
-        if down and self.barred():
+        if down and self._refuses(Starting.CYCLE):
+            self.palms.dead = bool(self.palms.down)
+        elif down and self.barred():
             self.palms.dead = bool(self.palms.down)
             self.say(self.barred())
         elif down and side not in self.palms.down:
@@ -168,6 +188,8 @@ class StationHands:
         With that both go down at once, as two hands press them; the finger that comes up lets both go.
         """
         first, self.latched = self.latch_now(), ""
+        if self._refuses(Starting.CYCLE):
+            return
         if first in {"", side}:
             if why := self.barred():
                 self.say(why)
@@ -212,6 +234,8 @@ class StationHands:
 
     def estop(self, pressed: bool) -> None:
         """Hit the mushroom, or twist it out."""
+        if not pressed and self._refuses(Starting.RELEASE):
+            return
         if self.station and pressed is not self.estop_pressed:
             self.estop_pressed = pressed
             self.clear()
@@ -219,12 +243,16 @@ class StationHands:
 
     def set_spindle_auto(self, auto: bool) -> None:
         """Turn the spindle switch to AUTO, or to OFF."""
-        if self.station:
+        if self.station and not (auto and self._refuses(Starting.SPINDLE)):
             self.station.set_spindle_auto(auto)
 
     def turn_spindle_pot(self, steps: int) -> None:
         """The spindle pot by so many steps of ten percent."""
         self.spindle_pot.set(stepped(self.spindle_pot.wanted, steps))
+
+    def turn_feed_pot(self, steps: int) -> None:
+        """The feed pot by so many steps of ten percent, so that knob and override never differ."""
+        self.feed_pot.set(stepped(self.feed_pot.wanted, steps))
 
     def turn_knobs(self) -> None:
         """Once a frame: the pots turn on towards where they shall stand."""
@@ -241,3 +269,8 @@ class StationHands:
 def stepped(fraction: float, steps: int) -> float:
     """An override so many steps further."""
     return round(fraction / OVERRIDE_STEP + steps) * OVERRIDE_STEP
+
+
+def override_of(fraction: float, steps: int) -> float:
+    """Return a feed override so many steps further, within its range."""
+    return max(0.0, min(OVERRIDE_MOST, stepped(fraction, steps)))

@@ -9,7 +9,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from typing import ClassVar
 
+from app.desk.late_presses import Starting
 from app.desk.status.formats import MM_PER_INCH
 from app.desk.translation import tr
 from app.offsets.offset_values import Mode
@@ -186,6 +188,7 @@ class Held:
 class HeldJog:
     """``lease`` seconds; ``barred`` tells why nothing is jogged now; ``clock`` is monotonic."""
 
+    starting: ClassVar[Starting] = Starting.JOG
     speeds: JogSpeeds
     lease: float
     post: Callable[[Command], None]
@@ -195,6 +198,7 @@ class HeldJog:
     barred: Callable[[], str]
     mode: Mode = field(default_factory=Mode)
     along: Callable[[str], Direction | None] = field(default=lambda _axis: None)  # of a tilted plane (3D-ROT)
+    refuses: Callable[[Starting], bool] = field(default=lambda _starting: False)  # to a late press
     held: Held | None = None
     rapid_armed: bool = False  # by the key RAPID on the screen: for the next jog only
     button: str = ""  # the input that the last press came from, where a button beside the slides did
@@ -208,6 +212,8 @@ class HeldJog:
         self.down.add(source)
         if others or self.held is not None:
             self.stop(tr("TWO KEYS PRESSED, JOG STOPPED. RELEASE BOTH, THEN PRESS ONE"))
+        elif self.refuses(self.starting):
+            pass
         elif why := self.barred():
             self.say(why)
         else:

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
+from app.desk.late_presses import Starting
 from app.desk.pages.sheet import following
 from app.desk.translation import tr
 from app.jog.held_jog import BEGINS, CONTINUOUS, RENEWED, HeldJog, JogSpeeds
@@ -92,6 +93,8 @@ class JogHandwheel:
             self.hold.say(tr("THIS MACHINE HAS NO HANDWHEEL"))
         elif self.switched:
             self.hold.say(tr("SELECT THE HANDWHEEL AXIS WITH THE OPERATOR PANEL SWITCH"))
+        elif axis and self.hold.refuses(Starting.HANDWHEEL):
+            pass
         elif axis and (why := self.barred()):
             self.hold.say(why)
         else:

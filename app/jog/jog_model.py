@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from app.desk.desk import Desk
+from app.desk.late_presses import Starting
 from app.desk.status import prompt_line
 from app.desk.status.prompt_line import STOP_HELD
 from app.desk.translation import tr
@@ -66,6 +67,7 @@ class JogModel:
             desk.clear,
             self._now,
             self.barred,
+            refuses=desk.late.refuses,
         )
         moved = {each.axis for each in self.directions}
         names = tuple(axis.name for axis in self.machine.axes if axis.name in moved)
@@ -245,8 +247,9 @@ class JogModel:
 
     def turn_wheel(self, clicks: int) -> None:
         """The wheel on the screen is turned."""
-        if self.wheel_drawn and self.desk.hands.station is not None:
-            self.desk.hands.station.turn_handwheel(clicks * self.wheel.counts)
+        station = self.desk.hands.station
+        if self.wheel_drawn and station is not None and not self.desk.late.refuses(Starting.HANDWHEEL):
+            station.turn_handwheel(clicks * self.wheel.counts)
 
     def home_key(self) -> None:
         """Home asks; home again homes all in their order."""

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from enum import StrEnum
 
 from app.desk.desk import Desk
+from app.desk.late_presses import Starting
 from app.desk.pages.sheet import Key, Row, Sheet, following
 from app.desk.status import formats
 from app.desk.status.machine_status import Tone
@@ -143,6 +144,8 @@ class InputsOutputs(SpecialFunction):
             return
         on = name not in self.desk.snapshot().inputs
         assert self.desk.set_input is not None
+        if self.desk.late.refuses(Starting.INPUT):
+            return
         self.desk.set_input(name, on)
         self.desk.access.persistence.note_change(
             Message("simulated input {name}: {ending}", name=name, ending="on" if on else "off")

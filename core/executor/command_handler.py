@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable
 from typing import Any
 
@@ -15,6 +16,7 @@ from core.executor.snapshot import CYCLE, LINES, Starts, State
 from core.message import Message
 
 LAMP_TEST = 2.0  # s
+_PRESSES = 64  # remembered
 _SWITCHES = ("single_block", "optional_stop", "cycle_repeat", "no_count")
 _AT_REST = frozenset({State.IDLE, State.DISABLED})
 _UNDER_WAY = "a program is running; wait until it ends or press Reset before loading another program"
@@ -27,9 +29,10 @@ class CommandHandler:
         self._context = context
         self._control = control
         self._station = station
+        self._presses: deque[int] = deque(maxlen=_PRESSES)  # of stop keys that were obeyed
         self._methods: dict[type[commands.Command], Callable[[Any], None]] = {
             commands.CycleStart: self._start,
-            commands.FeedHold: lambda command: control.feed_hold("", command.by),
+            commands.FeedHold: self._hold,
             commands.Reset: lambda _: control.reset(),
             commands.EnableDrives: self._enable,
             commands.SetSwitch: self._switch,
@@ -74,6 +77,13 @@ class CommandHandler:
             self._control.refuse("press both palm buttons")
         elif self._station.may_start(self._context.now):
             self._control.start()
+
+    def _hold(self, command: commands.FeedHold) -> None:
+        """A press that arrives again, later and from the screen, holds no cycle that was started since."""
+        if command.press not in self._presses:
+            self._control.feed_hold("", command.by)
+        if command.press:
+            self._presses.append(command.press)
 
     def _enable(self, _: commands.EnableDrives) -> None:
         control = self._control

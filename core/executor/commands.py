@@ -104,9 +104,13 @@ class CycleStart(Command):
 
 @dataclass(frozen=True, slots=True)
 class FeedHold(Command):
-    """Come to rest on the path within commit + v/a. ``by`` tells the log who or what asked for it."""
+    """Come to rest on the path within commit + v/a. ``by`` tells the log who or what asked for it.
+
+    ``press`` numbers the press of the key, where it is known. One press that arrives twice holds once.
+    """
 
     by: str = field(default="", compare=False)
+    press: int = field(default=0, compare=False)
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,7 @@ case $PYTHON_ENV in -*) PYTHON_ENV=./$PYTHON_ENV ;; esac  # a folder, never an o
 # Qt needs these even without a window (offscreen) …
 QT_LIBRARIES="libgl1 libegl1 libglib2.0-0 libxkbcommon0 libdbus-1-3 libfontconfig1"
 # … and these for a window on an X11 display.
-WINDOW_LIBRARIES="libxcb-cursor0 libxkbcommon-x11-0 libxcb-icccm4 libxcb-keysyms1 libxcb-shape0"
+WINDOW_LIBRARIES="libxcb-cursor0 libxkbcommon-x11-0 libxcb-icccm4 libxcb-keysyms1 libxcb-shape0 libxi6"
 # … and these for one on a Wayland display.
 WAYLAND_LIBRARIES="libwayland-client0 libwayland-cursor0 libwayland-egl1"
 # What the stories of tests/stories need besides: a server without a screen, a window manager, hands.

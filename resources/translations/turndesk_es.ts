@@ -5645,11 +5645,6 @@
     </message>
     <message>
       <location filename="app/desk/desk.py" />
-      <source>Esc key at the screen</source>
-      <translation>tecla Esc en la pantalla</translation>
-    </message>
-    <message>
-      <location filename="app/desk/desk.py" />
       <source>F1, THEN U: RELEASE E-STOP</source>
       <translation>F1, LUEGO U: SOLTAR EL PARO DE EMERGENCIA</translation>
     </message>
@@ -5734,9 +5729,89 @@
       <translation>Y: SÓLO EN LA PÁGINA AUTOMÁTICO, CON SERVOS ENCENDIDOS</translation>
     </message>
     <message>
-      <location filename="app/desk/desk.py" />
-      <source>a key or a touch on the screen</source>
-      <translation>una tecla o un toque en la pantalla</translation>
+      <location filename="app/desk/late_presses.py" />
+      <source>ALL KEYS AFTER YES</source>
+      <translation>TODAS LAS TECLAS TRAS EL SÍ</translation>
+    </message>
+    <message>
+      <location filename="app/desk/late_presses.py" />
+      <source>CYCLE START</source>
+      <translation>ARRANQUE DE CICLO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/late_presses.py" />
+      <source>DRIVE TEST</source>
+      <translation>PRUEBA DE ACCIONAMIENTO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/late_presses.py" />
+      <source>DRIVES ON</source>
+      <translation>SERVOS ACTIVOS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/late_presses.py" />
+      <source>E-STOP RELEASE</source>
+      <translation>DESBLOQUEO DEL PARO DE EMERGENCIA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/late_presses.py" />
+      <source>FEED RATE</source>
+      <translation>AVANCE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/late_presses.py" />
+      <source>HANDWHEEL</source>
+      <translation>VOLANTE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/late_presses.py" />
+      <source>HOME</source>
+      <translation>REFERENCIA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/late_presses.py" />
+      <source>JOG</source>
+      <translation>MANUAL</translation>
+    </message>
+    <message>
+      <location filename="app/desk/late_presses.py" />
+      <source>OUTPUT</source>
+      <translation>SALIDA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/late_presses.py" />
+      <source>RESET</source>
+      <translation>RESET</translation>
+    </message>
+    <message>
+      <location filename="app/desk/late_presses.py" />
+      <source>SIMULATED INPUT</source>
+      <translation>ENTRADA SIMULADA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/late_presses.py" />
+      <source>SPINDLE</source>
+      <translation>HUSILLO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/late_presses.py" />
+      <source>START AT LINE 1</source>
+      <translation>INICIO EN LÍNEA 1</translation>
+    </message>
+    <message>
+      <location filename="app/desk/late_presses.py" />
+      <source>TOUCH</source>
+      <translation>PALPAR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/late_presses.py" />
+      <source>TOUCH-OFF</source>
+      <translation>PALPADO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/late_presses.py" />
+      <source>YES</source>
+      <translation>SÍ</translation>
     </message>
     <message>
       <location filename="app/desk/pages/code_help.py" />
@@ -6137,11 +6212,6 @@
       <location filename="app/desk/status/interrupted_notice.py" />
       <source>POSITIONS</source>
       <translation>POSICIONES</translation>
-    </message>
-    <message>
-      <location filename="app/desk/status/interrupted_notice.py" />
-      <source>SPINDLE</source>
-      <translation>HUSILLO</translation>
     </message>
     <message>
       <location filename="app/desk/status/interrupted_notice.py" />
@@ -6815,11 +6885,6 @@
     </message>
     <message>
       <location filename="app/desk/status/readouts.py" />
-      <source>DRIVES ON</source>
-      <translation>SERVOS ACTIVOS</translation>
-    </message>
-    <message>
-      <location filename="app/desk/status/readouts.py" />
       <source>HEAD ROTATED</source>
       <translation>CABEZAL GIRADO</translation>
     </message>
@@ -6962,6 +7027,16 @@
       <location filename="app/desk/status/standing_prompt.py" />
       <source>CHECKING THE FIRST MOVE FOR COLLISION WITH THE PART</source>
       <translation>COMPROBANDO SI EL PRIMER MOVIMIENTO CHOCA CON LA PIEZA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/stop_keys/stop_records.py" />
+      <source>Esc key at the screen</source>
+      <translation>tecla Esc en la pantalla</translation>
+    </message>
+    <message>
+      <location filename="app/desk/stop_keys/stop_records.py" />
+      <source>a key or a touch on the screen</source>
+      <translation>una tecla o un toque en la pantalla</translation>
     </message>
     <message>
       <location filename="app/desk/stored_shapes.py" />
@@ -7641,7 +7716,7 @@
     <message>
       <location filename="app/extras/access/extra.py" />
       <source>manage users, access levels and PINs</source>
-      <translation type="unfinished" />
+      <translation>gestionar usuarios, niveles de acceso y PIN</translation>
     </message>
     <message>
       <location filename="app/extras/access/sign_in.py" />
@@ -7937,11 +8012,6 @@
       <location filename="app/extras/analyses/analyses_view.py" />
       <source>ARROWS: SELECT ROW   Z: MAGNIFY   SAME F-KEY AGAIN: UPDATE</source>
       <translation>FLECHAS: ELEGIR FILA   Z: AMPLIAR   MISMA TECLA F: ACTUALIZAR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses_view.py" />
-      <source>DRIVE TEST</source>
-      <translation>PRUEBA DE ACCIONAMIENTO</translation>
     </message>
     <message>
       <location filename="app/extras/analyses/analyses_view.py" />
@@ -8541,7 +8611,7 @@
     <message>
       <location filename="app/extras/drawings/extra.py" />
       <source>make a turning program from a drawing (DXF, SVG)</source>
-      <translation type="unfinished" />
+      <translation>crear un programa de torneado a partir de un dibujo (DXF, SVG)</translation>
     </message>
     <message>
       <location filename="app/extras/jobs/extra.py" />
@@ -8556,7 +8626,7 @@
     <message>
       <location filename="app/extras/jobs/extra.py" />
       <source>manage the queue of programs to run next, with their part counts</source>
-      <translation type="unfinished" />
+      <translation>gestionar la cola de programas que siguen, con su número de piezas</translation>
     </message>
     <message>
       <location filename="app/extras/jobs/extra.py" />
@@ -9131,12 +9201,12 @@
     <message>
       <location filename="app/extras/quality/extra.py" />
       <source>print a shift report: parts, times, stops, alarms, offsets, readings</source>
-      <translation type="unfinished" />
+      <translation>imprimir un informe de turno: piezas, tiempos, paradas, alarmas, correctores, medidas</translation>
     </message>
     <message>
       <location filename="app/extras/quality/extra.py" />
       <source>show the stored part counts, cycle times, readings and offset changes</source>
-      <translation type="unfinished" />
+      <translation>mostrar los números de piezas, tiempos de ciclo, medidas y cambios de correctores guardados</translation>
     </message>
     <message>
       <location filename="app/extras/quality/features_section.py" />
@@ -9846,7 +9916,7 @@
     <message>
       <location filename="app/extras/shapes/extra.py" />
       <source>make a program from the shapes that a file defines</source>
-      <translation type="unfinished" />
+      <translation>crear un programa a partir de las formas que define un archivo</translation>
     </message>
     <message>
       <location filename="app/extras/shapes/shape_form.py" />
@@ -9986,7 +10056,7 @@
     <message>
       <location filename="app/extras/sharing/extra.py" />
       <source>share programs with other controls: publish, take, compare</source>
-      <translation type="unfinished" />
+      <translation>compartir programas con otros controles: publicar, tomar, comparar</translation>
     </message>
     <message>
       <location filename="app/extras/sharing/sharing.py" />
@@ -10510,18 +10580,8 @@
     </message>
     <message>
       <location filename="app/jog/jog_pad_view.py" />
-      <source>HANDWHEEL</source>
-      <translation>VOLANTE</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_pad_view.py" />
       <source>HANDWHEEL {axis}</source>
       <translation>VOLANTE {axis}</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_pad_view.py" />
-      <source>HOME</source>
-      <translation>REFERENCIA</translation>
     </message>
     <message>
       <location filename="app/jog/jog_pad_view.py" />
@@ -11110,11 +11170,6 @@
     </message>
     <message>
       <location filename="app/mdi/mdi_view.py" />
-      <source>RESET</source>
-      <translation>RESET</translation>
-    </message>
-    <message>
-      <location filename="app/mdi/mdi_view.py" />
       <source>SCOPE</source>
       <translation>OSCILO</translation>
     </message>
@@ -11177,11 +11232,6 @@
       <location filename="app/offsets/cell_table_view.py" />
       <source>SET POS.</source>
       <translation>FIJAR</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/cell_table_view.py" />
-      <source>TOUCH</source>
-      <translation>PALPAR</translation>
     </message>
     <message>
       <location filename="app/offsets/mill_tools.py" />
@@ -11667,11 +11717,6 @@
       <location filename="app/offsets/offset_values.py" />
       <source>WIDTH</source>
       <translation>ANCHO</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_values.py" />
-      <source>YES</source>
-      <translation>SÍ</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_values.py" />
@@ -13730,11 +13775,6 @@
     </message>
     <message>
       <location filename="app/screen/page_table.py" />
-      <source>JOG</source>
-      <translation>MANUAL</translation>
-    </message>
-    <message>
-      <location filename="app/screen/page_table.py" />
       <source>L, R, R2, oversizes, teeth, tool life; touch off the tool length</source>
       <translation>L, R, R2, sobremedidas, dientes, vida; palpar la longitud de la herramienta</translation>
     </message>
@@ -13910,8 +13950,8 @@
     </message>
     <message>
       <location filename="app/screen/window/main_window.py" />
-      <source>SCREEN FROZE {seconds} S. KEYS IGNORED. WAIT 1 S, PRESS AGAIN</source>
-      <translation>PANTALLA CONGELADA {seconds} S. TECLAS IGNORADAS. ESPERE 1 S Y PULSE DE NUEVO</translation>
+      <source>SCREEN FROZE {seconds} S. NOT DONE: {what}. PRESS AGAIN</source>
+      <translation>PANTALLA PARADA {seconds} S. SIN HACER: {what}. PULSE OTRA VEZ</translation>
     </message>
     <message>
       <location filename="app/screen/window/main_window.py" />
@@ -13975,11 +14015,6 @@
     </message>
     <message>
       <location filename="app/screen/window/station_dock.py" />
-      <source>CYCLE START</source>
-      <translation>ARRANQUE DE CICLO</translation>
-    </message>
-    <message>
-      <location filename="app/screen/window/station_dock.py" />
       <source>CYCLE START: BOTH BUTTONS</source>
       <translation>ARRANQUE CICLO: AMBOS</translation>
     </message>
@@ -13987,11 +14022,6 @@
       <location filename="app/screen/window/station_dock.py" />
       <source>CYCLE START: TAP F11, F12</source>
       <translation>ARRANQUE: UNO Y OTRO</translation>
-    </message>
-    <message>
-      <location filename="app/screen/window/station_dock.py" />
-      <source>FEED RATE</source>
-      <translation>AVANCE</translation>
     </message>
     <message>
       <location filename="app/screen/window/station_dock.py" />

@@ -139,7 +139,8 @@ def has_been_read(desk: Desk) -> None:
 
 
 def posted(desk: Desk) -> list[object]:
-    return list(desk.post.__self__.posted)  # type: ignore[attr-defined]
+    assert isinstance(desk.station, FakeMachine)
+    return list(desk.station.posted)
 
 
 def test_y_answers_for_the_job_that_is_shown(desk: Desk) -> None:

@@ -43,6 +43,31 @@ def test_a_hold_says_who_pressed_it() -> None:
     assert rig.shot.stop is None
 
 
+def test_a_press_that_arrives_again_holds_no_cycle_that_was_started_since() -> None:
+    rig = cutting()
+    rig.post(FeedHold(press=7))
+    rig.until(State.HOLD)
+    rig.post(CycleStart())
+    rig.until(State.RUN, State.WAIT)
+    rig.post(FeedHold(press=7))
+    rig.run(0.3)
+    assert rig.shot.state in {State.RUN, State.WAIT}
+    assert rig.numbers("stop") == [702]
+    rig.post(FeedHold(press=8))
+    rig.until(State.HOLD)
+
+
+def test_presses_without_a_number_all_hold() -> None:
+    rig = cutting()
+    for _ in range(2):
+        rig.post(FeedHold())
+        rig.until(State.HOLD)
+        rig.run(0.5)  # longer than a bounce
+        rig.post(CycleStart())
+        rig.until(State.RUN, State.WAIT)
+    assert rig.numbers("stop") == [702, 702]
+
+
 def test_a_hold_by_the_station_says_so() -> None:
     rig = cutting()
     rig.sim.machine.press_hold()

@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QApplication
 from app.screen import page_table
 from app.screen.window.keyboard import FRAMES, STALL, EventTimes
 from app.screen.window.main_window import MainWindow
-from core.executor.commands import CycleStart, FeedHold
+from core.executor.commands import FeedHold
 from core.executor.snapshot import State
 from tests.screen.hands import Hands, Key
 from tests.screen.yes import read
@@ -255,18 +255,6 @@ def stopped_clock(hands: Hands) -> int:
     return round(1000 * Time.now)
 
 
-@pytest.mark.usefixtures("stalls")
-def test_palms_late_by_their_stamps_start_nothing(watched: Hands) -> None:
-    watched.load("pin")
-    now = stopped_clock(watched)
-    send(watched, Key.Key_F5, at=now)  # the stamps are of our own clock
-    send(watched, Key.Key_F11, at=now - 2000)
-    send(watched, Key.Key_F12, at=now - 2000)
-    assert CycleStart() not in watched.machine.posted
-    assert not watched.desk.hands.palms.down
-    assert shows(watched.desk.answers.answer, "screen.screen-stood-still")
-
-
 def test_two_palms_by_the_times_of_their_events(watched: Hands) -> None:
     watched.load("pin")
     now = stopped_clock(watched)
@@ -285,73 +273,6 @@ def test_the_layer_sees_every_window_again_when_it_is_shown(watched: Hands) -> N
     send(watched, Key.Key_Pause)
     assert watched.machine.posted[-1] == FeedHold()
     assert watched.machine.posted.count(FeedHold()) == 1
-
-
-@pytest.mark.usefixtures("stalls")
-def test_after_a_dropped_key_the_rest_of_the_burst_is_dropped_too(watched: Hands) -> None:
-    """F2 and a name are typed in one go; F2 is lost in a stall, and no letter becomes a command."""
-    time = Time()
-    watched.window.times.clock = time
-    watched.desk.hands.clock = time
-    send(watched, Key.Key_F5, at=100_000)  # the stamps are of our own clock
-    time.now += 2.0
-    send(watched, Key.Key_F2, at=101_800)
-    assert not watched.page.files.isVisible()
-    for letter in "spoc":
-        for _ in range(FRAMES):
-            time.now += 0.1
-            watched.window.times.frame()
-        time.now += 0.05
-        send(watched, Key(ord(letter.upper())), text=letter, at=round(1000 * time.now))
-    assert not watched.machine.now.single_block
-    assert not watched.machine.now.cycle_repeat
-    assert not watched.machine.now.no_count
-    for _ in range(11):
-        time.now += 0.1
-        watched.window.times.frame()
-    send(watched, Key.Key_S, up=True)
-    send(watched, Key.Key_S, text="s", at=round(1000 * time.now))
-    assert watched.machine.now.single_block
-
-
-@pytest.mark.usefixtures("stalls")
-def test_a_dropped_burst_is_not_written_into_a_field_but_the_stop_keys_act(watched: Hands) -> None:
-    time = Time()
-    watched.window.times.clock = time
-    watched.desk.hands.clock = time
-    send(watched, Key.Key_F5, at=100_000)
-    watched.frame.go(page_table.PROGRAMS)
-    watched.window.refresh()
-    time.now += 2.0
-    send(watched, Key.Key_F1, at=101_800)
-    time.now += 0.1
-    send(watched, Key.Key_A, text="a", at=102_100)
-    assert watched.frame.page.NAME == page_table.PROGRAMS
-    assert watched.frame.page.model.find.text == ""  # type: ignore[attr-defined]
-    send(watched, Key.Key_Pause, at=102_150)
-    assert watched.machine.posted[-1] == FeedHold()
-    send(watched, Key.Key_ScrollLock, at=102_160)
-    assert watched.desk.hands.estop_pressed
-
-
-@pytest.mark.usefixtures("stalls")
-def test_the_notice_of_dropped_input_stays_four_seconds(watched: Hands) -> None:
-    time = Time()
-    watched.window.times.clock = time
-    watched.desk.hands.clock = time
-    send(watched, Key.Key_F5, at=100_000)
-    send(watched, Key.Key_F2, at=99_000)
-    for passed in (0.0, 2.0, 1.9):
-        time.now += passed
-        watched.desk.say("THE ANSWER TO ANOTHER KEY")
-        watched.window.refresh()
-        assert shows(watched.frame.prompt.answer, "screen.screen-stood-still")
-    watched.desk.ask("A QUESTION IS NEVER HIDDEN", lambda: None)
-    watched.window.refresh()
-    assert watched.frame.prompt.question == "A QUESTION IS NEVER HIDDEN"
-    time.now += 0.2
-    watched.window.refresh()
-    assert watched.frame.prompt.answer == ""
 
 
 @pytest.mark.parametrize(

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from app.desk.late_presses import Starting
 from app.desk.status.prompt_line import CHOOSE_FILE, GIVE_UP, Sort
 from app.screen.page_table import menu_of
 from core.executor.commands import Reset
@@ -36,7 +37,7 @@ def test_n_is_no_and_the_question_is_gone(hands: Hands) -> None:
 
 
 def test_dropped_input_is_reported_whatever_is_pressed_next(hands: Hands) -> None:
-    hands.window.forgotten(0.6)
+    hands.window.drop(Starting.CYCLE)
     hands.key(Key.Key_S)
     hands.key(Key.Key_O)
     assert hands.frame.prompt.answer

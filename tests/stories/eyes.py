@@ -270,7 +270,7 @@ _PROMPTS: list[str] = []  # what the prompt line has shown, in its order
 _SLOW_AT: list[int | None] = [None]  # line of the program at which machine time slows down again
 _RELEASED = [0]  # keys that have come up
 _CLICKED = [0]  # buttons of the mouse that have come up
-_FORGOTTEN = [0]  # presses that the screen has said to have forgotten
+_FORGOTTEN = [0]  # presses that the screen has said to have dropped
 
 
 def _machine(desk: Desk) -> Told:
@@ -318,7 +318,7 @@ def main() -> int:
         made(window, *what)
         _WINDOW.append(window)
 
-    forgotten, releasing = MainWindow.forgotten, Keyboard._released
+    dropped, releasing = MainWindow._show_dropped, Keyboard._released
 
     def released(keyboard: Keyboard, event: QKeyEvent, code: int) -> bool:
         _RELEASED[0] += 1
@@ -326,12 +326,12 @@ def main() -> int:
 
     setattr(Keyboard, "_released", released)  # noqa: B010
 
-    def forgetting(window: MainWindow, seconds: float) -> None:
+    def dropping(window: MainWindow, names: tuple[str, ...]) -> None:
         _FORGOTTEN[0] += 1
-        forgotten(window, seconds)
+        dropped(window, names)
 
     setattr(MainWindow, "__init__", making)  # noqa: B010
-    setattr(MainWindow, "forgotten", forgetting)  # noqa: B010
+    setattr(MainWindow, "_show_dropped", dropping)  # noqa: B010
     for each in (eyes.watch, eyes.listen):
         threading.Thread(target=each, daemon=True).start()
     status = console()

@@ -16,8 +16,8 @@ TOOLS = {1: (0.0, 0.0)}
 Stall = Callable[[Operator], "Iterator[None]"]
 
 
-def ready(story: Story) -> Operator:
-    operator = story.begins(PART, tools=TOOLS)
+def ready(story: Story, *, in_real_time: bool = False) -> Operator:
+    operator = story.begins(PART, tools=TOOLS, in_real_time=in_real_time)
     operator.drives_on()
     operator.until(lambda: text("screen.to-start") in operator.prompt, "ready to start")
     return operator
@@ -163,13 +163,31 @@ def test_the_mouse_stops_however_late(story: Story) -> None:
     operator.reaches("FEED HOLD")
 
 
-def test_text_behind_a_stall_is_text(story: Story) -> None:
+def test_text_behind_a_stall_is_text_and_what_follows_is_done(story: Story) -> None:
     operator = ready(story)
-    operator.key("F2")
-    operator.sees(text("screen.file-to-be-processed"))
     with frozen(operator):
+        operator.key("F2")
         operator.writes("bush")
-        operator.key("Return")
     operator.until(lambda: operator.screen["field"] == "bush", "what was typed")
     operator.sees(text("screen.file-to-be-processed"))
-    assert operator.screen["texts"]
+    with frozen(operator):
+        operator.key("BackSpace")
+        operator.writes("hing")
+        operator.key("Escape")
+        operator.key("s")
+    operator.until(lambda: bool(operator.machine["single_block"]), "a key after the field was left")
+    assert operator.screen["field"] == ""
+
+
+def test_an_answer_behind_a_stall_is_none_and_what_follows_it_is_dropped(story: Story) -> None:
+    operator = ready(story)
+    operator.key("Scroll_Lock")
+    operator.reaches("E-STOP")
+    operator.key("u")
+    operator.sees(text("screen.twist-e-stop-out"))
+    with frozen(operator):
+        operator.key("y")
+        operator.key("s")
+    operator.sees(fragment("screen.screen-stood-still"))
+    operator.keeps(lambda: operator.state == "E-STOP", 1.0, "the E-stop")
+    assert not operator.machine["single_block"]

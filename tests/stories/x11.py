@@ -34,7 +34,7 @@ _HEADER = 100  # bytes of an XWD header without the window's name
 def missing() -> str:
     """Why there can be no X server here; empty where there can."""
     gone = [name for name in NEEDED if shutil.which(name) is None]
-    gone += [f"lib{name}" for name in ("X11", "Xtst") if ctypes.util.find_library(name) is None]
+    gone += [f"lib{name}" for name in ("X11", "Xtst", "Xi") if ctypes.util.find_library(name) is None]
     return f"not installed: {', '.join(gone)}" if gone else ""
 
 

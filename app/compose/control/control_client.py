@@ -12,6 +12,7 @@ from contextlib import suppress
 from dataclasses import replace
 from multiprocessing.connection import Client, Connection
 from pathlib import Path
+from socket import AF_UNIX, SOCK_SEQPACKET, socket, socketpair
 
 from app.compose.control.control_events import ControlEvents
 from app.compose.control.control_messages import (
@@ -28,11 +29,13 @@ from app.compose.control.control_messages import (
     Post,
     SetInput,
     Shown,
+    StopLine,
     ThreadEnded,
     is_own_user,
 )
 from app.compose.control.control_start import StartedControl
 from app.compose.control.shared_memory import SharedMemory
+from app.compose.control.stop_line import send_line
 from app.desk.data_folder import RECORDS
 from core.executor.commands import Command, GiveProof, LoadJob
 from core.executor.raised_alarm import make_alarm
@@ -93,6 +96,12 @@ class ControlClient:
         """Use the simulated operator station."""
         self._outbox.put(Hand(name, values, self.clock.now()))
 
+    def open_stop_line(self) -> socket | None:
+        """Return a line on which stop keys reach the control past this process."""
+        ours, theirs = socketpair(AF_UNIX, SOCK_SEQPACKET)
+        self._outbox.put(theirs)
+        return ours
+
     def set_input(self, name: str, on: bool) -> None:
         """Switch an input of a simulated machine."""
         self._outbox.put(SetInput(name, on))
@@ -139,9 +148,16 @@ class ControlClient:
         with suppress(OSError):
             while (message := self._outbox.get()) is not None:
                 try:
-                    self._connection.send(message)
+                    self._send_one(message)
                 except (pickle.PicklingError, TypeError, AttributeError):
                     _log.exception("this message cannot be sent to the control: %r", message)
+
+    def _send_one(self, message: object) -> None:
+        if isinstance(message, socket):
+            self._connection.send(StopLine())
+            send_line(self._connection, message)
+        else:
+            self._connection.send(message)
 
     def _listen(self) -> None:
         assert self._events is not None

@@ -18,7 +18,7 @@ from core.executor.snapshot import Event, InterruptedJob, Snapshot
 from core.machine.machine_model import Machine
 from core.records.record_ring import Recorded
 
-VERSION = 1  # of these messages
+VERSION = 2  # of these messages
 STALE = 0.5  # s after which a press that moves something does not count any more
 _CREDENTIALS = struct.Struct("3i")  # process, user, group
 
@@ -50,6 +50,10 @@ class SetInput(NamedTuple):
 
 class Alive(NamedTuple):
     """The screen has handled its keys and looked at the machine."""
+
+
+class StopLine(NamedTuple):
+    """After it comes the file descriptor of a socket with the records of stop keys."""
 
 
 class Heard(NamedTuple):

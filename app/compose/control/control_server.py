@@ -32,11 +32,14 @@ from app.compose.control.control_messages import (
     Post,
     SetInput,
     Shown,
+    StopLine,
     ThreadEnded,
 )
 from app.compose.control.left_note import remove_note, save_note
 from app.compose.control.rights import Right
 from app.compose.control.shared_memory import SharedMemory
+from app.compose.control.stop_line import obey_line
+from app.desk.stop_keys.stop_records import Stop, StopKind
 from core.executor.commands import BarNextPart, Command, FeedHold, JogStop, LoadJob, Prepare, Renew
 from core.executor.executor import STARTS, Executor
 from core.executor.raised_alarm import ReportedAttempt
@@ -272,6 +275,8 @@ class ControlServer:
                 self._use_hand(message)
             case SetInput(name, on):
                 self._set_input(name, on)
+            case StopLine() if self._screen is not None:
+                obey_line(self._screen, self._stop)
             case Heard(number):
                 self.outbox.heard(number)
             case Alive():
@@ -280,6 +285,15 @@ class ControlServer:
                 self.closing.set()
             case _:
                 _log.error("the control does not know this message of the screen: %r", message)
+
+    def _stop(self, stop: Stop) -> None:
+        """Obey a stop key. Called from the thread of its line."""
+        self._stopped_at = self._clock.now()
+        panel = self._connected.panel
+        if stop.kind is StopKind.ESTOP and panel is not None:
+            panel.press_estop()
+        else:
+            self.executor.post(FeedHold(stop.kind.by, stop.press))
 
     def _carry_out(self) -> None:
         """Post commands in their order, on a thread of their own: to read a program takes its time.

@@ -9,8 +9,10 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from typing import ClassVar
 
 from app.desk.desk import Desk
+from app.desk.late_presses import Starting
 from app.desk.pages.sheet import Row, Sheet, following
 from app.desk.status import formats
 from app.desk.status.formats import MM_PER_INCH
@@ -55,6 +57,7 @@ Asked = tuple[str, int]  # axis and sign
 class HeldTest(HeldJog):
     """As a held jog; ``path`` is what a direction asks for now, ``asked`` the one whose travel is shown."""
 
+    starting: ClassVar[Starting] = Starting.DRIVE_TEST
     path: Callable[[str, int], DriveTestPath] = field(kw_only=True)
     asked: Asked | None = None
 
@@ -106,6 +109,7 @@ class DriveTests:
             desk.clear,
             self._now,
             self.barred,
+            refuses=desk.late.refuses,
             path=self.path,
         )
 

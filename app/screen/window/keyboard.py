@@ -3,13 +3,13 @@
 Two keys act everywhere, with any modifier, lock and layout: Pause holds the feed, Scroll Lock is the E-stop.
 H, Space and E do the same where no caret is visible. Esc holds while something moves, unless the page uses
 Esc for something else. Of all other keys this knows which are really down: a repeat is no press, and a key
-held while the keyboard was elsewhere is dead until it is let go. A key that waited behind a stall of the
-screen is text, or it is dropped; the rest of a burst of which a key was dropped is dropped too.
+held while the keyboard was elsewhere is dead until it is let go. A press that waited behind a stall of the
+screen is carried out in its order, and starts nothing (``app.desk.late_presses``). After an answer that was
+dropped for that, the rest of the burst is dropped too: it relied on the answer.
 """
 
 from __future__ import annotations
 
-import ctypes
 import time
 from collections.abc import Callable
 from functools import partial
@@ -23,15 +23,19 @@ from PySide6.QtGui import (
     QInputDevice,
     QInputEvent,
     QKeyEvent,
-    QNativeInterface,
     QTouchEvent,
     QWindow,
 )
 from PySide6.QtWidgets import QApplication, QLineEdit, QPlainTextEdit, QWidget
 
+from app.desk.late_presses import Starting
+from app.desk.stop_keys.stop_records import BY_ESC, Focus, StopKind, press_number
+from app.desk.stop_keys.watched_keys import OpenLine, WatchedKeys
+from app.screen.window.x_server import XServer, x_server
+
 STALL = 0.3  # s without a frame: whatever waited behind it starts nothing
 FRAMES = 2  # that must have been shown since, before anything starts
-PAUSE = 1.0  # s without a press that end a burst of which a press was dropped
+PAUSE = 1.0  # s without a press that end a burst of which an answer was dropped
 _WRAPPED = 1e5  # s: further off than this the 32 bits of the stamps have run over
 _DRIFT = 1e-3  # of the time passed: how much two clocks may go apart
 
@@ -46,7 +50,9 @@ class EventTimes:
         self.stalled = 0.0  # s that the last stall took
         self._alive: float | None = None
         self._behind = float("-inf")  # the end of the last stall
-        self._dropped = float("-inf")  # when the last press that was dropped was made
+        self._dropped = float(
+            "-inf"
+        )  # when an answer that was dropped, or a press that relied on it, was made
         self._frames = FRAMES  # shown since
         self._offsets: dict[str, tuple[float, float]] = {}  # of whose clock: offset, and when it was seen
 
@@ -95,61 +101,19 @@ class EventTimes:
         return at <= self._behind or not self.known or self.clock() - at > STALL
 
     def drop(self, stamp: int, whose: str = "") -> None:
-        """Note that a press was dropped: what follows without a pause relies on it."""
+        """Note that an answer was dropped: what follows relies on it."""
         self._dropped = max(self._dropped, self.at(stamp, whose))
 
-    def in_burst(self, stamp: int, whose: str = "") -> bool:
-        """Return whether a press follows one that was dropped without a pause of ``PAUSE`` seconds."""
-        return self.at(stamp, whose) - self._dropped < PAUSE
+    def relies_on_dropped(self, stamp: int, whose: str = "") -> bool:
+        """Return whether a press follows one that was dropped: in the same stall, or without a pause."""
+        at = self.at(stamp, whose)
+        same_stall = self._behind - self.stalled < self._dropped and at <= self._behind
+        return same_stall or at - self._dropped < PAUSE
 
-
-# --- the X server -------------------------------------------------------------------------------------
-
-
-_BUTTONS = 0x1F00  # of the pointer's mask: five buttons
-_KEYS_HELD_KEYS = 32  # bytes, one bit a key
-
-
-class XServer:
-    """The server on whose display Qt shows the windows; asked from Qt's own thread."""
-
-    def __init__(self, display: int) -> None:
-        self._x = ctypes.CDLL("libX11.so.6")
-        self._display = ctypes.c_void_p(display)
-        self._x.XDefaultRootWindow.restype = ctypes.c_ulong
-        self._root = ctypes.c_ulong(self._x.XDefaultRootWindow(self._display))
-        supported = ctypes.c_int(0)
-        self._x.XkbSetDetectableAutoRepeat(self._display, 1, ctypes.byref(supported))
-        self.tells_repeats = bool(supported.value)
-
-    def keys(self) -> frozenset[int]:
-        """The codes of the keys that are down now."""
-        bits = (ctypes.c_ubyte * _KEYS_HELD_KEYS)()
-        self._x.XQueryKeymap(self._display, bits)
-        return frozenset(8 * n + bit for n, byte in enumerate(bits) for bit in range(8) if byte >> bit & 1)
-
-    def buttons(self) -> bool:
-        """Whether a button of the mouse is down now."""
-        windows = [ctypes.c_ulong(), ctypes.c_ulong()]
-        places = [ctypes.c_int() for _ in range(4)]
-        mask = ctypes.c_uint(0)
-        answers = [ctypes.byref(each) for each in (*windows, *places, mask)]
-        self._x.XQueryPointer(self._display, self._root, *answers)
-        return bool(mask.value & _BUTTONS)
-
-
-def x_server() -> XServer | None:
-    """The server, None where the windows are not shown by one."""
-    if QGuiApplication.platformName() != "xcb":
-        return None
-    app = QGuiApplication.instance()
-    native = app.nativeInterface() if isinstance(app, QGuiApplication) else None
-    if not isinstance(native, QNativeInterface.QX11Application) or not native.display():
-        return None
-    try:
-        return XServer(native.display())
-    except OSError:
-        return None
+    def delay(self, stamp: int, whose: str = "") -> float:
+        """Return how long a press waited, or the stall that it waited behind took, in seconds."""
+        at = self.at(stamp, whose)
+        return self.stalled if at <= self._behind else self.clock() - at
 
 
 Key = Qt.Key
@@ -175,12 +139,20 @@ _SHIFTS = frozenset({50, 62})  # codes of both
 _KEYS = frozenset({QEvent.Type.KeyPress, QEvent.Type.KeyRelease})
 
 
+class Stops(Protocol):
+    """A stop of the machine; ``press`` is the number of the press."""
+
+    def __call__(self, *, press: int) -> None: ...
+
+
 class Behind(Protocol):
     """What the keyboard does at once, and what it asks of the window behind it."""
 
-    def hold(self, by: str = "") -> None: ...
+    def hold(self, by: str = "", press: int = 0) -> None: ...
 
-    def estop(self) -> None: ...
+    def estop(self, press: int = 0) -> None: ...
+
+    def estop_sent(self) -> None: ...
 
     def esc_holds(self) -> bool: ...
 
@@ -190,7 +162,11 @@ class Behind(Protocol):
 
     def used(self) -> None: ...
 
-    def forgotten(self, seconds: float) -> None: ...
+    def judge(self, *, late: bool) -> None: ...
+
+    def looks_different(self, at: float) -> bool: ...
+
+    def drop(self, starting: Starting) -> None: ...
 
     def stops_at(self, event: QInputEvent) -> bool: ...
 
@@ -218,14 +194,17 @@ class Keyboard(QObject):
         super().__init__()
         self._behind, self.times = behind, times
         self._server: XServer | None = None
+        self._watched: WatchedKeys | None = None
         self._down: dict[int, int] = {}  # codes of what is down, and the key that it was
         self._dead: set[int] = set()  # of these: pressed for something else, or nobody knows when
         self._stops: set[int] = set()  # of these: what stops the machine as long as it is held
+        self._shifts: set[int] = set()  # codes of those that are down, in the order of the events
         self._up: dict[int, int] = {}  # the stamp of the last release
         self._known_up: dict[int, float] = {}  # when the server said so of a key whose release is on its way
         self._sending = False
         self._stamp = 0  # of the event that is handled now
         self._whose = ""  # clock counts it
+        self._late = False  # it waited behind a stall
 
     def watch(self, window: QWindow) -> None:
         """From now on see what this window gets."""
@@ -233,6 +212,17 @@ class Keyboard(QObject):
         window.installEventFilter(self)
         if self._server is None:
             self._server = x_server()
+
+    def watch_stops(self, open_line: OpenLine) -> WatchedKeys | None:
+        """Start the key watcher, where an X server and a control of its own process are there."""
+        line = open_line() if QGuiApplication.platformName() == "xcb" else None
+        self._watched = WatchedKeys(line) if line is not None else None
+        return self._watched
+
+    @property
+    def delay(self) -> float:
+        """How long what is handled now waited, or the stall behind which it waited took; seconds."""
+        return self.times.delay(self._stamp, self._whose)
 
     @property
     def now(self) -> float:
@@ -266,6 +256,11 @@ class Keyboard(QObject):
         """Once a frame: what the server knows to be up has come up, even where its release was lost."""
         self._stamp = 0
         windows = QGuiApplication.topLevelWindows()
+        if self._watched is not None:
+            shown = frozenset(window.winId() for window in windows if window.isVisible())
+            self._watched.show(Focus(shown, self._behind.esc_holds()))
+            if any(stop.kind is StopKind.ESTOP for stop in self._watched.news()):
+                self._behind.estop_sent()
         for window in windows if len(windows) > 1 else ():
             window.installEventFilter(self)  # a menu or a dialog has the keyboard for itself
         if self._server is None or not self._down:
@@ -292,29 +287,40 @@ class Keyboard(QObject):
             self._behind.used()
         if kind in _KEYS and isinstance(event, QKeyEvent):
             return not self._sending and self._key(event)
-        if kind in _PRESSES and isinstance(event, QInputEvent):
-            self.times.alive()
-            self._stamp, self._whose = event.timestamp(), _clock_of(event)
-            return self._pressed_late(event)
-        if isinstance(event, QInputEvent):
-            self.times.alive()
-            self._stamp, self._whose = event.timestamp(), _clock_of(event)
-            if isinstance(event, QTouchEvent) and any(
-                point.state() == QEventPoint.State.Pressed for point in event.points()
-            ):
-                return self._pressed_late(event)
-        return False
-
-    def _pressed_late(self, event: QInputEvent) -> bool:
-        if self._behind.stops_at(event) or not (self._late(event) or self._in_burst(event)):
+        if not isinstance(event, QInputEvent):
             return False
-        event.setAccepted(True)  # or Qt makes a mouse button of the finger
-        return self._forget(event)
+        self._take_up(event)
+        pressed = kind in _PRESSES or (
+            isinstance(event, QTouchEvent)
+            and any(point.state() == QEventPoint.State.Pressed for point in event.points())
+        )
+        return pressed and self._pressed_on_screen(event)
 
-    def _key(self, event: QKeyEvent) -> bool:
+    def _take_up(self, event: QInputEvent) -> None:
+        """Note when an event happened, and whether it is late."""
         self.times.alive()
         self._stamp, self._whose = event.timestamp(), _clock_of(event)
+        self._late = self.times.late(self._stamp, self._whose)
+        self._behind.judge(late=self._late)
+
+    def _pressed_on_screen(self, event: QInputEvent) -> bool:
+        """Return whether a press of the mouse or a finger goes no further."""
+        if self._behind.stops_at(event):
+            return False
+        if self._relies_on_dropped():
+            starting = Starting.FOLLOWING
+        elif self._late and self._behind.looks_different(self.now):
+            starting = Starting.TOUCH
+        else:
+            return False
+        event.setAccepted(True)  # or Qt makes a mouse button of the finger
+        return self._forget(starting)
+
+    def _key(self, event: QKeyEvent) -> bool:
+        self._take_up(event)
         code = code_of(event)
+        if event.key() == Key.Key_Shift:
+            (self._shifts.discard if event.type() == QEvent.Type.KeyRelease else self._shifts.add)(code)
         if event.type() == QEvent.Type.KeyRelease:
             return self._released(event, code)
         stop = self._stop_of(event)
@@ -322,19 +328,19 @@ class Keyboard(QObject):
             self._down.setdefault(code, event.key())
             self._dead.add(code)
             self._stops.add(code)
-            stop()
+            stop(press=press_number(code, self._stamp))
             return True
         return event.key() not in _MODIFIERS and self._pressed(event, code)
 
     def _pressed(self, event: QKeyEvent, code: int) -> bool:
-        if self._overtaken(code) and not self._writes(event):
+        if self._overtaken(code) and (self._late or not self._writes(event)):
             return True
         repeat = self._repeats(event, code)
-        if code in self._dead:
+        if code in self._dead or (repeat and self._late):  # nobody has seen what it repeated
             return True
-        if self._in_burst(event) or (self._late(event) and not self._writes(event)):
+        if self._relies_on_dropped():
             self._dead.add(code)
-            return repeat or self._forget(event)
+            return repeat or self._forget(Starting.FOLLOWING)
         if repeat and not event.isAutoRepeat():
             return self._send_repeat(event)
         return self._latched(event) and self._send(_like(event, repeat=repeat, shift=False))
@@ -354,7 +360,7 @@ class Keyboard(QObject):
         shift = event.modifiers() & Qt.KeyboardModifier.ShiftModifier
         if self._server is None or not shift or event.text():
             return False
-        return not self._server.keys() & _SHIFTS
+        return not (self._shifts if self._late else self._server.keys() & _SHIFTS)
 
     def _released(self, event: QKeyEvent, code: int) -> bool:
         if event.isAutoRepeat():
@@ -384,7 +390,7 @@ class Keyboard(QObject):
         tells = self._server is not None and self._server.tells_repeats
         return not tells and bool(self._stamp) and abs(self._stamp - self._up.get(code, -1000)) <= TOGETHER
 
-    def _stop_of(self, event: QKeyEvent) -> Callable[[], None] | None:
+    def _stop_of(self, event: QKeyEvent) -> Stops | None:
         """What a key does that stops the machine, whatever else is so; None for any other key."""
         place = _STOPS.get(event.nativeScanCode(), "") if QApplication.platformName() in _PC else ""
         key, letter = event.key(), letter_of(event)
@@ -392,23 +398,30 @@ class Keyboard(QObject):
             return self._behind.estop
         holds = key in {Key.Key_Pause, Key.Key_Cancel} or place == "hold"
         holds = holds or self._stops_by(letter == "H" or key == Key.Key_Space)
-        if key == Key.Key_Escape and self._behind.esc_holds():
-            return partial(self._behind.hold, "Esc key at the screen")
+        if key == Key.Key_Escape and (self._behind.esc_holds() or self._was_sent(event)):
+            return partial(self._behind.hold, BY_ESC)
         return self._behind.hold if holds else None
+
+    def _was_sent(self, event: QKeyEvent) -> bool:
+        """Return whether the key watcher has sent this press to the control."""
+        press = press_number(code_of(event), self._stamp)
+        return self._watched is not None and self._watched.was_sent(press)
 
     def _stops_by(self, key_of_stop: bool) -> bool:
         """Return whether a character stops the machine; where a caret is visible every character is text."""
         return key_of_stop and not self._behind.has_field()
 
-    def _late(self, event: QInputEvent) -> bool:
-        return self.times.late(event.timestamp(), _clock_of(event))
+    def _relies_on_dropped(self) -> bool:
+        return self.times.relies_on_dropped(self._stamp, self._whose)
 
-    def _in_burst(self, event: QInputEvent) -> bool:
-        return self.times.in_burst(event.timestamp(), _clock_of(event))
+    def answer_dropped(self) -> None:
+        """The press that is handled now was an answer, and was dropped."""
+        self.times.drop(self._stamp, self._whose)
 
-    def _forget(self, event: QInputEvent) -> bool:
-        self.times.drop(event.timestamp(), _clock_of(event))
-        self._behind.forgotten(self.times.stalled)
+    def _forget(self, starting: Starting) -> bool:
+        if starting is Starting.FOLLOWING:
+            self.answer_dropped()
+        self._behind.drop(starting)
         return True
 
     def _writes(self, event: QKeyEvent) -> bool:

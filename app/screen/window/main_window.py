@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
 from functools import partial
@@ -20,8 +21,10 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QApplication, QWidget
 
-from app.desk.desk import BY_SCREEN, Desk
+from app.desk.desk import Desk
+from app.desk.late_presses import Starting
 from app.desk.status.prompt_line import MOVING, UNDER_WAY
+from app.desk.stop_keys.stop_records import BY_SCREEN
 from app.desk.translation import spoken, tr
 from app.screen.look import PALETTES, Look, dress, speak_in
 from app.screen.page_table import AUTOMATIC, PagesAhead
@@ -38,7 +41,7 @@ from app.screen.window.keys import (
     name_of,
     typed_of,
 )
-from app.screen.window.window_frame import Frame
+from app.screen.window.window_frame import Face, Frame
 from app.screen.window_layout import LEAST
 from core.message import Message
 
@@ -79,6 +82,7 @@ class MainWindow(QWidget):
         self.stirred.connect(self._wake, Qt.ConnectionType.QueuedConnection)
         self.keyboard = Keyboard(self, self.times)
         self._page = ""  # that has the keyboard
+        self._faces: deque[tuple[float, Face]] = deque(maxlen=32)  # that were shown, and since when
         self._timer = QTimer(self)
         self._timer.setTimerType(Qt.TimerType.PreciseTimer)
         self._timer.timeout.connect(self._tick)
@@ -99,6 +103,10 @@ class MainWindow(QWidget):
         self._keys = self._table(desk)
         desk.stirs = self._stir
         desk.stop_held = self.keyboard.stop_held
+        watched = self.keyboard.watch_stops(desk.open_stop_line)
+        if watched is not None:
+            desk.attach(watched)
+        desk.late.report, desk.late.on_answer = self._show_dropped, self.keyboard.answer_dropped
         desk.hands.ago = lambda: self.times.clock() - self.keyboard.now
         self.frame.setGeometry(self.rect())
         self.refresh()
@@ -115,9 +123,12 @@ class MainWindow(QWidget):
         )  # a stall has just been noticed, or what waited for it is not shown
         if frame is None:
             return
+        self.judge(late=False)
         changed = not known or self._lively(frame) or frame.changed()
         if changed or frame.aged():
             self.refresh()
+        if not self._faces or self._faces[-1][1] != frame.face:
+            self._faces.append((self.times.clock(), frame.face))
         makes = self.ahead is not None and not self.ahead.done
         if self.ahead is not None:
             self.ahead.step()
@@ -144,9 +155,10 @@ class MainWindow(QWidget):
     def refresh(self) -> None:
         """Poll the snapshot once, and show it everywhere."""
         if self.frame is not None:
-            self._look_at_hands(self.frame)
-            self.frame.refresh()
-            self._wear(self.frame)
+            with self.frame.desk.late.suspended():
+                self._look_at_hands(self.frame)
+                self.frame.refresh()
+                self._wear(self.frame)
 
     def _look_at_hands(self, frame: Frame) -> None:
         """What is held is held really, and for this page; a release that was lost is made up for."""
@@ -255,19 +267,24 @@ class MainWindow(QWidget):
 
     # --- what the keyboard does at once --------------------------------------------------------------
 
-    def hold(self, by: str = "") -> None:
+    def hold(self, by: str = "", press: int = 0) -> None:
         """Feed hold, whatever page, field or question has the keyboard; ``by`` which key, for the log."""
         if self.frame is not None:
             self.frame.page.pressed()
-            self.frame.desk.feed_hold(by or BY_SCREEN)
+            self.frame.desk.feed_hold(by or BY_SCREEN, press)
             self.refresh()
 
-    def estop(self) -> None:
+    def estop(self, press: int = 0) -> None:
         """E-stop, whatever page, field or question has the keyboard."""
         if self.frame is not None:
             self.frame.page.pressed()
-            self.frame.desk.estop()
+            self.frame.desk.estop(press)
             self.refresh()
+
+    def estop_sent(self) -> None:
+        """Show the E-stop of the simulated station pressed: the key watcher has pressed it."""
+        if self.frame is not None and self.frame.desk.station is not None:
+            self.frame.desk.estop()
 
     def esc_holds(self) -> bool:
         """Return whether Esc holds the feed now: something moves, and nothing else is offered for Esc."""
@@ -287,11 +304,26 @@ class MainWindow(QWidget):
         """Whether a character goes to an entry now."""
         return self.frame is not None and self.frame.is_text(key)
 
-    def forgotten(self, seconds: float) -> None:
-        """Show that what was pressed while the screen stood still does nothing."""
+    def judge(self, *, late: bool) -> None:
+        """Note whether the event that is handled now waited behind a stall: it starts nothing then."""
         if self.frame is not None:
-            text = tr("SCREEN FROZE {seconds} S. KEYS IGNORED. WAIT 1 S, PRESS AGAIN")
-            self.frame.desk.warn(tr(Message(text, seconds=f"{seconds:.1f}")))
+            self.frame.desk.late.late = late
+
+    def looks_different(self, at: float) -> bool:
+        """Return whether the screen showed something else at this time, so that a touch meant that."""
+        seen = [face for since, face in self._faces if since <= at]
+        return bool(seen) and self.frame is not None and seen[-1] != self.frame.face
+
+    def drop(self, starting: Starting) -> None:
+        """Report a press that waited behind a stall and is not carried out."""
+        if self.frame is not None:
+            self.frame.desk.late.report_dropped(starting)
+
+    def _show_dropped(self, names: tuple[str, ...]) -> None:
+        if self.frame is not None:
+            text = tr("SCREEN FROZE {seconds} S. NOT DONE: {what}. PRESS AGAIN")
+            seconds = f"{self.keyboard.delay:.1f}"
+            self.frame.desk.warn(tr(Message(text, seconds=seconds, what=", ".join(names))))
 
     def stops_at(self, event: QInputEvent) -> bool:
         """Whether a press is on something that stops the machine."""

@@ -48,6 +48,9 @@ STALE = 0.45  # s after which all is looked at again where nothing seems to have
 _SETTLED = 3.0  # s after a move by hand before the room of a page may change
 
 
+Face = tuple[str, bool, bool, str]
+
+
 class Frame(QWidget):
     """Polls nothing itself: ``refresh`` is called once a frame.
 
@@ -184,6 +187,11 @@ class Frame(QWidget):
     def esc_holds(self) -> bool:
         """Return whether Esc holds the feed while something moves and is offered for nothing else."""
         return not self.desk.asked and not self.log.isVisible() and self.page.esc_holds()
+
+    @property
+    def face(self) -> Face:
+        """What decides the meaning of a touch: the page, and what is open or asked over it."""
+        return self.page.NAME, self.log.isVisible(), self.automatic.files.isVisible(), self.desk.asked
 
     def dress(self) -> None:
         """Everything in the colours that are in force now."""

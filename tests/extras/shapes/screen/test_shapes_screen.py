@@ -146,7 +146,7 @@ def test_the_key_that_stops_the_machine_stops_it_here_too(writer: Writer) -> Non
     press = QKeyEvent(QEvent.Type.KeyPress, Key.Key_ScrollLock, Qt.KeyboardModifier.NoModifier)
     stop = writer.window.keyboard._stop_of(press)
     assert stop is not None
-    stop()
+    stop(press=0)
     assert writer.desk.hands.estop_pressed
     assert shapes_of(writer).model.form is None
 

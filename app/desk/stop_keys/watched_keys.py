@@ -1,0 +1,71 @@
+"""The screen's end of the key watcher: starts it, shows it the windows, and learns which presses it sent."""
+
+from __future__ import annotations
+
+import socket
+import subprocess
+import sys
+from collections import deque
+from collections.abc import Callable
+from contextlib import suppress
+
+from app.desk.stop_keys.stop_records import LONGEST, NOWHERE, Focus, Stop
+
+OpenLine = Callable[[], socket.socket | None]
+"""Open a line to the control for stops; None where the control has none."""
+_ENDS = 2.0  # s
+_KEPT = 64  # presses
+
+
+class WatchedKeys:
+    """The key watcher as the screen sees it. Every method returns at once."""
+
+    def __init__(self, line: socket.socket) -> None:
+        self._screen, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        self._screen.setblocking(False)
+        with line, theirs:
+            files = (line.fileno(), theirs.fileno())
+            self._process = subprocess.Popen(
+                [sys.executable, "-m", "app.desk.stop_keys.key_watcher", *map(str, files)],
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.DEVNULL,
+                pass_fds=files,
+                start_new_session=True,  # Ctrl-C is for the screen
+            )
+        self._shown = NOWHERE
+        self._sent: deque[Stop] = deque(maxlen=_KEPT)
+        self._news: list[Stop] = []
+
+    def show(self, focus: Focus) -> None:
+        """Tell the watcher the windows, and whether Esc holds, when either has changed."""
+        if focus != self._shown:
+            with suppress(OSError):
+                self._screen.send(focus.packed())
+                self._shown = focus
+
+    def news(self) -> list[Stop]:
+        """Return the stops that the watcher has sent to the control since the last call."""
+        self._read()
+        found, self._news = self._news, []
+        return found
+
+    def was_sent(self, press: int) -> bool:
+        """Return whether the watcher has sent this press to the control."""
+        self._read()
+        return press != 0 and any(stop.press == press for stop in self._sent)
+
+    def _read(self) -> None:
+        with suppress(OSError):
+            while record := self._screen.recv(LONGEST):
+                stop = Stop.unpacked(record)
+                self._sent.append(stop)
+                self._news.append(stop)
+
+    def close(self) -> None:
+        """End the watcher."""
+        self._screen.close()
+        try:
+            self._process.wait(_ENDS)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            self._process.wait()

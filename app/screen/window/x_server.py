@@ -1,0 +1,52 @@
+"""What the X server knows of keys and buttons; asked from Qt's own thread."""
+
+from __future__ import annotations
+
+import ctypes
+
+from PySide6.QtGui import QGuiApplication, QNativeInterface
+
+_BUTTONS = 0x1F00  # of the pointer's mask: five buttons
+_KEYS_HELD_KEYS = 32  # bytes, one bit a key
+
+
+class XServer:
+    """The server on whose display Qt shows the windows; asked from Qt's own thread."""
+
+    def __init__(self, display: int) -> None:
+        self._x = ctypes.CDLL("libX11.so.6")
+        self._display = ctypes.c_void_p(display)
+        self._x.XDefaultRootWindow.restype = ctypes.c_ulong
+        self._root = ctypes.c_ulong(self._x.XDefaultRootWindow(self._display))
+        supported = ctypes.c_int(0)
+        self._x.XkbSetDetectableAutoRepeat(self._display, 1, ctypes.byref(supported))
+        self.tells_repeats = bool(supported.value)
+
+    def keys(self) -> frozenset[int]:
+        """The codes of the keys that are down now."""
+        bits = (ctypes.c_ubyte * _KEYS_HELD_KEYS)()
+        self._x.XQueryKeymap(self._display, bits)
+        return frozenset(8 * n + bit for n, byte in enumerate(bits) for bit in range(8) if byte >> bit & 1)
+
+    def buttons(self) -> bool:
+        """Whether a button of the mouse is down now."""
+        windows = [ctypes.c_ulong(), ctypes.c_ulong()]
+        places = [ctypes.c_int() for _ in range(4)]
+        mask = ctypes.c_uint(0)
+        answers = [ctypes.byref(each) for each in (*windows, *places, mask)]
+        self._x.XQueryPointer(self._display, self._root, *answers)
+        return bool(mask.value & _BUTTONS)
+
+
+def x_server() -> XServer | None:
+    """The server, None where the windows are not shown by one."""
+    if QGuiApplication.platformName() != "xcb":
+        return None
+    app = QGuiApplication.instance()
+    native = app.nativeInterface() if isinstance(app, QGuiApplication) else None
+    if not isinstance(native, QNativeInterface.QX11Application) or not native.display():
+        return None
+    try:
+        return XServer(native.display())
+    except OSError:
+        return None

@@ -1,0 +1,55 @@
+"""The line of the stop keys, from the screen's end to the control's."""
+
+from __future__ import annotations
+
+import queue
+import socket
+from collections.abc import Iterator
+from multiprocessing.connection import Connection
+
+import pytest
+
+from app.compose.control.stop_line import obey_line, send_line
+from app.desk.stop_keys.stop_records import Stop, StopKind
+
+LIMIT = 20.0  # s
+
+
+@pytest.fixture
+def ends() -> Iterator[tuple[Connection, Connection]]:
+    """The connection between a screen and its control."""
+    ours, theirs = (Connection(each.detach()) for each in socket.socketpair())
+    with ours, theirs:
+        yield ours, theirs
+
+
+def test_what_is_sent_on_a_line_is_obeyed_in_its_order(ends: tuple[Connection, Connection]) -> None:
+    screen, control = ends
+    obeyed: queue.Queue[Stop] = queue.Queue()
+    line, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    send_line(screen, theirs)
+    obey_line(control, obeyed.put)
+    stops = [Stop(StopKind.HOLD, 1), Stop(StopKind.ESTOP, 2), Stop(StopKind.ESC, 3)]
+    with line:
+        for stop in stops:
+            line.send(stop.packed())
+        assert [obeyed.get(timeout=LIMIT) for _ in stops] == stops
+
+
+def test_a_record_of_another_version_is_skipped(ends: tuple[Connection, Connection]) -> None:
+    screen, control = ends
+    obeyed: queue.Queue[Stop] = queue.Queue()
+    line, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    send_line(screen, theirs)
+    obey_line(control, obeyed.put)
+    with line:
+        line.send(b"what is this")
+        line.send(Stop(StopKind.HOLD, 4).packed())
+        assert obeyed.get(timeout=LIMIT) == Stop(StopKind.HOLD, 4)
+
+
+def test_a_message_without_a_line_is_rejected(ends: tuple[Connection, Connection]) -> None:
+    screen, control = ends
+    screen.close()
+    with pytest.raises(EOFError):
+        obey_line(control, lambda _stop: None)

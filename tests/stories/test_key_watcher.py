@@ -1,0 +1,117 @@
+"""The key watcher alone, on a real X server without a window manager: keys go to what the pointer is on."""
+
+from __future__ import annotations
+
+import ctypes
+import socket
+import subprocess
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from app.desk.stop_keys.stop_records import LONGEST, Focus, Stop, StopKind
+from tests.stories.x11 import Server, another_client, missing
+
+LIMIT = 20.0  # s
+INSIDE, OUTSIDE = (200, 200), (700, 600)
+
+
+@dataclass
+class Bench:
+    server: Server
+    window: int
+    screen: socket.socket
+    control: socket.socket
+
+    def show(self, focus: Focus) -> None:
+        """Tell the watcher which window is whose."""
+        self.screen.send(focus.packed())
+
+    def stop(self) -> Stop:
+        return Stop.unpacked(self.control.recv(LONGEST))
+
+
+@pytest.fixture
+def bench(tmp_path: Path) -> Iterator[Bench]:
+    """A window, a watcher, and both ends to which it sends."""
+    if why := missing():
+        pytest.skip(f"the key watcher needs an X server: {why}")
+    server = Server(tmp_path / "x")
+    line, control = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    theirs, screen = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    with another_client(server, "window"), control, screen:
+        files = (line.fileno(), theirs.fileno())
+        words = [sys.executable, "-m", "app.desk.stop_keys.key_watcher", *map(str, files)]
+        watcher = subprocess.Popen(words, pass_fds=files, env=server.environment)
+        line.close()
+        theirs.close()
+        control.settimeout(LIMIT)
+        yield Bench(server, _under(server, INSIDE), screen, control)
+        screen.close()
+        assert watcher.wait(LIMIT) == 0  # it ends with the screen
+    server.close()
+
+
+def _under(server: Server, at: tuple[int, int]) -> int:
+    """The window there."""
+    server.point(*at)
+    root, child, mask = ctypes.c_ulong(), ctypes.c_ulong(), ctypes.c_uint()
+    places = [ctypes.c_int() for _ in range(4)]
+    answers = [ctypes.byref(each) for each in (root, child, *places, mask)]
+    x = server._x
+    x.XDefaultRootWindow.restype = ctypes.c_ulong
+    x.XQueryPointer(server._display, ctypes.c_ulong(x.XDefaultRootWindow(server._display)), *answers)
+    assert child.value
+    return child.value
+
+
+def press_until_sent(bench: Bench, key: str) -> Stop:
+    """Press until the watcher has begun to watch."""
+    bench.control.settimeout(0.5)
+    for _ in range(40):
+        bench.server.down(key)
+        bench.server.up(key)
+        try:
+            return bench.stop()
+        except TimeoutError:
+            continue
+    raise AssertionError(f"{key} was not sent")
+
+
+def test_a_stop_key_is_sent_while_the_pointer_is_on_the_window(bench: Bench) -> None:
+    bench.show(Focus(frozenset({bench.window}), esc_holds=False))
+    sent = press_until_sent(bench, "Pause")
+    assert sent.kind is StopKind.HOLD
+    assert Stop.unpacked(bench.screen.recv(LONGEST)) == sent
+
+
+def test_nothing_is_sent_while_it_is_elsewhere_or_another_key_goes_down(bench: Bench) -> None:
+    bench.show(Focus(frozenset({bench.window}), esc_holds=False))
+    press_until_sent(bench, "Pause")
+    for key in ("Escape", "space", "h"):
+        bench.server.down(key)
+        bench.server.up(key)
+    bench.server.point(*OUTSIDE)
+    bench.server.down("Pause")
+    bench.server.up("Pause")
+    bench.control.settimeout(0.5)
+    with pytest.raises(TimeoutError):
+        bench.stop()
+    bench.server.point(*INSIDE)
+    assert press_until_sent(bench, "Scroll_Lock").kind is StopKind.ESTOP
+
+
+def test_a_key_that_is_held_is_sent_once(bench: Bench) -> None:
+    bench.server.repeats(100, 20)
+    bench.show(Focus(frozenset({bench.window}), esc_holds=True))
+    press_until_sent(bench, "Escape")
+    bench.control.settimeout(LIMIT)
+    bench.server.down("Pause")
+    assert bench.stop().kind is StopKind.HOLD
+    bench.control.settimeout(0.5)
+    with pytest.raises(TimeoutError):
+        bench.stop()
+    bench.server.up("Pause")

@@ -1,0 +1,62 @@
+"""Stop keys reach the control while Qt's thread is frozen, and only where TurnDesk has the keyboard.
+
+In real time, because the control is a process of its own then.
+"""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.stories.conftest import Story
+from tests.stories.operator import Operator
+from tests.stories.test_stalls import frozen, ready
+from tests.stories.x11 import another_client
+from tests.texts import text
+
+STOPS = [("Pause", "FEED HOLD"), ("Escape", "FEED HOLD"), ("Scroll_Lock", "E-STOP")]
+
+
+def cutting(story: Story) -> Operator:
+    operator = ready(story, in_real_time=True)
+    operator.starts()
+    operator.until(lambda: operator.slides[0] > 0.5, "a cut")
+    return operator
+
+
+@pytest.mark.parametrize(("key", "state"), STOPS)
+def test_a_stop_acts_during_the_stall_and_once(story: Story, key: str, state: str) -> None:
+    operator = cutting(story)
+    stops = len(operator.events("stop", "alarm", "estop"))
+    number = operator.freezes(3.0)
+    operator.during(0.3)
+    operator.once = True
+    operator.key(key)
+    operator.reaches(state)
+    assert not operator.answered(number), "it acted only after the stall"
+    operator.once = False
+    operator.until(lambda: operator.answered(number), "the screen again")
+    operator.keeps(lambda: operator.state == state, 1.0, state)
+    operator.until(lambda: len(operator.events("stop", "alarm", "estop")) > stops, "its entry")
+    assert len(operator.events("stop", "alarm", "estop")) == stops + 1
+    assert operator.page == "AUTOMATIC"
+
+
+@pytest.mark.parametrize("what", ["window", "grab"])
+def test_keys_of_another_program_stop_nothing(story: Story, what: str) -> None:
+    operator = cutting(story)
+    with another_client(operator.server, what):
+        operator.during(0.5)
+        operator.once = True
+        for key, _ in STOPS:
+            operator.key(key)
+        operator.keeps(lambda: operator.state == "RUNNING", 1.0, "the cut")
+        operator.once = False
+
+
+def test_the_mushroom_that_was_hit_in_a_stall_is_shown_and_freed(story: Story) -> None:
+    operator = ready(story, in_real_time=True)
+    with frozen(operator):
+        operator.key("Scroll_Lock")
+        operator.reaches("E-STOP")
+    operator.answers("u", text("screen.twist-e-stop-out"), lambda: operator.state != "E-STOP")
+    operator.reaches("DRIVES OFF")
