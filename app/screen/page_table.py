@@ -8,6 +8,7 @@ from functools import partial
 from importlib import import_module
 from typing import Any
 
+from PySide6 import QtCore, QtGui, QtWidgets
 from PySide6.QtWidgets import QWidget
 
 from app.compose.extra import extras, insert_after
@@ -236,8 +237,28 @@ def _model(entry: PageEntry, host: Host) -> object:
     return model
 
 
+TYPES = 20  # classes of PySide that are made in one slice
 APART = 0.05  # s at least from one slice to the next: a frame between them has nothing of it
 _LOADING = frozenset({Phase.READING, Phase.PROVING, Phase.DRAWING, Phase.PART})
+
+
+def make_types() -> Iterator[bool]:
+    """Have PySide make all its classes on Qt's thread, in slices, before a worker imports pyqtgraph.
+
+    PySide makes a class when it is first asked for. Two threads that do so at once can end the process.
+    Yields False after each slice, which takes some milliseconds.
+    """
+    for module in (QtCore, QtGui, QtWidgets):
+        for slice_ in batched_names(dir(module)):
+            for name in slice_:
+                getattr(module, name, None)
+            yield False
+
+
+def batched_names(names: list[str]) -> Iterator[list[str]]:
+    """Yield the names in lists of ``TYPES`` at most."""
+    for first in range(0, len(names), TYPES):
+        yield names[first : first + TYPES]
 
 
 class PagesAhead:
@@ -268,6 +289,7 @@ class PagesAhead:
 
     def _all(self) -> Iterator[bool]:
         """False for every slice: a page loaded, a part of its charts made."""
+        yield from make_types()
         for entry in pages_of(self._desk.language):
             found: list[None] = []
             self._worker.queue(partial(load, entry), found.append, lambda _why: None)
