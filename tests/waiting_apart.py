@@ -22,6 +22,7 @@ _OF_EXTRA = re.compile(r"^tests/extras/\w+/")
 STORIES = "tests/stories/"
 WAIT = (
     STORIES,
+    "tests/control/",
     "tests/killed/",
     "tests/shopfloor/",
     "tests/extras/mtconnect/",

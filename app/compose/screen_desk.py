@@ -16,7 +16,6 @@ from app.compose.control.control_begin import begin_control
 from app.compose.control.control_client import ControlClient
 from app.compose.control.control_events import ControlEvents
 from app.compose.control.control_start import StartedControl
-from app.compose.control.left_note import take_note
 from app.compose.desk_functions import furnish, give_production, give_scope, keep_status
 from app.compose.extra import drawing_endings, extras
 from app.compose.machine.accepted_machine import file_changes, guarded
@@ -164,6 +163,7 @@ def _desk_on_process(
     control: ControlClient | StartedControl,
 ) -> Desk:
     """The desk with its control in a process of its own."""
+    left = None
     if isinstance(control, ControlClient):
         client = control
         journal.note(client.hello.noted)
@@ -171,7 +171,9 @@ def _desk_on_process(
     else:
         with as_command_error(DriverError):
             client = ControlClient(control, data_folder())
-        _tell_what_was_left(client, journal)
+        left = journal.left
+        if left is not None:
+            client.post(LeftInterrupted(left, logged=journal.left_is_logged))
     events = _Events(client.clock, journal)
     used = DeskControl(
         client.post,
@@ -200,19 +202,10 @@ def _desk_on_process(
             lambda: desk.stirs(),  # noqa: PLW0108  the window gives it later
         )
     )
+    if left is not None:
+        client.wait_for(lambda snapshot: snapshot.interrupted is not None)  # it is loaded then
     threads.start()
     return desk
-
-
-def _tell_what_was_left(client: ControlClient, journal: Journal) -> None:
-    """Tell a new control which job the one before has left, in the store or beside it."""
-    known, left = take_note(data_folder())
-    if known:
-        journal.note(left)
-    else:
-        left = journal.left
-    if left is not None:
-        client.post(LeftInterrupted(left))
 
 
 def _close_store(journal: Journal) -> None:

@@ -42,7 +42,7 @@ class CommandHandler:
             commands.GiveProof: self._prove,
             commands.GiveClearance: self._clear,
             commands.Renew: self._renew,
-            commands.LeftInterrupted: lambda command: control.program_run.interruption.found(command.left),
+            commands.LeftInterrupted: self._left,
             commands.Prepare: self._prepare,
             commands.ConfirmStart: self._confirm,
             commands.PartsMade: self._count,
@@ -195,6 +195,9 @@ class CommandHandler:
 
     def _count(self, command: commands.PartsMade) -> None:
         self._control.counters.made = max(0, command.parts)
+
+    def _left(self, command: commands.LeftInterrupted) -> None:
+        self._control.program_run.interruption.found(command.left, logged=command.logged)
 
     def _bar(self, command: commands.BarNextPart) -> None:
         status = self._control.status

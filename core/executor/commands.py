@@ -92,9 +92,10 @@ class Renew(Command):
 
 @dataclass(frozen=True, slots=True)
 class LeftInterrupted(Command):
-    """What the control before has left interrupted, where that could not be read at the start."""
+    """What the control before has left interrupted; ``logged``: the log has it already."""
 
     left: InterruptedJob
+    logged: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -54,11 +54,12 @@ class InterruptionWatch:
         self._answered: float | None = None
         status.interrupted = left
 
-    def found(self, left: InterruptedJob) -> None:
+    def found(self, left: InterruptedJob, *, logged: bool = False) -> None:
         """What the control before has left, known only now. A program begun since has settled it."""
         if not self._begun and self._status.interrupted != left:
             self._status.interrupted = left
-            self._context.log("interrupted", left.words)
+            if not logged:
+                self._context.log("interrupted", left.words)
 
     # --- the program under way ----------------------------------------------------------------------------
 

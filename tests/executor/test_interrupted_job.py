@@ -369,6 +369,13 @@ def test_a_job_that_is_known_late_asks_the_palms_too() -> None:
     assert not begins(rig)
 
 
+def test_a_job_that_the_log_has_is_not_logged_again() -> None:
+    rig = Rig()
+    rig.post(LeftInterrupted(made(), logged=True))
+    assert rig.shot.interrupted == made()
+    assert rig.said("interrupted") == []
+
+
 def test_a_program_begun_meanwhile_is_what_counts() -> None:
     rig = Rig()
     in_the_cut(rig)

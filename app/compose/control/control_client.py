@@ -8,14 +8,16 @@ import queue
 import subprocess
 import threading
 import time
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
-from multiprocessing.connection import Client, Connection
+from multiprocessing.connection import Connection
 from pathlib import Path
 from socket import AF_UNIX, SOCK_SEQPACKET, socket, socketpair
 
 from app.compose.control.control_events import ControlEvents
 from app.compose.control.control_messages import (
+    BUSY,
     VERSION,
     Alive,
     Close,
@@ -38,7 +40,7 @@ from app.compose.control.shared_memory import SharedMemory
 from app.compose.control.stop_line import send_line
 from app.desk.data_folder import RECORDS
 from core.executor.commands import Command, GiveProof, LoadJob
-from core.executor.raised_alarm import make_alarm
+from core.executor.raised_alarm import Attempt, ReportedAttempt, make_alarm
 from core.executor.snapshot import CYCLE, Event, Snapshot, State
 from core.machine.machine_model import Machine
 from core.message import Message
@@ -53,8 +55,21 @@ STARTS_IN = 20.0  # s for the first message: drives may have to be configured
 ALIVE_EVERY = 0.25  # s
 ENDS = 1.0  # s that closing waits for a thread
 ANSWERS_IN = 2.0  # s for that of a control that runs already
+# What ``recv`` raises at the end of the connection, and for bytes that are no message of this version.
+_NO_MESSAGE = (
+    OSError,
+    EOFError,
+    pickle.UnpicklingError,
+    AttributeError,
+    ImportError,
+    LookupError,
+    TypeError,
+    ValueError,
+)
+_ENDED = "ended"
+_SILENT = "the control that is running does not respond: restart the computer"
 _SAVED_IN = 5.0  # s for the record of an alarm
-CLOSES_IN = 15.0  # s: drives that come on are waited for, then the machine is halted
+CLOSES_IN = 20.0  # s: drives that come on are waited for, then the machine is halted
 
 
 class ControlClient:
@@ -73,10 +88,13 @@ class ControlClient:
         self.hands = ControlHands(self) if hello.station else None
         self._outbox: queue.SimpleQueue[object] = queue.SimpleQueue()
         self._closed = threading.Event()
+        self._closing = False  # by this screen
+        self._came = threading.Event()  # a snapshot
         self._events: ControlEvents | None = None
         self._threads: list[threading.Thread] = []
         self._next_alive = 0.0  # s
         self._kept: dict[type[Command], Command] = {}  # for the end of the program that was found under way
+        self._keeping = threading.Lock()  # workers post as well
 
     def begin(self, events: ControlEvents) -> None:
         """Begin to listen and to send."""
@@ -87,10 +105,19 @@ class ControlClient:
 
     def post(self, command: Command) -> None:
         """Ask the executor for something."""
-        if self.attached and isinstance(command, LoadJob | GiveProof) and self.snapshot.state in CYCLE:
-            self._kept[type(command)] = command  # the program that is under way has its job already
-            return
+        if self.attached and isinstance(command, LoadJob | GiveProof):
+            with self._keeping:
+                if self._kept or self.snapshot.state in CYCLE:
+                    self._kept[type(command)] = command  # the program that is under way has its job already
+                    return
         self._outbox.put(Post(command, self.clock.now()))
+
+    def wait_for(self, shown: Callable[[Snapshot], bool]) -> None:
+        """Wait until a snapshot is as it was asked for, or the control does not answer."""
+        until = time.monotonic() + ANSWERS_IN
+        while not shown(self.snapshot) and not self._closed.is_set() and time.monotonic() < until:
+            self._came.wait(ALIVE_EVERY)
+            self._came.clear()
 
     def hand(self, name: str, *values: object) -> None:
         """Use the simulated operator station."""
@@ -113,30 +140,32 @@ class ControlClient:
             self._next_alive = now + ALIVE_EVERY
             self._outbox.put(Alive())
         if self._kept and snapshot.state not in CYCLE:
-            kept, self._kept = self._kept, {}
-            for command in kept.values():
-                self.post(command)
+            with self._keeping:
+                for command in self._kept.values():
+                    self._outbox.put(Post(command, now))
+                self._kept.clear()
 
     def leave(self, *, close: bool) -> None:
         """Disconnect before ``begin``; ``close``: end the control, whose machine is at rest."""
-        with suppress(OSError):
+        with self._connection, suppress(OSError, EOFError):
             if close:
                 self._connection.send(Close())
-                while not isinstance(self._connection.recv(), Closed):
-                    pass
-        self._connection.close()
+                until = time.monotonic() + CLOSES_IN
+                while self._connection.poll(max(until - time.monotonic(), 0.0)):
+                    self._connection.recv()  # to the end of its process, which has the socket
 
     def close(self) -> None:
         """Stop the machine, close its drivers, and wait for the end of the process."""
+        self._closing = True
         self._outbox.put(Close())
         self._closed.wait(CLOSES_IN)
         if self.process is not None:
             try:
-                self.process.wait(CLOSES_IN)
+                self.process.wait(ENDS)
             except subprocess.TimeoutExpired:
                 _log.error("the process of the control does not end; it is killed")
                 self.process.kill()
-                self.process.wait()
+                self.process.wait(ENDS)
         self._outbox.put(None)
         for thread in self._threads:
             thread.join(ENDS)
@@ -163,18 +192,23 @@ class ControlClient:
         assert self._events is not None
         try:
             while True:
-                self._take(self._connection.recv(), self._events)
-        except (OSError, EOFError, pickle.UnpicklingError):
-            if not self._closed.is_set():
-                self._lose(self._events)
+                message = self._connection.recv()
+                with ReportedAttempt(_not_taken):
+                    self._take(message, self._events)
+        except _NO_MESSAGE:
+            with ReportedAttempt(_not_taken):
+                if not self._closing:
+                    self._lose(self._events)
         self._closed.set()
 
     def _take(self, message: object, events: ControlEvents) -> None:
         match message:
             case Shown(snapshot, stirred):
                 self.snapshot = snapshot
+                self._came.set()
                 if stirred:
-                    events.stirs()
+                    with Attempt():  # a window that is being closed
+                        events.stirs()
             case Happened(number, event):
                 self.records.hear(event)
                 events.event(event)
@@ -227,19 +261,26 @@ class ControlRecords(Recordings):
         return not there and time.monotonic() < self._named.get(name, -_SAVED_IN) + _SAVED_IN
 
 
+def _not_taken(error: BaseException) -> None:
+    _log.error("a message of the control was not taken: %s", error)
+
+
 def _hello(connection: Connection, limit: float) -> Hello:
     """Return the first message of the control. Raises DriverError for what it says else, or does not say."""
     try:
         message = connection.recv() if connection.poll(limit) else None
-    except (OSError, EOFError, pickle.UnpicklingError, AttributeError, ImportError):
-        raise DriverError("the process of the control ended during start-up; see its message above") from None
+    except (OSError, EOFError):
+        words = "the process of the control ended during start-up; see its message above"
+        raise DriverError(words, reason=_ENDED) from None
+    except _NO_MESSAGE:
+        message = b""  # of another version
     match message:
         case Hello() if message.version == VERSION:
             return message
         case Failed(why):
-            raise DriverError(why)
+            raise DriverError(why, reason=why if why == BUSY else "")
         case None:
-            raise DriverError("the process of the control does not start")
+            raise DriverError(_SILENT if limit == ANSWERS_IN else "the process of the control does not start")
         case _:
             raise DriverError(
                 "the control that runs belongs to another version of TurnDesk: wait until it has ended, then "
@@ -250,18 +291,20 @@ def _hello(connection: Connection, limit: float) -> Hello:
 def find_control(machine: Machine, folder: Path, path: Path) -> ControlClient | None:
     """Return the control that runs already, since its screen was killed.
 
-    It listens at the socket ``path``. Returns None where nobody does.
+    It listens at the socket ``path``. Returns None where nobody does, and where another screen has it.
 
-    Raises DriverError where it runs another machine file.
+    Raises DriverError where it runs another machine file or another version, and where it does not answer.
     """
-    try:
-        connection = Client(str(path), "AF_UNIX")
-        if not is_own_user(connection):  # what it sends is executed when it is read
-            connection.close()
-            return None
-        found = ControlClient(StartedControl(connection, None), folder)
-    except (OSError, DriverError):
+    connection = _connected(path)
+    if connection is None:
         return None
+    try:
+        found = ControlClient(StartedControl(connection, None), folder)
+    except DriverError as error:
+        connection.close()
+        if error.reason in {BUSY, _ENDED}:
+            return None
+        raise
     if found.hello.machine == machine:
         return found
     under_way = found.snapshot.state in CYCLE
@@ -271,4 +314,22 @@ def find_control(machine: Machine, folder: Path, path: Path) -> ControlClient | 
             "the control is running a program with another machine file: start TurnDesk with that "
             "machine file"
         )
+    return None
+
+
+def _connected(path: Path) -> Connection | None:
+    """The connection to who listens there, as long as it is the same user: what is read is executed."""
+    with socket(AF_UNIX) as sock:
+        sock.setblocking(False)
+        try:
+            sock.connect(str(path))
+        except BlockingIOError:  # others wait before us
+            raise DriverError(_SILENT) from None
+        except OSError:
+            return None
+        sock.setblocking(True)
+        connection = Connection(sock.detach())
+    if is_own_user(connection):
+        return connection
+    connection.close()
     return None

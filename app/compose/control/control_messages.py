@@ -19,6 +19,7 @@ from core.machine.machine_model import Machine
 from core.records.record_ring import Recorded
 
 VERSION = 2  # of these messages
+BUSY = "busy"  # why a second screen is refused; it is not shown
 STALE = 0.5  # s after which a press that moves something does not count any more
 _CREDENTIALS = struct.Struct("3i")  # process, user, group
 

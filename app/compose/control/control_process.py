@@ -60,15 +60,20 @@ def main(arguments: list[str]) -> int:
 
 def _serve_screens(server: ControlServer, first: Connection, folder: Path) -> None:
     """Talk to the screen that has started the control, then to one after the other that finds it."""
-    path = socket_path(folder)
-    listener = _listener(path)
-    server.serve(first)
+    _serve(server, first)  # before anybody else finds the control
+    listener = _listener(socket_path(folder))
     while listener is not None and not server.closing.is_set():
         with suppress(OSError, EOFError):
             connection = listener.accept()
             if is_own_user(connection):
-                server.serve(connection)
-            connection.close()
+                _serve(server, connection)
+            else:
+                connection.close()
+
+
+def _serve(server: ControlServer, connection: Connection) -> None:
+    """On a thread of its own: a second screen is answered while another is connected."""
+    threading.Thread(target=server.serve, args=(connection,), name="screen", daemon=True).start()
 
 
 def _listener(path: Path | None) -> Listener | None:
@@ -91,7 +96,10 @@ def _listens(path: Path) -> bool:
     """Return whether another control has the socket."""
     try:
         with socket.socket(socket.AF_UNIX) as other:
+            other.setblocking(False)
             other.connect(str(path))
+    except BlockingIOError:
+        return True  # so many wait there
     except OSError:
         return False
     return True

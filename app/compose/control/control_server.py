@@ -14,16 +14,21 @@ from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
+from datetime import UTC, datetime, timedelta
 from multiprocessing.connection import Connection
+from multiprocessing.reduction import ForkingPickler
 from pathlib import Path
+from socket import AF_UNIX, SHUT_RDWR, SOCK_STREAM, fromfd
 
 from app.compose.backends.connection import connect
 from app.compose.control.control_messages import (
+    BUSY,
     STALE,
     VERSION,
     Alive,
     Close,
     Closed,
+    Failed,
     Hand,
     Happened,
     Heard,
@@ -35,21 +40,35 @@ from app.compose.control.control_messages import (
     StopLine,
     ThreadEnded,
 )
-from app.compose.control.left_note import remove_note, save_note
+from app.compose.control.left_note import remove_note, save_events, save_note
 from app.compose.control.rights import Right
 from app.compose.control.shared_memory import SharedMemory
 from app.compose.control.stop_line import obey_line
+from app.compose.extra import extras
 from app.desk.stop_keys.stop_records import Stop, StopKind
-from core.executor.commands import BarNextPart, Command, FeedHold, JogStop, LoadJob, Prepare, Renew
+from core.closing import ClosingStep, close_in_order
+from core.executor.commands import (
+    BarNextPart,
+    Command,
+    FeedHold,
+    JogStop,
+    LoadJob,
+    Prepare,
+    Renew,
+    Reset,
+    SpindleStop,
+    WheelOff,
+)
 from core.executor.executor import STARTS, Executor
-from core.executor.raised_alarm import ReportedAttempt
+from core.executor.raised_alarm import Attempt, ReportedAttempt
 from core.executor.recorder import Recorder, recorded_of
 from core.executor.safety.watchdog import WATCHDOG, ExecutorThread, Watchdog
-from core.executor.snapshot import ACTIVE, STOPPED, Event, InterruptedJob, Snapshot, Tick
+from core.executor.snapshot import ACTIVE, STOPPED, Event, InterruptedJob, Snapshot, State, Tick
 from core.interpreter.dialects import ReadProgram
 from core.machine.machine_model import Machine
 from core.message import Message
 from core.ports import DriverError
+from core.store.store_rows import EventRow, utc
 from drivers.waiting import RealClock
 
 _log = logging.getLogger(__name__)
@@ -61,10 +80,13 @@ SILENT_LOOKS = 30  # looks without a message after which the screen counts as hu
 REST_LOOKS = 150  # looks without a screen after which a machine at rest is closed: 15 s
 STOPPED_LOOKS = 600  # the same for a program that is stopped: a minute
 _STARTING_HANDS = frozenset({"press_left", "press_right"})
+_GOES = frozenset({State.RUN, State.WAIT, State.JOG, State.HOME})
 _STOPPING_HANDS = frozenset({"press_hold", "press_estop"})
 ENDS = 1.0  # s that closing waits until the screen has been told
+EXECUTOR_CLOSES = 12.0  # s: drives that come on are waited for, then the machine is halted
+_STOPS = FeedHold | JogStop | Reset | SpindleStop | WheelOff  # they overtake other commands
+_UNSAVED = object()
 _ALONE = Message("TurnDesk, because the screen did not respond")
-WATCHED = ("commands", "recorder", "inverter", WATCHDOG)  # threads of this process
 
 
 class Outbox:
@@ -106,6 +128,12 @@ class Outbox:
             while self._events and self._events[0].number <= number:
                 self._events.popleft()
 
+    @property
+    def unheard(self) -> list[Event]:
+        """Events that no screen has kept."""
+        with self._lock:
+            return [each.event for each in self._events]
+
     def note(self, job: InterruptedJob | None) -> None:
         """Replace the note of the interrupted job."""
         self._noted = Noted(job)
@@ -127,30 +155,40 @@ class Outbox:
         while not gone.is_set():
             self._ready.wait(SEND_AGAIN)
             self._ready.clear()
-            self._send_all(connection)
-            if self._closed:
+            if self._send_all(connection):
                 return
             if not self._stirred:
                 gone.wait(PACE)
 
-    def _send_all(self, connection: Connection) -> None:
+    def _send_all(self, connection: Connection) -> bool:
+        """Send what waits; returns whether that was the end."""
         with self._lock:
             events = [each for each in self._events if each.number > self._sent]
         for event in events:
-            connection.send(event)
+            _send(connection, event)
             self._sent = event.number
         while self._ended:
-            connection.send(self._ended.popleft())
+            _send(connection, self._ended.popleft())
         noted, self._noted = self._noted, None
         if noted is not None:
-            connection.send(noted)  # a screen that comes later has it from Hello
+            _send(connection, noted)  # a screen that comes later has it from Hello
+        closed = self._closed  # first: what is shown behind it is the last snapshot
         stirred, self._stirred = self._stirred, False
         snapshot = self._snapshot()
         if stirred or snapshot is not self._shown:
-            connection.send(Shown(snapshot, stirred))
+            _send(connection, Shown(snapshot, stirred))
             self._shown = snapshot
-        if self._closed:
-            connection.send(Closed())
+        if closed:
+            _send(connection, Closed())
+        return closed
+
+
+def _send(connection: Connection, message: object) -> None:
+    """Send one message. One that cannot be pickled is logged and left out. Raises OSError."""
+    with ReportedAttempt(lambda _: _log.error("the screen does not get %s", type(message).__name__)) as trial:
+        data = ForkingPickler.dumps(message)
+    if trial.error is None:
+        connection.send_bytes(data)
 
 
 class ControlServer:
@@ -176,15 +214,17 @@ class ControlServer:
         )
         self.executor.stirs = self.outbox.stir
         self._thread = ExecutorThread(self.executor, clock)
-        self._watchdog = Watchdog(self._thread, self.executor.halt, WATCHED, self.outbox.thread_ended)
+        self._watchdog = Watchdog(self._thread, self.executor.halt, watched(), self.outbox.thread_ended)
         self._noted: InterruptedJob | None = None
         self._reading: ReadProgram | None = None
         self._screen: Connection | None = None
+        self._served = threading.Lock()  # held while a screen is connected
         self._sender: threading.Thread | None = None
         self._quiet = self._away = 0  # looks since the screen was heard, since it has gone
+        self._met = False  # whether this screen has looked at the machine: until then it opens its window
         self._alone = False  # the screen has gone, or hangs
         self._barred = ""  # why no next part was to begin before that
-        self._saved: InterruptedJob | None = None  # the note that is kept in the data folder
+        self._saved: object = _UNSAVED  # the note that is kept in the data folder
         self._posts: queue.SimpleQueue[Post] = queue.SimpleQueue()
         self._stopped_at = -1.0  # s, when a hand or a key has asked for a stop
         self.closing = threading.Event()
@@ -198,14 +238,31 @@ class ControlServer:
 
     def close(self) -> None:
         """Stop the machine as E-stop would leave it, and close its drivers."""
-        self._watchdog.end()
-        self._thread.close()
-        self._connected.close()
-        self._watchdog.close()
-        self.recorder.close()
+        close_in_order(
+            (
+                ClosingStep("watchdog", self._watchdog.end),
+                ClosingStep("executor", self._thread.close, EXECUTOR_CLOSES),
+                ClosingStep("drivers", self._connected.close),
+                ClosingStep("watchdog", self._watchdog.close),
+                ClosingStep("recorder", self.recorder.close),
+            )
+        )
         self.outbox.close()
         if self._sender is not None:
             self._sender.join(ENDS)
+        close_in_order([ClosingStep("events", self._leave_events)])
+
+    def _leave_events(self) -> None:
+        """Keep for the next start what no screen has kept."""
+        left = self.outbox.unheard if self._screen is None else []
+        if left:
+            began = datetime.now(UTC) - timedelta(seconds=self._clock.now())
+            times = (utc(began + timedelta(seconds=each.t)) for each in left)
+            rows = [
+                EventRow(at, each.kind, each.text, each.line, each.record)
+                for at, each in zip(times, left, strict=True)
+            ]
+            save_events(self._folder, self.executor.snapshot.program, rows)
 
     # --- the executor's thread ------------------------------------------------------------------------
 
@@ -223,25 +280,44 @@ class ControlServer:
     # --- the screen -----------------------------------------------------------------------------------
 
     def serve(self, connection: Connection) -> None:
-        """Talk to one screen until its connection ends."""
+        """Talk to one screen until its connection ends, and close that; a second screen is refused."""
+        with connection:
+            if not self._served.acquire(timeout=ENDS):  # one that was killed a moment ago has it still
+                with suppress(OSError):
+                    connection.send(Failed(BUSY))
+                return
+            try:
+                if not self.closing.is_set():
+                    self._talk(connection)
+            finally:
+                self._served.release()
+
+    def _talk(self, connection: Connection) -> None:
         gone = threading.Event()
-        sender = self._sender = threading.Thread(
+        sender = threading.Thread(
             target=self._send, args=(connection, gone), name="control-sender", daemon=True
         )
-        try:
+        with Attempt() as talk:
             connection.send(self._hello())
             self._memory.send_to(connection)
-            self._screen = connection
+            self._quiet, self._met, self._screen = 0, False, connection
             remove_note(self._folder)
+            self._saved = _UNSAVED  # should it go before it has kept what was noted
             sender.start()
+            self._sender = sender
             while True:
-                self._obey(connection.recv())
-        except (OSError, EOFError):
-            pass  # the screen has ended: ``look`` does what the machine file says
-        finally:
-            self._screen = None
-            gone.set()
-            self._let_go()
+                message = connection.recv()
+                with ReportedAttempt(_not_obeyed):
+                    self._obey(message)
+        if not isinstance(talk.error, OSError | EOFError):  # else ``look`` does what the machine file says
+            _log.error("the screen has sent what is no message; it is disconnected", exc_info=talk.error)
+        self._screen = None
+        gone.set()
+        if sender.is_alive():
+            with fromfd(connection.fileno(), AF_UNIX, SOCK_STREAM) as sock, suppress(OSError):
+                sock.shutdown(SHUT_RDWR)  # it may wait for a screen that does not read
+            sender.join()
+        self._let_go()
 
     def _send(self, connection: Connection, gone: threading.Event) -> None:
         with suppress(OSError):
@@ -264,12 +340,13 @@ class ControlServer:
         )
 
     def _obey(self, message: object) -> None:
-        self._quiet = 0
         match message:
-            case Post(FeedHold() | JogStop() as command, at):
-                self._stopped_at = at
+            case Post(command, at) if isinstance(command, _STOPS):
+                self._stopped_at = max(self._stopped_at, at)
                 self.executor.post(command, at)
-            case Post():
+            case Post(command):
+                if isinstance(command, BarNextPart):
+                    self._barred = command.why
                 self._posts.put(message)
             case Hand():
                 self._use_hand(message)
@@ -280,7 +357,7 @@ class ControlServer:
             case Heard(number):
                 self.outbox.heard(number)
             case Alive():
-                pass
+                self._quiet, self._met = 0, True  # with this alone: its threads answer also while it hangs
             case Close():
                 self.closing.set()
             case _:
@@ -288,7 +365,7 @@ class ControlServer:
 
     def _stop(self, stop: Stop) -> None:
         """Obey a stop key. Called from the thread of its line."""
-        self._stopped_at = self._clock.now()
+        self._stopped_at = max(self._stopped_at, self._clock.now())
         panel = self._connected.panel
         if stop.kind is StopKind.ESTOP and panel is not None:
             panel.press_estop()
@@ -308,7 +385,7 @@ class ControlServer:
 
     def _use_hand(self, hand: Hand) -> None:
         if hand.name in _STOPPING_HANDS:
-            self._stopped_at = hand.at
+            self._stopped_at = max(self._stopped_at, hand.at)
         late = self._clock.now() - hand.at > STALE
         if self._connected.panel is None or (late and hand.name in _STARTING_HANDS):
             return
@@ -345,27 +422,41 @@ class ControlServer:
         """Look at the screen, every ``LOOK`` seconds: a cut goes on without it, or stops."""
         self._quiet += 1
         self._away = 0 if self._screen is not None else self._away + 1
-        alone = self._away > 0 or self._quiet >= SILENT_LOOKS
+        silent = self._quiet >= SILENT_LOOKS if self._met else self._alone
+        alone = self._away > 0 or silent
         if alone is not self._alone:
             self._alone = alone
             self._go_alone() if alone else self._go_together()
         if self._away and self._noted is not self._saved:
-            self._saved = self._noted
-            save_note(self._folder, self._noted)
+            self._save_note()
         state = self.executor.snapshot.state
+        if alone and state in _GOES and not self._machine.hardware.continues_alone:
+            self.executor.post(FeedHold(_ALONE))  # also where the machine's own buttons have started it
         longest = STOPPED_LOOKS if state in STOPPED else REST_LOOKS
         if self._away >= longest and state not in ACTIVE:
             self.closing.set()
 
     def _go_alone(self) -> None:
         """The screen has gone, or hangs: its keys stop nothing now, and it counts no parts."""
-        self._saved = None
+        self._saved = _UNSAVED
         if self._machine.hardware.continues_alone:
-            self._barred = self.executor.snapshot.next_barred
             self.executor.post(BarNextPart(_ALONE))
-        else:
-            self.executor.post(FeedHold(_ALONE))
 
     def _go_together(self) -> None:
         if self._machine.hardware.continues_alone:
             self.executor.post(BarNextPart(self._barred))
+
+    def _save_note(self) -> None:
+        self._saved = noted = self._noted
+        save_note(self._folder, noted)
+        if self._screen is not None:  # it has come meanwhile, and has the note
+            remove_note(self._folder)
+
+
+def watched() -> tuple[str, ...]:
+    """Names of threads that may run in this process and whose end an operator is told."""
+    return "commands", "recorder", "inverter", WATCHDOG, *(n for e in extras().values() for n in e.threads)
+
+
+def _not_obeyed(error: BaseException) -> None:
+    _log.error("a message of the screen was not obeyed: %s", error)

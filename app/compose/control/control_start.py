@@ -8,6 +8,7 @@ import socket
 import subprocess
 import sys
 import time
+from contextlib import suppress
 from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import NamedTuple
@@ -61,6 +62,6 @@ def start_control(machine: Machine, folder: Path) -> StartedControl:
             start_new_session=True,
         )
     assert process.stdin is not None
-    with process.stdin as pipe:
+    with suppress(BrokenPipeError), process.stdin as pipe:  # one that has ended is told of by its connection
         pipe.write(pickle.dumps(machine))
     return StartedControl(Connection(ours.detach()), process)

@@ -1,17 +1,21 @@
-"""What was interrupted while no screen was connected: a file in the data folder, for the next start."""
+"""What happened while no screen was connected: files in the data folder, for the next start."""
 
 from __future__ import annotations
 
 import json
 import logging
+from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
 
 from core.executor.snapshot import InterruptedJob, of_plain, plain
 from core.file_placing import write_in_place
+from core.message import pack_message, unpack_message
+from core.store.store_rows import EventRow
 
 _log = logging.getLogger(__name__)
 NAME = "interrupted.json"
+EVENTS = "left_events.json"
 
 
 def save_note(folder: Path, job: InterruptedJob | None) -> None:
@@ -38,3 +42,32 @@ def remove_note(folder: Path) -> None:
     """Remove the note: a screen is connected, whose store has it."""
     with suppress(OSError):
         (folder / NAME).unlink(missing_ok=True)
+
+
+def save_events(folder: Path, program: str, rows: Iterable[EventRow]) -> None:
+    """Keep the events of this program that no screen has kept. A disk that fails is logged."""
+    told = [[*row[:5], pack_message(row.text)] for row in rows]
+    try:
+        write_in_place(folder / EVENTS, json.dumps([program, told]).encode())
+    except OSError as error:
+        _log.warning("%d events cannot be kept in %s: %s", len(told), folder / EVENTS, error)
+
+
+def take_events(folder: Path) -> tuple[str, tuple[EventRow, ...]]:
+    """Return the program and its events that no screen has kept; the file is removed then."""
+    path = folder / EVENTS
+    try:
+        program, told = json.loads(path.read_bytes())
+        rows = tuple(_row(*each) for each in told)
+    except FileNotFoundError:
+        return "", ()
+    except (OSError, ValueError, TypeError) as error:
+        _log.warning("the events in %s are lost: %s", path, error)
+        program, rows = "", ()
+    with suppress(OSError):
+        path.unlink()
+    return str(program), rows
+
+
+def _row(at: str, kind: str, text: str, line: int, record: str, packed: str) -> EventRow:
+    return EventRow(str(at), str(kind), unpack_message(packed, str(text)), int(line), str(record))

@@ -9,6 +9,7 @@ from collections.abc import Callable, Collection, Mapping
 from contextlib import closing
 from pathlib import Path
 
+from app.compose.control.left_note import take_events, take_note
 from app.desk.data_folder import data_folder
 from app.desk.persistence import NoRunRecords, Persistence
 from app.offsets.offset_book import OffsetBook, OffsetRows, rows_of_store
@@ -64,6 +65,7 @@ class Journal(Persistence):
         self._closing = threading.Event()
         self._opener: threading.Thread | None = None  # where there was no store at the start
         self.left: InterruptedJob | None = None  # what the last one has left
+        self.left_is_logged = True  # as a rule: the control before had a screen to the end
         self.damage: tuple[str, ...] = ()  # what was not as it was saved, in sentences
         self._tell_late: Callable[[], None] = _nobody
         self._late = False  # whether the store came after the start
@@ -97,11 +99,25 @@ class Journal(Persistence):
         left = None
         if not self._goes_on:
             note_cut_off_runs(store.runs)
-            left = of_plain(store.settings.read_setting(UNDER_WAY))
+            left = self._what_was_left(store)
         with self._lock:
             self._unread = False
             if not self._has_noted:
                 self.left = self._noted = left
+
+    def _what_was_left(self, store: Store) -> InterruptedJob | None:
+        """Keep what a control has told without a screen; returns the job that is interrupted."""
+        program, rows = take_events(self._folder)
+        if rows:
+            store.events.log_events(rows)
+        for _ in (row for row in rows if row.kind == "part"):
+            store.runs.add_parts(Path(program).name)
+        known, left = take_note(self._folder)
+        if not known:
+            return of_plain(store.settings.read_setting(UNDER_WAY))
+        self.left_is_logged = False
+        store.settings.save_setting(UNDER_WAY, None if left is None else plain(left))
+        return left
 
     @classmethod
     def at_home(cls, *, goes_on: bool = False) -> Journal:

@@ -6,6 +6,7 @@ a family of codes adds can be forgotten here.
 
 from __future__ import annotations
 
+import os
 from copy import deepcopy
 from itertools import count
 from typing import Any, Generic, NamedTuple, TypeVar
@@ -14,6 +15,7 @@ from core.interpreter.shared.actions import Action
 from core.interpreter.shared.modal_state import Modal
 
 Parts = TypeVar("Parts")
+_process = os.urandom(8).hex()  # a checkpoint may go to another process
 _numbers = count(1)
 
 
@@ -25,7 +27,9 @@ class StateLine(NamedTuple):
 
 
 class KeptPass(Generic[Parts]):
-    """The parts of an interpreter between two blocks. Equal to itself alone; its text tells it from others.
+    """The parts of an interpreter between two blocks. Its text tells it from others, in all processes.
+
+    It is equal to itself alone, and to what another process makes of it.
 
     ``shared`` are objects that are not copied: the circumstances, the log, texts that have been read.
     """
@@ -33,11 +37,17 @@ class KeptPass(Generic[Parts]):
     def __init__(self, parts: Parts, shared: tuple[object, ...], lines: tuple[StateLine, ...] = ()) -> None:
         self._shared = shared
         self._parts = deepcopy(parts, {id(each): each for each in self._shared})
-        self._number = next(_numbers)
+        self._name = f"{_process}-{next(_numbers)}"
         self.lines = lines
 
     def __repr__(self) -> str:
-        return f"KeptPass {self._number}"
+        return f"KeptPass {self._name}"
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, KeptPass) and self._name == other._name
+
+    def __hash__(self) -> int:
+        return hash(self._name)
 
     def parts(self, *instead: object) -> Parts:
         """A copy to go on with, in which ``instead`` take the places of the first shared objects."""

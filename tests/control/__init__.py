@@ -1,0 +1,1 @@
+"""The control in a process of its own, and its screen."""

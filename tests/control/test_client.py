@@ -1,0 +1,486 @@
+"""The screen's end of the connection, against a control of which a test has the other end."""
+
+from __future__ import annotations
+
+import os
+import socket
+import subprocess
+import sys
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
+from multiprocessing.connection import Connection, Listener, Pipe
+from pathlib import Path
+
+import pytest
+
+from app.compose.control import control_client
+from app.compose.control.control_client import ControlClient, find_control
+from app.compose.control.control_events import ControlEvents
+from app.compose.control.control_messages import (
+    BUSY,
+    VERSION,
+    Alive,
+    Close,
+    Closed,
+    Failed,
+    Hand,
+    Happened,
+    Heard,
+    Hello,
+    Noted,
+    Post,
+    Shown,
+    ThreadEnded,
+    is_own_user,
+)
+from app.compose.control.control_start import StartedControl, socket_path, start_control
+from app.compose.control.shared_memory import SharedMemory
+from core.executor.commands import GiveProof, LoadJob, SetSwitch
+from core.executor.job import Proof
+from core.executor.snapshot import Event, InterruptedJob, Snapshot, State
+from core.machine.machine_model import Machine
+from core.ports import DriverError
+from core.records.record_ring import Recorded
+from tests.control.bench import PATIENCE, SHORT, job_of, one_button, until
+from tests.executor.rig import Rig
+from tests.interrupted import broken_off
+
+RECORDED = Recorded({"X": False, "Z": False}, lasts=1.0)
+MACHINE = one_button()
+
+
+@pytest.fixture(scope="module")
+def idle() -> Snapshot:
+    rig = Rig()
+    rig.ready()
+    return rig.shot
+
+
+@dataclass
+class Peer:
+    """The control's end: it says what a test wants."""
+
+    end: Connection
+    snapshot: Snapshot
+    machine: Machine = MACHINE
+    version: int = VERSION
+    memory: SharedMemory = field(default_factory=lambda: SharedMemory.of_size(RECORDED.ring_bytes))
+
+    def greet(self, noted: InterruptedJob | None = None) -> None:
+        """Hello, and the memory behind it."""
+        hello = Hello(
+            self.version, self.machine, 0.0, (), (), RECORDED, "", True, False, self.snapshot, noted
+        )
+        self.end.send(hello)
+        self.memory.send_to(self.end)
+
+    def next(self, *kinds: type) -> object:
+        """The next message of one of these kinds."""
+        while self.end.poll(PATIENCE):
+            message = self.end.recv()
+            if isinstance(message, kinds):
+                return message
+        raise AssertionError(kinds)
+
+    def sent(self) -> list[object]:
+        """What the client posted before a mark."""
+        found = list[object]()
+        while not isinstance(message := self.next(Post, Heard, Hand), Heard):
+            found.append(message.command if isinstance(message, Post) else message)
+        return found
+
+
+@dataclass
+class Ear:
+    """Everything that the client tells."""
+
+    events: list[Event] = field(default_factory=list)
+    notes: list[InterruptedJob | None] = field(default_factory=list)
+    ended: list[str] = field(default_factory=list)
+    stirs: list[int] = field(default_factory=list)
+    fails: bool = False
+
+    def hear(self, event: Event) -> None:
+        """An event, which cannot be kept while this fails."""
+        if self.fails:
+            raise ValueError
+        self.events.append(event)
+
+    def note(self, job: InterruptedJob | None) -> None:
+        """What is interrupted."""
+        if self.fails:
+            raise ValueError
+        self.notes.append(job)
+
+    def stir(self) -> None:
+        """The window, which may be gone."""
+        if self.fails:
+            raise RuntimeError
+        self.stirs.append(1)
+
+    @property
+    def all(self) -> ControlEvents:
+        """What the client calls."""
+        return ControlEvents(self.hear, self.note, self.ended.append, self.stir)
+
+
+@dataclass
+class Pair:
+    """Both ends."""
+
+    peer: Peer
+    client: ControlClient
+    ear: Ear = field(default_factory=Ear)
+
+    def begin(self) -> None:
+        """Listen and send."""
+        self.client.begin(self.ear.all)
+
+    def mark(self) -> list[object]:
+        """What the client has sent so far."""
+        self.peer.end.send(Happened(999, Event(0.0, "test", "mark")))
+        return self.peer.sent()
+
+
+@pytest.fixture
+def pair(idle: Snapshot, tmp_path: Path) -> Iterator[Pair]:
+    made = connected(idle, tmp_path)
+    made.begin()
+    yield made
+    made.peer.end.close()
+    made.client.close()
+
+
+def connected(snapshot: Snapshot, folder: Path) -> Pair:
+    ours, theirs = Pipe()
+    peer = Peer(theirs, snapshot)
+    peer.greet()
+    return Pair(peer, ControlClient(StartedControl(ours, None), folder))
+
+
+def test_events_are_acknowledged_and_notes_are_handed_on(pair: Pair) -> None:
+    job = broken_off()
+    pair.peer.end.send(Happened(3, Event(1.0, "part", "part 1")))
+    assert pair.peer.next(Heard) == Heard(3)
+    pair.peer.end.send(Noted(job))
+    pair.peer.end.send(ThreadEnded("recorder"))
+    pair.mark()
+    assert [event.kind for event in pair.ear.events] == ["part", "test"]
+    assert pair.ear.notes == [job]
+    assert pair.ear.ended == ["recorder"]
+
+
+def test_an_unknown_message_and_a_listener_that_fails_end_nothing(pair: Pair, idle: Snapshot) -> None:
+    pair.peer.end.send("what is this?")
+    pair.ear.fails = True
+    later = replace(idle, t=77.0)
+    pair.peer.end.send(Noted(None))
+    pair.peer.end.send(Shown(later, stirred=True))
+    pair.peer.end.send(ThreadEnded("a mark"))
+    until(lambda: bool(pair.ear.ended))
+    assert pair.client.snapshot == later
+
+
+def test_an_event_that_could_not_be_kept_is_not_acknowledged(pair: Pair) -> None:
+    pair.ear.fails = True
+    pair.peer.end.send(Happened(1, Event(1.0, "part", "part 1")))
+    pair.peer.end.send(ThreadEnded("a mark"))
+    until(lambda: bool(pair.ear.ended))
+    pair.ear.fails = False
+    pair.client.post(SetSwitch("single_block", True))
+    assert pair.mark() == [SetSwitch("single_block", True)]
+
+
+def test_what_cannot_be_pickled_keeps_nothing_else_from_the_control(pair: Pair) -> None:
+    pair.client.post(SetSwitch("single_block", threading.Lock()))  # type: ignore[arg-type]
+    pair.client.post(SetSwitch("single_block", True))
+    assert pair.mark() == [SetSwitch("single_block", True)]
+
+
+def test_hands_and_signs_of_life_go_with_their_time(pair: Pair, idle: Snapshot) -> None:
+    assert pair.client.hands is not None
+    pair.client.hands.press_left()
+    hand = pair.peer.next(Hand)
+    assert isinstance(hand, Hand)
+    assert hand[:2] == ("press_left", ())
+    assert hand.at == pytest.approx(pair.client.clock.now(), abs=PATIENCE)
+    pair.client.see(idle)
+    assert pair.peer.next(Alive) == Alive()
+    pair.client.see(idle)  # at once: it was told a moment ago
+    assert pair.mark() == []
+
+
+@pytest.mark.parametrize("data", [b"", b"\x80", b"no pickle", b"cno.such\nmodule\n.", b"\x80\x05K\x01K\x02"])
+def test_damaged_bytes_are_a_lost_control(pair: Pair, data: bytes) -> None:
+    pair.peer.end.send_bytes(data)
+    until(lambda: bool(pair.ear.events))
+    assert pair.client.snapshot.state is State.FAULT
+
+
+@pytest.mark.parametrize("closed", [False, True])
+def test_a_control_that_ends_by_itself_is_an_alarm(pair: Pair, closed: bool) -> None:
+    if closed:  # as SIGTERM ends it
+        pair.peer.end.send(Closed())
+    pair.peer.end.close()
+    until(lambda: pair.client.snapshot.state is State.FAULT)
+    until(lambda: bool(pair.ear.stirs))
+    (event,) = pair.ear.events
+    assert event.alarm is not None
+    assert event.alarm.code == "control-silent"
+    assert pair.client.snapshot.alarms == (event.alarm,)
+
+
+def test_a_control_that_the_screen_has_closed_is_none(idle: Snapshot, tmp_path: Path) -> None:
+    pair = connected(idle, tmp_path)
+    pair.begin()
+    closing = threading.Thread(target=pair.client.close)
+    closing.start()
+    assert pair.peer.next(Close) == Close()
+    pair.peer.end.send(Closed())
+    pair.peer.end.close()
+    closing.join(PATIENCE)
+    assert pair.ear.events == []
+    assert pair.client.snapshot.state is State.IDLE
+    names = {thread.name for thread in threading.enumerate()}
+    assert not names & {"control-events", "control-posts"}
+
+
+# --- a program that was under way -------------------------------------------------------------------------
+
+
+def test_a_program_that_is_loaded_during_a_cycle_follows_behind_it(idle: Snapshot, tmp_path: Path) -> None:
+    running = replace(idle, state=State.RUN)
+    pair = connected(running, tmp_path)
+    pair.begin()
+    first, second = job_of(SHORT, MACHINE), job_of(SHORT + "\n", MACHINE)
+    for job in (first, second):
+        pair.client.post(LoadJob(job))
+    pair.client.post(GiveProof(Proof(second.digest, ())))
+    pair.client.post(SetSwitch("single_block", True))
+    pair.client.see(running)
+    assert pair.mark() == [SetSwitch("single_block", True)]
+    pair.peer.end.send(Shown(idle, stirred=False))
+    pair.mark()
+    pair.client.post(GiveProof(Proof(second.digest, (), blocks=3)))  # not before the job that is kept
+    pair.client.see(idle)
+    assert pair.mark() == [LoadJob(second), GiveProof(Proof(second.digest, (), blocks=3))]
+    pair.client.post(LoadJob(first))
+    assert pair.mark() == [LoadJob(first)]
+    pair.peer.end.close()
+    pair.client.close()
+
+
+def test_a_program_that_a_worker_loads_just_then_is_not_lost(idle: Snapshot, tmp_path: Path) -> None:
+    running = replace(idle, state=State.RUN)
+    pair = connected(running, tmp_path)
+    pair.begin()
+    job = job_of(SHORT, MACHINE)
+    over = threading.Event()
+
+    def load() -> None:
+        while not over.is_set():
+            pair.client.post(LoadJob(job))
+            pair.client.post(GiveProof(Proof(job.digest, ())))
+
+    worker = threading.Thread(target=load)
+    worker.start()
+    for _ in range(300):
+        pair.client.snapshot = running
+        pair.client.see(running)
+        pair.client.snapshot = idle
+        pair.client.see(idle)
+    over.set()
+    worker.join()
+    pair.client.snapshot = running
+    pair.client.post(LoadJob(job))
+    pair.client.see(idle)
+    assert pair.mark()[-1] == LoadJob(job)
+    pair.peer.end.close()
+    pair.client.close()
+
+
+# --- what may be at the other end ---------------------------------------------------------------------------
+
+
+class Listening:
+    """Who listens at a socket path, and what he does with who connects."""
+
+    def __init__(self, path: Path, serve: Callable[[Connection], object]) -> None:
+        self._path = str(path)
+        self._listener = Listener(self._path, "AF_UNIX")
+        self._serve = serve
+        self.thread = threading.Thread(target=self._run, daemon=True)
+        self.thread.start()
+
+    def _run(self) -> None:
+        with suppress(OSError):  # nobody came
+            self._serve(self._listener.accept())
+
+    def close(self) -> None:
+        """Listen no more."""
+        with suppress(OSError), socket.socket(socket.AF_UNIX) as nobody:
+            nobody.connect(self._path)
+        self.thread.join(PATIENCE)
+        self._listener.close()
+
+
+@pytest.fixture
+def path(tmp_path: Path) -> Path:
+    found = socket_path(tmp_path)
+    assert found is not None
+    return found
+
+
+def find(tmp_path: Path, path: Path, serve: Callable[[Connection], object]) -> ControlClient | None:
+    """Look for the control there, whose end does ``serve``."""
+    listening = Listening(path, serve)
+    try:
+        return find_control(MACHINE, tmp_path, path)
+    finally:
+        listening.close()
+
+
+def test_nobody_listens(tmp_path: Path, path: Path) -> None:
+    assert find_control(MACHINE, tmp_path, path) is None
+    path.write_text("no socket")
+    assert find_control(MACHINE, tmp_path, path) is None
+    path.unlink()
+    with socket.socket(socket.AF_UNIX) as left:
+        left.bind(str(path))  # of a control that was killed
+    assert find_control(MACHINE, tmp_path, path) is None
+
+
+def test_a_control_with_the_same_machine_file_is_taken(tmp_path: Path, path: Path, idle: Snapshot) -> None:
+    peers: list[Peer] = []
+
+    def serve(connection: Connection) -> None:
+        peers.append(Peer(connection, idle))
+        peers[0].greet(broken_off())
+
+    found = find(tmp_path, path, serve)
+    assert found is not None
+    assert found.attached
+    assert found.hello.noted == broken_off()
+    found.leave(close=False)
+
+
+@pytest.mark.parametrize("state", [State.RUN, State.HOLD])
+def test_another_machine_file_under_way_is_refused(
+    tmp_path: Path, path: Path, idle: Snapshot, state: State
+) -> None:
+    other, running = replace(MACHINE, name="another"), replace(idle, state=state)
+    with pytest.raises(DriverError):
+        find(tmp_path, path, lambda end: Peer(end, running, other).greet())
+
+
+def test_another_machine_file_at_rest_is_closed(tmp_path: Path, path: Path, idle: Snapshot) -> None:
+    other = replace(MACHINE, name="another")
+    got: list[object] = []
+
+    def serve(end: Connection) -> None:
+        Peer(end, idle, other).greet()
+        got.append(end.recv())
+        end.send(Shown(idle, stirred=False))
+        end.close()  # without a word: its process has ended
+
+    assert find(tmp_path, path, serve) is None
+    assert got == [Close()]
+
+
+def test_another_machine_file_at_rest_that_does_not_end_keeps_nobody_waiting(
+    tmp_path: Path, path: Path, idle: Snapshot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(control_client, "CLOSES_IN", 0.1)
+    ends: list[Connection] = []
+
+    def serve(end: Connection) -> None:
+        ends.append(end)
+        Peer(end, idle, replace(MACHINE, name="another")).greet()
+
+    assert find(tmp_path, path, serve) is None
+
+
+@pytest.mark.parametrize("version", [VERSION + 1, 0, "x"])
+def test_another_version_is_refused(tmp_path: Path, path: Path, idle: Snapshot, version: int) -> None:
+    with pytest.raises(DriverError):
+        find(tmp_path, path, lambda end: Peer(end, idle, version=version).greet())
+
+
+@pytest.mark.parametrize("data", [b"no pickle", b"cno.such\nmodule\n.", b"capp.desk.desk\nNothing\n."])
+def test_a_message_that_cannot_be_read_is_another_version(tmp_path: Path, path: Path, data: bytes) -> None:
+    with pytest.raises(DriverError):
+        find(tmp_path, path, lambda end: end.send_bytes(data))
+
+
+def test_a_control_that_says_nothing_is_not_joined_by_another(
+    tmp_path: Path, path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(control_client, "ANSWERS_IN", 0.1)
+    ends: list[Connection] = []
+    with pytest.raises(DriverError):
+        find(tmp_path, path, ends.append)
+
+
+def test_a_control_whose_queue_is_full_keeps_nobody_waiting(
+    tmp_path: Path, path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(control_client, "ANSWERS_IN", 0.1)
+    with socket.socket(socket.AF_UNIX) as listener:
+        listener.bind(str(path))
+        listener.listen(0)
+        with socket.socket(socket.AF_UNIX) as first:
+            first.connect(str(path))
+            with pytest.raises(DriverError):
+                find_control(MACHINE, tmp_path, path)
+
+
+@pytest.mark.parametrize("why", [BUSY])
+def test_a_control_that_has_a_screen_is_left_alone(tmp_path: Path, path: Path, why: str) -> None:
+    assert find(tmp_path, path, lambda end: end.send(Failed(why))) is None
+
+
+def test_a_control_that_ends_just_then_is_none(tmp_path: Path, path: Path) -> None:
+    assert find(tmp_path, path, lambda end: end.close()) is None
+
+
+def test_another_user_is_not_trusted(
+    tmp_path: Path, path: Path, idle: Snapshot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ours, theirs = Pipe()
+    assert is_own_user(ours)
+    user = os.geteuid()
+    monkeypatch.setattr(os, "geteuid", lambda: user + 1)
+    assert not is_own_user(ours)
+    assert find(tmp_path, path, lambda end: Peer(end, idle).greet()) is None
+    ours.close()
+    theirs.close()
+
+
+def test_a_process_that_does_not_start_is_told_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "executable", "/bin/false")
+    started = start_control(MACHINE, tmp_path)
+    with pytest.raises(DriverError):
+        ControlClient(started, tmp_path)
+    started.abandon()
+    assert started.process is not None
+    assert started.process.returncode is not None
+
+
+def test_a_process_that_does_not_end_is_killed(
+    idle: Snapshot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(control_client, "CLOSES_IN", 0.1)
+    monkeypatch.setattr(control_client, "ENDS", 0.1)
+    ours, theirs = Pipe()
+    peer = Peer(theirs, idle)
+    peer.greet()
+    process = subprocess.Popen([sys.executable, "-c", "input()"], stdin=subprocess.PIPE)
+    client = ControlClient(StartedControl(ours, process), tmp_path)
+    client.begin(Ear().all)
+    client.close()
+    assert process.returncode is not None
+    assert process.returncode < 0
+    assert process.stdin is not None
+    process.stdin.close()

@@ -1,0 +1,279 @@
+"""Real processes of the control, with the screen's end in the process of the test."""
+
+from __future__ import annotations
+
+import os
+import resource
+import signal
+import socket
+import subprocess
+import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+import pytest
+
+from app.compose.control.control_client import ControlClient, find_control
+from app.compose.control.control_events import ControlEvents
+from app.compose.control.control_start import socket_path, start_control
+from app.compose.control.left_note import NAME
+from app.desk.data_folder import HOME
+from core.executor.commands import (
+    Clearance,
+    CycleStart,
+    EnableDrives,
+    GiveClearance,
+    LoadJob,
+    SetSwitch,
+)
+from core.executor.job import Proof
+from core.executor.snapshot import Event, State
+from tests.control.bench import LONG, job_of, one_button, until
+from tests.killed.bench import until as until_long
+
+pytestmark = [
+    pytest.mark.skipif(not sys.platform.startswith("linux"), reason="looks for processes in /proc"),
+    pytest.mark.real_time,
+]
+MACHINE = one_button()
+
+
+class Desk:
+    """A screen without a window."""
+
+    def __init__(self, client: ControlClient) -> None:
+        self.client = client
+        self.events = list[Event]()
+        client.begin(ControlEvents(self.events.append, lambda _: None, lambda _: None))
+
+    @property
+    def state(self) -> State:
+        return self.client.snapshot.state
+
+    def see(self) -> bool:
+        """A frame."""
+        self.client.see(self.client.snapshot)
+        return True
+
+    def until(self, *states: State) -> None:
+        """Look until it is in one of these states."""
+        until_long(lambda: self.see() and self.state in states, lambda: self.client.snapshot)
+
+    def run(self) -> None:
+        """A program that takes its time."""
+        job = job_of(LONG, MACHINE)
+        self.client.post(EnableDrives())
+        self.until(State.IDLE)
+        self.client.post(LoadJob(job, Proof(job.digest, ())))
+        until(lambda: self.client.snapshot.program == "part.nc")
+        shot = self.client.snapshot
+        self.client.post(GiveClearance((Clearance(job.digest, shot.demand, shot.begun),)))
+        self.client.post(CycleStart())
+        self.until(State.RUN)
+
+    def vanish(self) -> None:
+        """As a killed screen does."""
+        self.client.leave(close=False)
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv(HOME, str(tmp_path))
+    return tmp_path
+
+
+@contextmanager
+def desk(folder: Path) -> Iterator[tuple[Desk, subprocess.Popen[bytes]]]:
+    """A control and its first screen; at the end nothing is left of them."""
+    started = start_control(MACHINE, folder)
+    process = started.process
+    assert process is not None
+    made = Desk(ControlClient(started, folder))
+    try:
+        yield made, process
+        made.client.close()
+        until_long(lambda: process.poll() is not None, lambda: process.pid)
+    finally:
+        process.kill()
+        process.wait()
+
+
+def found(folder: Path) -> ControlClient:
+    """The control that a lost screen has left."""
+    path = socket_path(folder)
+    assert path is not None
+    clients: list[ControlClient] = []
+
+    def look() -> bool:
+        client = find_control(MACHINE, folder, path)
+        clients.extend([client] if client is not None else [])
+        return bool(clients)
+
+    until_long(look, path.exists)
+    return clients[0]
+
+
+def test_closing_ends_everything(folder: Path) -> None:
+    before = sockets()
+    with desk(folder) as (screen, process):
+        screen.client.post(EnableDrives())
+        screen.until(State.IDLE)
+        assert (folder / "control.sock").is_socket()
+        assert (folder / "control.sock").stat().st_mode & 0o177 == 0
+    assert process.returncode == 0
+    assert not (folder / "control.sock").exists()
+    assert not {thread.name for thread in threading.enumerate()} & {"control-events", "control-posts"}
+    assert not [event for event in screen.events if event.alarm is not None]
+    assert sockets() == before
+
+
+def test_a_control_that_is_terminated_is_an_alarm_of_its_screen(folder: Path) -> None:
+    with desk(folder) as (screen, process):
+        screen.run()
+        process.send_signal(signal.SIGTERM)
+        screen.until(State.FAULT)
+        assert screen.events[-1].alarm is not None
+        assert screen.events[-1].alarm.code == "control-silent"
+        assert process.wait(30.0) == 0
+    assert not (folder / "control.sock").exists()
+
+
+def test_a_killed_control_is_an_alarm_and_the_next_start_finds_none(folder: Path) -> None:
+    with desk(folder) as (screen, process):
+        process.kill()
+        screen.until(State.FAULT)
+    assert (folder / "control.sock").is_socket()
+    path = socket_path(folder)
+    assert path is not None
+    assert find_control(MACHINE, folder, path) is None
+    with desk(folder) as (screen, process):
+        until(lambda: _listens(path))
+
+
+def test_a_control_that_stood_still_goes_on(folder: Path) -> None:
+    with desk(folder) as (screen, process):
+        screen.client.post(EnableDrives())
+        screen.until(State.IDLE)
+        process.send_signal(signal.SIGSTOP)
+        assert screen.client.hands is not None
+        screen.client.hands.press_left()
+        screen.client.hands.press_right()
+        screen.client.post(CycleStart())
+        for _ in range(3000):  # more than the socket holds: nobody waits
+            screen.client.post(SetSwitch("optional_stop", False))
+        began = screen.client.clock.now()
+        until(lambda: screen.client.clock.now() > began + 3.0)
+        process.send_signal(signal.SIGCONT)
+        screen.client.post(SetSwitch("single_block", True))
+        until_long(lambda: screen.client.snapshot.single_block, lambda: screen.client.snapshot)
+        assert screen.state is State.IDLE
+        assert [event.kind for event in screen.events].count("refused") == 1  # the start that came late
+
+
+def test_a_lost_screen_is_followed_by_the_next_one(folder: Path) -> None:
+    with desk(folder) as (screen, process):
+        screen.run()
+        screen.vanish()
+        until_long((folder / NAME).exists, lambda: "")
+        client = found(folder)
+        second = Desk(client)
+        second.until(State.HOLD)
+        assert client.hello.noted is not None
+        assert not (folder / NAME).exists()
+        second.client.close()
+        assert process.wait(30.0) == 0
+        assert second.state is not State.FAULT
+
+
+def test_a_second_start_while_a_screen_is_connected_has_its_own_control(folder: Path) -> None:
+    with desk(folder) as (first, _):
+        path = socket_path(folder)
+        assert path is not None
+        until(lambda: _listens(path))
+        for _ in range(5):  # none of them is left in the queue
+            assert find_control(MACHINE, folder, path) is None
+        with desk(folder) as (second, _):
+            second.client.post(EnableDrives())
+            second.until(State.IDLE)
+            assert first.state is not State.IDLE
+        assert path.is_socket()  # of the first
+        first.client.post(EnableDrives())
+        first.until(State.IDLE)
+
+
+def test_two_folders_have_two_controls(folder: Path) -> None:
+    with desk(folder / "one") as (first, _), desk(folder / "two") as (second, _):
+        first.client.post(EnableDrives())
+        first.until(State.IDLE)
+        assert second.state is not State.IDLE
+        assert (folder / "one" / "control.sock").is_socket()
+        assert (folder / "two" / "control.sock").is_socket()
+
+
+def test_a_folder_in_which_no_socket_can_be_made_is_no_obstacle(folder: Path) -> None:
+    (folder / "control.sock").mkdir()
+    with desk(folder) as (screen, _):
+        screen.client.post(EnableDrives())
+        screen.until(State.IDLE)
+    assert (folder / "control.sock").is_dir()
+
+
+def test_a_folder_whose_path_is_too_long_for_a_socket_is_no_obstacle(folder: Path) -> None:
+    long = folder / ("long" * 30)
+    assert socket_path(long) is None
+    with desk(long) as (screen, _):
+        screen.client.post(EnableDrives())
+        screen.until(State.IDLE)
+
+
+def test_a_disk_that_takes_nothing_is_no_obstacle(folder: Path) -> None:
+    (folder / "file").write_text("")
+    with desk(folder / "file" / "home") as (screen, _):  # no folder can be made there
+        screen.client.post(EnableDrives())
+        screen.until(State.IDLE)
+        assert screen.client.hello.trouble
+
+
+def test_a_process_that_is_closed_at_once_leaves_nothing(folder: Path) -> None:
+    started = start_control(MACHINE, folder)
+    started.abandon()
+    assert started.process is not None
+    assert started.process.returncode is not None
+    assert not (folder / "control.sock").exists()
+
+
+def test_a_screen_that_dies_at_once_leaves_a_control_that_ends(folder: Path) -> None:
+    started = start_control(MACHINE, folder)
+    started.connection.close()
+    assert started.process is not None
+    client = found(folder)
+    client.leave(close=True)
+    assert started.process.wait(30.0) == 0
+
+
+def test_a_control_inherits_nothing_of_the_terminal(folder: Path) -> None:
+    with desk(folder) as (_, process):
+        files = Path(f"/proc/{process.pid}/fd")
+        assert os.readlink(files / "1") == "/dev/null"
+        assert os.readlink(files / "0").startswith("pipe:")
+        assert os.getsid(process.pid) == process.pid  # Ctrl-C is for the screen
+        soft, _hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+        assert len(list(files.iterdir())) < min(soft, 40)
+
+
+def sockets() -> int:
+    """Open sockets of this process."""
+    found = 0
+    for file in Path("/proc/self/fd").iterdir():
+        with suppress(OSError):  # of the listing itself
+            found += os.readlink(file).startswith("socket:")
+    return found
+
+
+def _listens(path: Path) -> bool:
+    with socket.socket(socket.AF_UNIX) as sock, suppress(OSError):
+        sock.connect(str(path))
+        return True
+    return False

@@ -1,0 +1,98 @@
+"""What the system grants the process of the control, and what the operator reads where it refuses."""
+
+from __future__ import annotations
+
+import errno
+import os
+import sys
+from pathlib import Path
+
+import pytest
+
+from app.compose.control import rights
+from app.compose.control.rights import NICE, PRIORITY, acquire_rights, check_rights
+
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="rights of Linux")
+REFUSED = PermissionError(errno.EPERM, os.strerror(errno.EPERM))
+
+
+class System:
+    """The system's answers, and what was asked of it."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, *, grants: bool) -> None:
+        self.asked = list[object]()
+        self.grants = grants
+        monkeypatch.setattr(os, "sched_getscheduler", lambda _: os.SCHED_OTHER)
+        monkeypatch.setattr(os, "sched_getparam", lambda _: os.sched_param(0))
+        monkeypatch.setattr(os, "getpriority", lambda *_: 0)
+        monkeypatch.setattr(os, "sched_setscheduler", self.schedule)
+        monkeypatch.setattr(os, "setpriority", self.be_nice)
+        self.memory = ("", 0) if grants else ("not allowed", 1 << 23)
+        monkeypatch.setattr(rights, "lock_memory", lambda **_: self.memory)
+
+    def schedule(self, _who: int, policy: int, param: os.sched_param) -> None:
+        """Another policy; back to the usual one is always granted."""
+        self.asked.append((policy, param.sched_priority))
+        if not self.grants and policy != os.SCHED_OTHER:
+            raise REFUSED
+
+    def be_nice(self, _which: int, _who: int, value: int) -> None:
+        """Another nice value."""
+        self.asked.append(value)
+        if not self.grants and value < 0:
+            raise REFUSED
+
+
+def test_all_that_is_granted_misses_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    system = System(monkeypatch, grants=True)
+    granted = acquire_rights()
+    assert [right.missing for right in granted] == ["", ""]
+    assert system.asked == [(os.SCHED_RR, PRIORITY)]  # no nice value beside it
+
+
+def test_all_that_is_refused_has_its_remedy(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    grouped = tmp_path / "autogroup"
+    grouped.write_text("1\n")
+    monkeypatch.setattr(rights, "_AUTOGROUP", grouped)
+    system = System(monkeypatch, grants=False)
+    refused = acquire_rights()
+    assert [bool(right.missing) for right in refused] == [True, True, True, False]
+    assert NICE in system.asked
+    grouped.write_text("0\n")
+    assert len(acquire_rights()) == 3
+    grouped.unlink()
+    assert len(acquire_rights()) == 3
+
+
+def test_a_nice_value_helps_where_there_is_no_real_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    system = System(monkeypatch, grants=False)
+    monkeypatch.setattr(os, "setpriority", lambda *_: None)
+    real_time, _, nice, *_ = acquire_rights()
+    assert real_time.missing
+    assert (nice.granted, nice.missing) == (str(NICE), "")
+    assert system.asked == [(os.SCHED_RR, PRIORITY)]
+
+
+def test_a_limited_memory_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    system = System(monkeypatch, grants=True)
+    system.memory = ("", 64 << 20)
+    _, memory = acquire_rights()
+    assert memory.missing == ""
+    assert "64" in memory.granted
+
+
+@pytest.mark.parametrize("grants", [True, False])
+def test_looking_gives_everything_back(monkeypatch: pytest.MonkeyPatch, grants: bool) -> None:
+    system = System(monkeypatch, grants=grants)
+    found = check_rights()
+    assert bool(found[0].missing) is not grants
+    assert system.asked[-2:] == [(os.SCHED_OTHER, 0), 0]
+
+
+def test_a_system_without_these_calls_refuses_them(monkeypatch: pytest.MonkeyPatch) -> None:
+    System(monkeypatch, grants=True)
+    monkeypatch.delattr(os, "sched_setscheduler")
+    monkeypatch.delattr(os, "setpriority")
+    real_time, _, nice, *_ = acquire_rights()
+    assert real_time.missing
+    assert nice.missing

@@ -1,0 +1,447 @@
+"""A screen that is killed, hangs or does not read: what the control does alone, what the next one gets."""
+
+from __future__ import annotations
+
+import json
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from app.compose.control.control_messages import Failed, Happened, Heard, Noted, SetInput, Shown
+from app.compose.control.control_server import REST_LOOKS, SILENT_LOOKS, STOPPED_LOOKS
+from app.compose.control.left_note import (
+    EVENTS,
+    NAME,
+    remove_note,
+    save_events,
+    save_note,
+    take_events,
+    take_note,
+)
+from app.compose.runs.journal import Journal
+from core.executor.commands import BarNextPart, SetSwitch
+from core.executor.snapshot import ACTIVE, Event, InterruptedJob, State
+from core.store.store import Store
+from core.store.store_rows import EventRow
+from tests.control.bench import SHORT, Bench, control, one_button, until
+from tests.interrupted import broken_off
+
+
+@pytest.fixture
+def bench(tmp_path: Path) -> Iterator[Bench]:
+    with control(tmp_path) as made:
+        yield made
+
+
+def test_a_screen_that_comes_gets_what_the_lost_one_has_not_kept(bench: Bench) -> None:
+    first = bench.screen()
+    first.meet()
+    for text in ("one", "two"):
+        bench.server.outbox.put(Event(0.0, "warning", text))
+    assert [each.event.text for each in first.events("warning")] == ["one", "two"]
+    first.lose()
+    second = bench.screen()
+    second.meet()
+    again = second.events("warning")
+    assert [each.event.text for each in again] == ["one", "two"]
+    second.hear(again[0])
+    bench.server.outbox.put(Event(0.0, "warning", "three"))
+    assert [each.event.text for each in second.events("warning")] == ["three"]
+    second.lose()
+    third = bench.screen()
+    third.meet()
+    assert [each.event.text for each in third.events("warning")] == ["two", "three"]
+
+
+def test_events_without_a_screen_do_not_fill_the_memory(bench: Bench) -> None:
+    for number in range(10_050):
+        bench.server.outbox.put(Event(0.0, "test", str(number)))
+    screen = bench.screen()
+    screen.meet()
+    got = [screen.take(Happened).event.text for _ in range(10_000)]
+    assert got[-1] == "10049"
+    assert len(set(got)) == 10_000
+
+
+def test_the_executor_does_not_wait_for_a_screen_that_does_not_read(bench: Bench) -> None:
+    screen = bench.screen()
+    screen.meet()
+    for number in range(3000):  # more than the socket holds
+        bench.server.outbox.put(Event(0.0, "test", "x" * 200 + str(number)))
+    ticks, t = bench.server.executor.ticks, bench.shot.t
+    until(lambda: bench.server.executor.ticks > ticks + 10 and bench.shot.t > t + 0.5)
+    screen.take(Happened, lambda each: each.event.text.endswith("x2999"))
+    shown = screen.take(Shown)
+    assert shown.snapshot.t > t + 0.4  # those in between were replaced
+
+
+def test_a_screen_that_does_not_read_can_be_lost(bench: Bench) -> None:
+    screen = bench.screen()
+    screen.meet()
+    for number in range(3000):
+        bench.server.outbox.put(Event(0.0, "test", "x" * 200 + str(number)))
+    screen.lose()
+    other = bench.screen()
+    other.meet()
+    assert len(other.events("test")) == 3000
+
+
+def test_a_second_screen_is_refused_while_one_is_connected(bench: Bench) -> None:
+    first = bench.screen()
+    first.meet()
+    second = bench.screen()
+    assert second.take(Failed).why == "busy"
+    second.thread.join()
+    first.post(SetSwitch("single_block", True))
+    first.take(Shown, lambda each: each.snapshot.single_block)
+    first.lose()
+    bench.screen().meet()
+
+
+def test_a_screen_that_ends_before_it_was_greeted_leaves_the_control_whole(bench: Bench) -> None:
+    screen = bench.screen()
+    screen.end.close()
+    screen.thread.join()
+    bench.screen().meet()
+
+
+@pytest.mark.parametrize(
+    "data", [b"", b"\x80", b"no pickle", b"cno.such\nmodule\n.", b"(lp0\n0.", b"\x80\x05K\x01K\x02"]
+)
+def test_damaged_bytes_end_the_connection_and_nothing_else(bench: Bench, data: bytes) -> None:
+    screen = bench.screen()
+    screen.meet()
+    screen.end.send_bytes(data)
+    screen.thread.join(10.0)
+    assert not screen.thread.is_alive()
+    with pytest.raises(EOFError):
+        screen.take(Failed)
+    bench.screen().meet()
+
+
+@pytest.mark.parametrize("message", ["what", 3, None, ("Post", 1), SetInput("no such input", True)])
+def test_an_unknown_message_changes_nothing(bench: Bench, message: object) -> None:
+    screen = bench.screen()
+    screen.meet()
+    screen.end.send(message)
+    screen.hand("no_such_hand")
+    screen.hand("press_hold", "too", "much")
+    screen.post(SetSwitch("single_block", True))
+    screen.take(Shown, lambda each: each.snapshot.single_block)
+
+
+def test_what_cannot_be_pickled_keeps_nothing_else_from_the_screen(bench: Bench) -> None:
+    screen = bench.screen()
+    screen.meet()
+    bench.server.outbox.put(Event(0.0, "test", threading.Lock()))  # type: ignore[arg-type]
+    bench.server.outbox.put(Event(0.0, "test", "behind it"))
+    assert screen.take(Happened).event.text == "behind it"
+    assert screen.take(Shown)
+
+
+# --- hold and continue ------------------------------------------------------------------------------------
+
+
+def test_a_screen_that_is_lost_holds_the_program(bench: Bench) -> None:
+    screen = bench.screen()
+    screen.meet()
+    bench.run(screen)
+    screen.lose()
+    bench.looks(1)
+    bench.until(State.HOLD)
+    other = bench.screen()
+    assert other.meet().snapshot.state is State.HOLD
+    assert len(other.events("stop")) == 1
+
+
+def test_a_silent_screen_holds_although_its_threads_answer(bench: Bench) -> None:
+    screen = bench.screen()
+    screen.meet()
+    bench.run(screen)
+    bench.alive(screen)
+    bench.looks(1)
+    assert bench.shot.state in ACTIVE
+    for _ in range(SILENT_LOOKS):
+        screen.end.send(Heard(0))
+        bench.server.look()
+    bench.until(State.HOLD)
+
+
+def test_a_screen_that_is_alive_holds_nothing(bench: Bench) -> None:
+    screen = bench.screen()
+    screen.meet()
+    bench.run(screen)
+    for _ in range(SILENT_LOOKS - 2):
+        bench.server.look()
+    bench.alive(screen)
+    bench.looks(5)
+    for _ in range(SILENT_LOOKS - 7):
+        bench.server.look()
+    bench.looks(1)
+    assert bench.shot.state in ACTIVE
+
+
+def test_what_the_machine_starts_by_itself_while_the_screen_is_silent_is_held(bench: Bench) -> None:
+    screen = bench.screen()
+    screen.meet()
+    job = bench.run(screen)
+    bench.alive(screen)
+    bench.looks(SILENT_LOOKS)
+    bench.until(State.HOLD)
+    bench.start(screen, job)  # not ``Alive``: as buttons of the machine do it
+    bench.until(State.RUN)
+    bench.looks(1)
+    bench.until(State.HOLD)
+    bench.alive(screen)
+    bench.looks(1)
+    bench.start(screen, job)
+    bench.until(State.RUN)
+    bench.looks(1)
+    assert bench.shot.state in ACTIVE
+
+
+def test_a_part_is_finished_without_a_screen_and_no_other_begins(tmp_path: Path) -> None:
+    with control(tmp_path, one_button(alone=True)) as bench:
+        screen = bench.screen()
+        screen.meet()
+        screen.post(SetSwitch("cycle_repeat", True))
+        screen.post(BarNextPart("NO MORE TODAY"))
+        screen.post(BarNextPart(""))
+        bench.run(screen, SHORT)
+        screen.lose()
+        bench.looks(1)
+        barred = bench.shot.next_barred
+        assert barred
+        bench.until(State.IDLE)
+        assert bench.shot.parts >= 1
+        other = bench.screen()
+        hello = other.meet()
+        assert hello.snapshot.next_barred == barred
+        assert hello.noted is None
+        assert len(other.events("part")) == bench.shot.parts
+        bench.looks(SILENT_LOOKS + 1)
+        assert bench.shot.next_barred == barred  # its window is not open yet
+        bench.alive(other)
+        bench.looks(1)
+        assert bench.shot.next_barred == ""
+
+
+@pytest.mark.parametrize("late", [False, True])
+def test_why_the_screen_had_barred_the_next_part_stands_again(tmp_path: Path, late: bool) -> None:
+    with control(tmp_path, one_button(alone=True)) as bench:
+        screen = bench.screen()
+        screen.meet()
+        bench.alive(screen)
+        if not late:
+            screen.post(BarNextPart("TOOL 3 IS WORN"))
+            until(lambda: bench.shot.next_barred == "TOOL 3 IS WORN")
+        bench.looks(SILENT_LOOKS)
+        until(lambda: bench.shot.next_barred not in {"", "TOOL 3 IS WORN"})
+        if late:  # it is back, and nobody has looked yet
+            screen.post(BarNextPart("TOOL 3 IS WORN"))
+            until(lambda: bench.shot.next_barred == "TOOL 3 IS WORN")
+        bench.alive(screen)
+        bench.looks(1)
+        assert bench.shot.next_barred == "TOOL 3 IS WORN"
+
+
+@pytest.mark.parametrize(("looks", "runs"), [(REST_LOOKS - 1, False), (REST_LOOKS, False)])
+def test_a_machine_at_rest_without_a_screen_is_closed(bench: Bench, looks: int, runs: bool) -> None:
+    screen = bench.screen()
+    screen.meet()
+    screen.lose()
+    for _ in range(looks):
+        bench.server.look()
+    assert bench.server.closing.is_set() is (looks >= REST_LOOKS)
+
+
+def test_a_held_program_waits_longer_for_a_screen(bench: Bench) -> None:
+    screen = bench.screen()
+    screen.meet()
+    bench.run(screen)
+    screen.lose()
+    bench.looks(1)
+    bench.until(State.HOLD)
+    for _ in range(STOPPED_LOOKS - 2):
+        bench.server.look()
+    assert not bench.server.closing.is_set()
+    bench.server.look()
+    assert bench.server.closing.is_set()
+
+
+# --- the note -------------------------------------------------------------------------------------------
+
+
+def test_what_is_interrupted_without_a_screen_is_noted_for_the_next_start(
+    bench: Bench, tmp_path: Path
+) -> None:
+    screen = bench.screen()
+    screen.meet()
+    bench.run(screen)
+    noted = screen.take(Noted, lambda each: each.job is not None).job
+    assert not (tmp_path / NAME).exists()
+    screen.lose()
+    bench.looks(1)
+    known, left = take_note(tmp_path)
+    assert known
+    assert left is not None
+    assert noted is not None
+    assert left.program == noted.program == "part.nc"
+    assert take_note(tmp_path) == (False, None)
+
+
+def test_that_nothing_is_interrupted_is_noted_too(bench: Bench, tmp_path: Path) -> None:
+    screen = bench.screen()
+    screen.meet()
+    screen.lose()  # its store may have the note of a part that has ended since
+    bench.looks(1)
+    assert json.loads((tmp_path / NAME).read_bytes()) is None
+    other = bench.screen()
+    other.meet()
+    assert not (tmp_path / NAME).exists()
+
+
+def test_a_screen_that_goes_at_once_leaves_the_note(bench: Bench, tmp_path: Path) -> None:
+    screen = bench.screen()
+    screen.meet()
+    bench.run(screen)
+    screen.lose()
+    bench.looks(1)
+    assert (tmp_path / NAME).exists()
+    other = bench.screen()  # with another machine file
+    other.meet()
+    other.lose()
+    bench.looks(1)
+    known, left = take_note(tmp_path)
+    assert known
+    assert left is not None
+
+
+def test_a_screen_that_takes_its_time_to_open_is_not_silent(bench: Bench) -> None:
+    screen = bench.screen()
+    screen.meet()
+    bench.run(screen)
+    bench.looks(SILENT_LOOKS + 1)
+    assert bench.shot.state in ACTIVE
+
+
+def test_a_control_that_closes_takes_no_screen(bench: Bench) -> None:
+    bench.server.closing.set()
+    screen = bench.screen()
+    with pytest.raises(EOFError):
+        screen.end.recv()
+
+
+def test_a_screen_that_comes_while_the_note_is_saved_leaves_none(
+    bench: Bench, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    screen = bench.screen()
+    screen.meet()
+    screen.lose()
+
+    def slowly(folder: Path, job: InterruptedJob | None) -> None:
+        bench.screen().meet()
+        save_note(folder, job)
+
+    monkeypatch.setattr("app.compose.control.control_server.save_note", slowly)
+    bench.looks(1)
+    assert not (tmp_path / NAME).exists()
+
+
+def test_events_that_no_screen_has_kept_outlive_the_control(tmp_path: Path) -> None:
+    with control(tmp_path, one_button(alone=True)) as bench:
+        screen = bench.screen()
+        screen.meet()
+        bench.run(screen, SHORT)
+        for each in screen.events("load"):
+            screen.hear(each)
+        screen.lose()
+        bench.until(State.IDLE)
+        parts = bench.shot.parts
+    program, rows = take_events(tmp_path)
+    assert (program, parts) == ("part.nc", 1)
+    assert [row.kind for row in rows].count("part") == 1
+    assert "load" not in {row.kind for row in rows}
+    assert rows[0].at < rows[-1].at
+    assert take_events(tmp_path) == ("", ())
+    save_events(tmp_path, program, rows)
+    for _ in range(2):
+        Journal(tmp_path).close()
+    with Store.open(tmp_path, read_only=True) as store:
+        assert store.runs.count_parts("part.nc") == 1
+        assert store.events.read_events()[::-1] == rows
+
+
+@pytest.mark.parametrize("left", [None, broken_off(program="part.nc")])
+def test_the_note_of_a_control_without_a_screen_is_newer_than_the_store(
+    tmp_path: Path, left: InterruptedJob | None
+) -> None:
+    before = Journal(tmp_path)
+    before.note(broken_off(program="old.nc"))
+    before.close()
+    save_note(tmp_path, left)
+    attached = Journal(tmp_path, goes_on=True)  # the control that wrote it is running
+    assert attached.left is None
+    attached.close()
+    for logged in (False, True):
+        journal = Journal(tmp_path)
+        assert journal.left == left
+        assert journal.left_is_logged is logged
+        journal.close()
+
+
+def test_a_store_that_cannot_be_opened_leaves_the_note_to_the_next_start(tmp_path: Path) -> None:
+    save_note(tmp_path, broken_off())
+    save_events(tmp_path, "part.nc", [EventRow("2026-05-04T09:30:00.000Z", "part", "part 1")])
+    with Store.open(tmp_path):  # by another TurnDesk
+        journal = Journal(tmp_path)
+        assert journal.left is None
+        journal.close()
+    journal = Journal(tmp_path)
+    assert journal.left == broken_off()
+    journal.close()
+    with Store.open(tmp_path, read_only=True) as store:
+        assert store.runs.count_parts("part.nc") == 1
+
+
+def test_events_that_a_screen_has_kept_are_not_left(bench: Bench, tmp_path: Path) -> None:
+    screen = bench.screen()
+    screen.meet()
+    bench.server.outbox.put(Event(0.0, "test", "text"))
+    for each in screen.events("test"):
+        screen.hear(each)
+    until(lambda: not bench.server.outbox.unheard)
+    screen.lose()
+    bench.close()
+    assert take_events(tmp_path) == ("", ())
+
+
+@pytest.mark.parametrize("data", [b"", b"{", b"\xff", b"[]", b"3", b'["a", [[1]]]', b'["a", 3]'])
+def test_damaged_events_are_none(tmp_path: Path, data: bytes) -> None:
+    (tmp_path / EVENTS).write_bytes(data)
+    assert take_events(tmp_path) == ("", ())
+    assert not (tmp_path / EVENTS).exists()
+
+
+@pytest.mark.parametrize("data", [b"", b"{", b"\xff\xfe", b"[1"])
+def test_a_damaged_note_is_none(tmp_path: Path, data: bytes) -> None:
+    (tmp_path / NAME).write_bytes(data)
+    assert take_note(tmp_path) == (False, None)
+
+
+def test_a_note_that_is_no_job_says_that_nothing_is_known_to_be_interrupted(tmp_path: Path) -> None:
+    (tmp_path / NAME).write_text('{"program": 3}')
+    assert take_note(tmp_path) == (True, None)
+
+
+def test_a_note_comes_back_as_it_was(tmp_path: Path) -> None:
+    job = broken_off(program="part.nc")
+    save_note(tmp_path, job)
+    assert take_note(tmp_path) == (True, job)
+    remove_note(tmp_path)
+    save_note(tmp_path / "part.nc" / "no folder", job)
+    (tmp_path / "file").write_text("")
+    save_note(tmp_path / "file", job)  # a disk that fails
+    assert take_note(tmp_path / "file") == (False, None)

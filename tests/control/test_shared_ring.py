@@ -1,0 +1,69 @@
+"""The scope's ring in memory that two processes share."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from multiprocessing.connection import Pipe
+
+import numpy as np
+import pytest
+
+from app.compose.control.shared_memory import SharedMemory
+from core.records.record_ring import Recorded, Ring, Rows, bytes_of
+
+RECORDED = Recorded({"X": False, "Z": False}, lasts=1.0)
+_WRITER = """
+import sys, numpy as np, mmap, os
+from core.records.record_ring import Rows
+memory = memoryview(mmap.mmap(int(sys.argv[1]), 0))
+rows = Rows(64, 8, memory)
+n = 0
+sys.stdout.write("x"); sys.stdout.flush()
+while n < 300_000:
+    count = 1 + n % 7
+    numbers = np.arange(n + 1, n + 1 + count, dtype=float)
+    rows.write(np.repeat(numbers[:, None], 8, axis=1))
+    n += count
+"""
+
+
+def test_a_ring_that_another_process_writes_never_shows_half_a_row() -> None:
+    file = os.memfd_create("ring")
+    os.ftruncate(file, bytes_of(64, 8))
+    rows = Rows(64, 8, SharedMemory(file).view)
+    writer = subprocess.Popen(
+        [sys.executable, "-c", _WRITER, str(file)], pass_fds=(file,), stdout=subprocess.PIPE
+    )
+    assert writer.stdout is not None
+    writer.stdout.read(1)
+    seen = 0
+    while writer.poll() is None:
+        read = rows.between(-np.inf, np.inf)
+        seen += len(read)
+        assert (read == read[:, :1]).all()
+        assert (np.diff(read[:, 0]) > 0).all()
+    writer.stdout.close()
+    os.close(file)
+    assert seen > 1000
+    assert rows.last >= 300_000
+
+
+def test_a_ring_in_shared_memory_shows_what_the_other_end_writes() -> None:
+    ours, theirs = Pipe()
+    memory = SharedMemory.of_size(RECORDED.ring_bytes)
+    memory.send_to(theirs)
+    there, here = Ring.of(RECORDED, memory.view), Ring.of(RECORDED, SharedMemory.received_from(ours).view)
+    there.samples.write(np.full((1, RECORDED.sample_width), 5.0))
+    assert here.samples.last == 5.0
+    ours.close()
+    theirs.close()
+
+
+def test_memory_that_does_not_come_is_the_end_of_the_connection() -> None:
+    ours, theirs = Pipe()
+    theirs.close()
+    with pytest.raises(EOFError):
+        SharedMemory.received_from(ours)
+    ours.close()
