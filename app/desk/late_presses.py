@@ -87,8 +87,9 @@ def _switches(command: Command, _now: Snapshot) -> bool:
     return isinstance(command, commands.ForceOutput) and (command.on or command.name != "coolant")
 
 
-def _leaves_zero(command: Command, now: Snapshot) -> bool:
-    return isinstance(command, commands.FeedOverride) and not now.feed_override and command.fraction > 0.0
+def _raises(command: Command, now: Snapshot) -> bool:
+    """Return whether it makes the axes faster: hands that saw no effect press too often."""
+    return isinstance(command, commands.FeedOverride) and command.fraction > now.feed_override
 
 
 STARTS: Mapping[type[Command], tuple[Starting, Rule]] = {
@@ -102,7 +103,7 @@ STARTS: Mapping[type[Command], tuple[Starting, Rule]] = {
     commands.DriveTest: (Starting.DRIVE_TEST, _always),
     commands.Home: (Starting.HOME, _always),
     commands.ForceOutput: (Starting.OUTPUT, _switches),
-    commands.FeedOverride: (Starting.OVERRIDE, _leaves_zero),
+    commands.FeedOverride: (Starting.OVERRIDE, _raises),
     commands.ConfirmStart: (Starting.LINE_1, _begins_at_line_1),
 }
 """Commands that start something, and when."""

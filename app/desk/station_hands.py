@@ -102,9 +102,9 @@ class Pot:
     def set(self, fraction: float) -> None:
         """Choose where the pot shall stand; it turns there as fast as a knob can.
 
-        From zero on it starts something, which a late press does not.
+        A late press does not raise it: hands that saw no effect press too often.
         """
-        if self.late is None or self.wanted or fraction <= 0.0 or not self.late.refuses(self.starting):
+        if self.late is None or fraction <= self.wanted or not self.late.refuses(self.starting):
             self._choose(fraction)
 
     def _choose(self, fraction: float) -> None:
