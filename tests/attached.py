@@ -12,6 +12,6 @@ A = TypeVar("A", bound=Attached)
 
 def attached(desk: Desk, kind: type[A]) -> A:
     """Fails where the desk was put together without."""
-    found = desk.attached(kind)
+    found = desk.pages.find(kind)
     assert found is not None, kind
     return found

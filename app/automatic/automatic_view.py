@@ -57,7 +57,7 @@ class AutomaticPage(Page):
         self.path = PathView(look, self, player=player_of(desk))
         self.path.stock = self._stock
         self.space = WorkingPlaneView(look, self)  # takes the path's place where the machine is a mill
-        self.files = FilePrompt(look, desk.program_folders, desk.choose, self._files_closed, self)
+        self.files = FilePrompt(look, desk.programs.folders, desk.programs.choose, self._files_closed, self)
 
     def dress(self) -> None:
         """Everything in the colours that are in force now."""
@@ -195,7 +195,7 @@ class AutomaticPage(Page):
         """What the part that is looked at is proved on."""
         from app.part.part_sheet import PartSheet
 
-        sheet = self.desk.attached(PartSheet)
+        sheet = self.desk.pages.find(PartSheet)
         if sheet is not None and self.host.go(page_table.PART):
             sheet.show_stock()
 
@@ -206,7 +206,7 @@ class AutomaticPage(Page):
         wanted = self.files.wanted if self.files.isVisible() else ""
         if self.files.isVisible() and not wanted:
             self.desk.say(NONE_NAMED)
-        elif (editor := self.desk.attached(Editor)) is not None:
+        elif (editor := self.desk.pages.find(Editor)) is not None:
             editor.wanted = wanted
             self.host.go(page_table.EDITOR)
 
@@ -214,6 +214,6 @@ class AutomaticPage(Page):
         """``FILE TO BE PROCESSED``, unless a program is under way; asked already, the list of programs."""
         if self.files.isVisible():
             self.host.go(page_table.PROGRAMS)
-        elif self.desk.may_choose():
+        elif self.desk.programs.can_choose():
             self.host.clear_away()
             self.files.ask()

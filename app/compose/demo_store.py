@@ -11,7 +11,7 @@ from app.compose.machine.machine_setup import read_machine
 from app.compose.workshop import samples
 from app.desk.command_errors import CommandError
 from app.desk.data_folder import HOME, data_folder
-from app.desk.desk import LAST_PROGRAM
+from app.desk.programs.program_choice import LAST_PROGRAM
 from app.desk.screen_settings import KEY as SCREEN
 from app.offsets.offsets_file import read_rows
 from core.language.source import Dialect, dialect_of

@@ -34,6 +34,6 @@ def program_list(
         return errors[0] if errors else ""
 
     worker = Latest("editing-programs")
-    chooser = FolderChooser(Path.home(), takes=desk.program_folders.takes)
+    chooser = FolderChooser(Path.home(), takes=desk.programs.folders.takes)
     transfer = ImportExport(desk, own, persistence, worker, check, chooser)
     return ProgramList(desk, own, persistence, worker, Preview(workshop, thumbnail), transfer)

@@ -37,7 +37,7 @@ def _backup(desk: Desk, machine: Machine, persistence: Persistence, worker: Late
 
     def restored() -> None:
         desk.settings.reload()
-        desk.counter.reload()
+        desk.runs.counter.reload()
         desk.access.reload()
 
     backup.restored = restored
@@ -83,7 +83,7 @@ def special_functions(
     functions.append(_transfer(desk, machine, persistence, workshop, own))
     functions.append(_setup_sheet(desk, machine, persistence, worker))
     functions.append(ScopeFunction(desk))
-    watch = desk.attached(PartsWatch)
+    watch = desk.pages.find(PartsWatch)
     if watch is not None and machine.kind == "lathe":
         functions.append(ToolLifeFunction(desk, watch))
     functions.append(LampsAndSound(desk, machine, sounds))

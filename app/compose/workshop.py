@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
-from functools import partial
 from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -15,18 +14,10 @@ from app.compose.stored_offsets import Offsets, setup_with
 from app.compose.thumbnails import HIGH, WIDE, Thumbnails
 from app.desk.background_work import Watch
 from app.desk.data_folder import data_folder
-from app.desk.desk import Desk
-from app.desk.persistence import Persistence
 from app.desk.programs.prepared_line import ProveLine
 from app.desk.programs.program_loading import LoadingSteps, PartProved, Proved
-from app.jog.hand_functions import HandFunctions
-from app.mdi.mdi_model import MdiLine, MdiModel
-from app.part.part_sheet import PartSheet
-from app.searchto.searchto_model import SearchtoModel
 from core.executor.job import Job, Proof, make_job
 from core.executor.snapshot import Snapshot
-from core.interpreter.dialects import code_book
-from core.interpreter.restart.restart_approach import Choices
 from core.interpreter.shared.checkpoint import Begin, Checkpoint
 from core.interpreter.shared.job_setup import ToolOffset
 from core.interpreter.shared.modal_state import Modal
@@ -228,37 +219,7 @@ def line_prover(machine: Machine, offsets: Callable[[], Offsets]) -> ProveLine:
     return prove_line
 
 
-def give_mdi(desk: Desk, machine: Machine, offsets: Callable[[], Offsets], keep: Persistence) -> None:
-    """Give the desk its MDI, and the Jog page what it switches by the same lines."""
-    prove_line = line_prover(machine, offsets)
-    if desk.first_move is not None:
-        prove_line = desk.first_move.with_lines(prove_line)
-    codes = partial(code_book, Dialect(machine.language))
-    mdi = MdiModel(prove_line, desk.post, desk.snapshot, desk.say, desk.clear, codes, MdiLine(keep))
-    hand = HandFunctions(desk, machine, prove_line)
-    for each in (mdi, hand):
-        desk.attach(each)
-        desk.own_starts.append(each)
-
-
-# --- The page PART of a desk: what is kept of stock and checks.
-
-
-def give_part(desk: Desk, machine: Machine, keep: Persistence) -> None:
-    """Give the desk its page of findings and stock."""
-    from core.proving.checks.part_checks import CHECKS
-
-    held = machine.clamping
-    of_machine = frozenset(machine.silenced)
-    desk.attach(
-        PartSheet(desk, keep, frozenset(CHECKS), of_machine, held.stick_out, holds=bool(held.diameter))
-    )
-
-
 # --- SEARCHTO of a desk on this machine.
-
-
-_MODEST = 0.2  # of the manual rapid: legs within the part
 
 
 def rebuilt(job: Job, watch: Watch) -> Search:
@@ -270,21 +231,3 @@ def rebuilt(job: Job, watch: Watch) -> Search:
     from core.interpreter.restart.state_rebuild import StateRebuild
 
     return StateRebuild(job.source, job.setup, watch)
-
-
-def give_searchto(desk: Desk, machine: Machine) -> None:
-    """Give the desk its SEARCHTO; its ways go at the manual rapid, slower within the part."""
-    rapid = machine.limits.manual_rapid
-    choices = Choices(rapid=rapid, modest=_MODEST * rapid)
-
-    def prove(job: Job, watch: Watch) -> Proved:
-        proved = desk.session.workshop.prove(job, watch)
-        if desk.first_move is None:
-            return proved
-        return desk.first_move.checked(job, proved, desk.snapshot(), watch)
-
-    searchto = SearchtoModel(
-        desk.session, desk.post, desk.snapshot, desk.say, desk.clear, rebuilt, prove, choices
-    )
-    desk.attach(searchto)
-    desk.own_starts.append(searchto)

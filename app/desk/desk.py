@@ -6,47 +6,47 @@ Every method that a key or finger calls returns at once. What it cannot do it sa
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from functools import partial
-from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import Final
 
 from app.desk.access import Access
 from app.desk.late_presses import LatePresses, Starting
-from app.desk.page_description import ProgramKey
-from app.desk.pages.desk_parts import Attached, Closing, OwnStart, Watcher
-from app.desk.pages.first_job import FirstJob
-from app.desk.pages.page_entry import program_barred
+from app.desk.pages.desk_parts import Closing
+from app.desk.pages.page_registry import PageRegistry
+from app.desk.persistence import Persistence
 from app.desk.posted_values import PostedValues
+from app.desk.programs.program_choice import LAST_PROGRAM, ProgramChoice
 from app.desk.programs.program_folder import ProgramFolders
-from app.desk.programs.program_loading import Loaded, PartProved, Phase, ProgramLoader
+from app.desk.programs.program_loading import Loaded, Phase, ProgramLoader
 from app.desk.programs.program_renewal import ProgramRenewal
 from app.desk.programs.start_watch import StartWatch
 from app.desk.screen_settings import SettingsBook
-from app.desk.station_hands import StationHands, StationPanel, override_of
-from app.desk.status import interrupted_notice, prompt_line
+from app.desk.state.desk_clock import DeskClock
+from app.desk.state.desk_control import DeskControl
+from app.desk.state.desk_machine import DeskMachine
+from app.desk.state.program_runs import ProgramRuns
+from app.desk.state.station_keys import StationKeys
+from app.desk.state.storage_state import StorageState
+from app.desk.state.window_state import WindowState
+from app.desk.station_hands import StationHands
+from app.desk.status import prompt_line
 from app.desk.status.alarm_log import AlarmLog
-from app.desk.status.interrupted_notice import NoticeRow
 from app.desk.status.machine_file_changes import FileChanges
-from app.desk.status.machine_status import MachineStatus, SilenceWatch, Tone, status_of
-from app.desk.status.prompt_line import ONE_HAND, UNDER_WAY, YES, PromptAnswers
+from app.desk.status.machine_status import MachineStatus, Tone, status_of
+from app.desk.status.prompt_line import ONE_HAND, ONE_PALM, YES, PromptAnswers
 from app.desk.status.readouts import Readout
 from app.desk.stop_keys.stop_records import BY_ESC, BY_SCREEN
-from app.desk.stop_keys.watched_keys import OpenLine
 from app.desk.translation import tr
 from app.offsets.offset_book import NONE_KEPT, OffsetBook
-from app.programs.run_history import PartCounter, RunHistory
 from core.access.access_table import Act
 from core.closing import ClosingStep
 from core.executor.commands import (
     Command,
     ConfirmStart,
-    CycleStart,
     EnableDrives,
     FeedHold,
-    FeedOverride,
     Reset,
     SetSwitch,
 )
@@ -54,86 +54,87 @@ from core.executor.snapshot import LINES, Event, Snapshot, Starts, State
 from core.message import Message
 from core.store.store_errors import StoreError
 
-if TYPE_CHECKING:
-    from core.machine.machine_model import Machine
-    from core.records.recordings import Recordings
-
 SWITCHES = frozenset({"single_block", "optional_stop", "cycle_repeat", "no_count"})
 SILENT = "CONTROL SILENT"
-LAST_PROGRAM = "last_program"  # setting: the path of the program that was loaded last
-A = TypeVar("A", bound=Attached)
+_NO_MACHINE = DeskMachine()
 
 
-@dataclass(slots=True)
 class Desk:
-    """The model behind the Automatic page, and what every page shares.
+    """The model of the Automatic page, and the objects that all pages share.
 
-    ``station`` is there with the simulated machine only; ``two_hand`` as the machine file says.
+    ``persistence`` stores settings, levels, counts and runs; without it they last until the desk closes.
+    ``first_move`` checks the first move of a start, where the machine can do that.
     """
 
-    post: Callable[[Command], None]
-    snapshot: Callable[[], Snapshot]
-    session: ProgramLoader
-    program_folders: ProgramFolders
-    station: StationPanel | None = None
-    two_hand: bool = True
-    with_c: bool = True
-    machine: str = ""
-    lathe: Machine | None = None  # what the machine file says, for moves by hand
-    one_hand: bool = False  # nothing real moves: palms may be pressed one after the other
-    set_input: Callable[[str, bool], None] | None = None  # of a simulated machine
-    closing: Closing = field(default_factory=Closing)
-    waiting: Callable[[], str] = str  # what of it waits in memory, in words
-    differs: Callable[[], str] = str  # how the file on the disk is not the program on the desk
-    saved_here: Callable[[], None] = lambda: None  # called when the editor has written a program file
-    not_kept: Callable[[], str] = str  # why events, parts and versions are not being kept
-    clock: Callable[[], float] = time.monotonic
-    time_of_day: Callable[[], str] = field(default=partial(time.strftime, "%H:%M:%S"))
-    settings: SettingsBook = field(default_factory=SettingsBook)
-    access: Access = field(default_factory=Access)  # who works here, and what he may change
-    counter: PartCounter = field(default_factory=PartCounter)
-    record: RunHistory = field(default_factory=RunHistory)
-    open_record: Callable[[str], None] = field(default=lambda _name: None)  # of an alarm, in the scope
-    recorder: Recordings | None = None  # of the scope: the last minutes of samples
-    restoring: bool = False  # a backup takes the place of what is kept
-    book: OffsetBook = field(default_factory=lambda: OffsetBook(locked=NONE_KEPT))
-    changes: FileChanges = field(default_factory=FileChanges)  # of the machine file, to be accepted
-    stirs: Callable[[], None] = lambda: None  # called from any thread when a machine at rest has changed
-    open_stop_line: OpenLine = lambda: None  # to the control, past the screen
-    stop_held: Callable[[], bool] = bool  # whether a key that stops is held down
-    starts_here: bool = True  # whether the page in front is one on which cycles are started
-    field_open: Callable[[], bool] = bool  # whether a field of that page has the letters
-    keyboard_away: bool = False  # another window has the keyboard: no key comes here
-    late: LatePresses = field(init=False)
-    hands: StationHands = field(init=False)
-    log: AlarmLog = field(init=False)
-    answers: PromptAnswers = field(init=False)
-    rebuilding: ProgramRenewal = field(init=False)
-    first_job: FirstJob = field(default_factory=FirstJob)
-    own_starts: list[OwnStart] = field(default_factory=list)
-    frame_watchers: list[Callable[[Snapshot], None]] = field(default_factory=list)  # called once a frame
-    offered: Callable[[Snapshot], NoticeRow | None] = lambda _snapshot: None  # between cycles: the next job
-    first_move: StartWatch | None = None  # what is known of it
-    program_keys: dict[str, ProgramKey] = field(default_factory=dict)  # keys of features in the program list
-    watches: list[Watcher] = field(default_factory=list)  # what else looks at every frame
-    silence: SilenceWatch = field(default_factory=SilenceWatch)
-    _attached: dict[type[Attached], Attached] = field(default_factory=dict)
-    _made_later: dict[str, Callable[[], Attached]] = field(default_factory=dict)  # by names of classes
-    _part_told: PartProved | None = None
-    _posted: PostedValues = field(init=False)
+    def __init__(
+        self,
+        control: DeskControl,
+        session: ProgramLoader,
+        folders: ProgramFolders,
+        *,
+        machine: DeskMachine = _NO_MACHINE,
+        persistence: Persistence | None = None,
+        book: OffsetBook | None = None,
+        changes: FileChanges | None = None,
+        first_move: StartWatch | None = None,
+        clock: DeskClock | None = None,
+    ) -> None:
+        persistence = persistence or Persistence()
+        self.session: Final = session
+        self.machine: Final = machine
+        self.first_move: Final = first_move
+        self.clock: Final = clock or DeskClock()
+        self.changes: Final = changes or FileChanges()  # of the machine file, to be accepted
+        self.book: Final = book or OffsetBook(locked=NONE_KEPT)
+        self.window: Final = WindowState(LatePresses(self.snapshot, self.clock.seconds))
+        self.control: Final = replace(control, post=self.window.late.guard(control.post))
+        self.storage: Final = StorageState()
+        self.pages: Final = PageRegistry()
+        if first_move is not None:
+            self.pages.attach(first_move)
+        self.closing: Final = Closing()
+        self.settings: Final = SettingsBook(persistence)
+        self.runs: Final = ProgramRuns(persistence)
+        self.log: Final = AlarmLog(self.clock.time_of_day)
+        self.answers: Final = PromptAnswers(self.snapshot, self.storage.problem, self._now)
+        self.access: Final = Access(persistence, self.say, self.clock.seconds)
+        self.book.access = self.access
+        self.rebuilding: Final = ProgramRenewal(session, self.warn)
+        self.programs: Final = ProgramChoice(folders, session, self.snapshot, self.answers, self._save_path)
+        self.hands: Final = StationHands(
+            control.panel,
+            self.clock.seconds,
+            self.say,
+            self.clear,
+            self.answers.starting,
+            self.barred,
+            self.window.press_age,
+            one_palm=ONE_HAND if machine.one_hand else ONE_PALM,
+        )
+        self.hands.refuse_late(self.window.late)
+        self.station: Final = StationKeys(
+            self.control,
+            self.hands,
+            self.answers,
+            self.barred,
+            lambda press: self.feed_hold(press=press),
+            machine.two_hand,
+            PostedValues(self.clock.seconds),
+        )
 
-    def __post_init__(self) -> None:
-        self.late = LatePresses(self.snapshot, self.clock)
-        self.post = self.late.guard(self.post)
-        self._posted = PostedValues(self.clock)
-        self.log = AlarmLog(self.time_of_day)
-        self.answers = PromptAnswers(self.snapshot, lambda: self.not_kept(), lambda: self.hands.clock())  # noqa: PLW0108
-        self.rebuilding = ProgramRenewal(self.session, self.warn)
-        starting = self.answers.starting
-        self.hands = StationHands(self.station, self.clock, self.say, self.clear, starting, self.barred)
-        self.hands.refuse_late(self.late)
-        if self.one_hand:
-            self.hands.one_palm = ONE_HAND
+    def _now(self) -> float:
+        return self.hands.clock()
+
+    def _save_path(self, path: str) -> None:
+        self.keep(partial(self.settings.persistence.save_setting, LAST_PROGRAM, path))
+
+    def post(self, command: Command) -> None:
+        """Hand a command to the control; the next snapshots tell what becomes of it."""
+        self.control.post(command)
+
+    def snapshot(self) -> Snapshot:
+        """Return the newest snapshot of the control."""
+        return self.control.snapshot()
 
     def say(self, text: str) -> None:
         """Show an answer; it remains for 4 s or until the next key."""
@@ -175,24 +176,19 @@ class Desk:
     @property
     def start_words(self) -> str:
         """How a cycle is started at this machine."""
-        if self.station is None:
-            return "PRESS BOTH PALM BUTTONS" if self.two_hand else "PRESS CYCLE START"
-        if self.two_hand and self.one_hand and self.settings.now.latched:
+        if self.control.panel is None:
+            return "PRESS BOTH PALM BUTTONS" if self.machine.two_hand else "PRESS CYCLE START"
+        if self.machine.two_hand and self.machine.one_hand and self.settings.now.latched:
             return "PRESS ONE PALM BUTTON, THEN THE OTHER (F11, F12)"
-        return "PRESS BOTH PALM BUTTONS (F11 + F12)" if self.two_hand else "PRESS CYCLE START (F12)"
+        return "PRESS BOTH PALM BUTTONS (F11 + F12)" if self.machine.two_hand else "PRESS CYCLE START (F12)"
 
     @property
     def release_words(self) -> str:
         """How the E-stop is freed at this machine."""
-        if self.field_open():
+        if self.window.has_field():
             by_hand = "F1, THEN U: RELEASE E-STOP"
-            return by_hand if self.station is not None else "RELEASE THE E-STOP (F1: LEAVE THE PAGE)"
-        return "RELEASE THE E-STOP" if self.station is None else "RELEASE THE E-STOP (U)"
-
-    @property
-    def language(self) -> str:
-        """The machine's own language, in which MDI is typed."""
-        return self.lathe.language if self.lathe is not None else "omniturn"
+            return by_hand if self.control.panel is not None else "RELEASE THE E-STOP (F1: LEAVE THE PAGE)"
+        return "RELEASE THE E-STOP" if self.control.panel is None else "RELEASE THE E-STOP (U)"
 
     @property
     def readout(self) -> Readout:
@@ -225,27 +221,7 @@ class Desk:
     def close(self) -> None:
         """Stop the machine and close its drivers; then end the workers and all that is attached."""
         own = [ClosingStep("loading", self.session.close), ClosingStep("levels", self.access.close)]
-        attached = [ClosingStep(kind.__name__, part.close) for kind, part in self._attached.items()]
-        self.closing.close([*own, *attached])
-
-    def attach(self, part: Attached) -> None:
-        """Have the model of a page with the desk: it is found by its class, and ends with the desk."""
-        self._attached[type(part)] = part
-
-    def attach_later(self, kind: str, make: Callable[[], Attached]) -> None:
-        """The same with one that is made, and whose class is loaded, when somebody first asks for it.
-
-        ``kind`` is its class with the module, as ``app.editor.editor.Editor``.
-        """
-        self._made_later[kind] = make
-
-    def attached(self, kind: type[A]) -> A | None:
-        """What is attached of this class; None: the desk was put together without."""
-        make = self._made_later.pop(f"{kind.__module__}.{kind.__qualname__}", None)
-        if make is not None:
-            self.attach(make())
-        part = self._attached.get(kind)
-        return part if isinstance(part, kind) else None
+        self.closing.close([*own, *self.pages.closing_steps()])
 
     def hear(self, event: Event) -> None:
         """What the executor has to say; it may be called from its thread."""
@@ -254,13 +230,12 @@ class Desk:
 
     def barred(self) -> str:
         """Why the palms start nothing now; empty when they may."""
-        if self.stop_held() or not self.starts_here:
-            return prompt_line.STOP_HELD if self.stop_held() else prompt_line.NOT_HERE
-        if self.restoring:
+        if self.window.is_stop_held() or not self.window.starts_here:
+            return prompt_line.STOP_HELD if self.window.is_stop_held() else prompt_line.NOT_HERE
+        if self.storage.restoring:
             return prompt_line.RESTORING
-        for page in self.own_starts:
-            if page.open:
-                return page.barred()
+        if (page := self.pages.open_start) is not None:
+            return page.barred()
         loaded = self.session.now
         if self.snapshot().state is not State.IDLE:
             return ""
@@ -281,69 +256,36 @@ class Desk:
         loaded = self.session.now
         if self.first_move is not None:
             self.first_move.see(snapshot, loaded)
-        if snapshot.starts not in LINES:  # a line of MDI is no run of the program
-            text = loaded.job.text_digest if loaded.job is not None else self.counter.text
-            self.counter.see(snapshot, self.post, self.say, text)
-            self.record.see(snapshot, loaded)
-            for watcher in self.watches:
-                watcher.see(snapshot, loaded)
-        for watch in self.frame_watchers:
-            watch(snapshot)
-        self._tell_part(snapshot, loaded)
-        if self.settings.now.first_job:
-            self.first_job.see(snapshot, loaded, self.counter.count)
-            self.keep(partial(self.first_job.save, self.settings.persistence))
-        third = self.lathe.third_axis if self.lathe is not None else "C"
-        table = self.lathe is None or self.lathe.table_turns
+        self._see_runs(snapshot, loaded)
+        machine, settings = self.machine, self.settings
         view = status_of(
-            snapshot, self.readout, self.with_c, self.settings.units, self.language, third, table
+            snapshot,
+            self.readout,
+            machine.with_c,
+            settings.units,
+            machine.language,
+            machine.third_axis,
+            machine.table_turns,
         )
-        if self.silence.silent(snapshot.t, self.hands.clock()):
+        if self.control.silence.silent(snapshot.t, self.hands.clock()):
             view = replace(view, state=SILENT, tone=Tone.ALARM)
         return snapshot, view, loaded
+
+    def _see_runs(self, snapshot: Snapshot, loaded: Loaded) -> None:
+        if snapshot.starts not in LINES:  # a line of MDI is no run of the program
+            self.runs.see(snapshot, loaded, self.post, self.say)
+            self.pages.see_run(snapshot, loaded)
+        self.pages.see_frame(snapshot)
+        if caution := self.runs.new_caution(snapshot, loaded):
+            self.say(tr(Message("CAUTION: {what}. PAUSE KEY: FEED HOLD", what=caution)))
+        if self.settings.now.first_job:
+            self.keep(partial(self.runs.follow_first_job, snapshot, loaded))
 
     def first_move_refusal(self, snapshot: Snapshot) -> str:
         """Why Cycle Start does not begin the program from here; empty when its first move is clear."""
         if self.first_move is None or snapshot.state is not State.IDLE:
             return ""
         return self.first_move.refusal if snapshot.starts is Starts.PROGRAM else ""
-
-    def _tell_part(self, snapshot: Snapshot, loaded: Loaded) -> None:
-        """What the part of a program was warned of after it was started is told at once."""
-        part, told = loaded.part, self._part_told
-        self._part_told = part
-        if part is not None and part is not told and part.warned and snapshot.state in UNDER_WAY:
-            self.say(tr(Message("CAUTION: {what}. PAUSE KEY: FEED HOLD", what=part.warned[0])))
-
-    # --- program -------------------------------------------------------------------------------------
-
-    def may_choose(self) -> bool:
-        """Whether a program can be chosen now; says why not."""
-        if why := program_barred(self.snapshot()):
-            self.say(why)
-        return not why
-
-    def choose(self, typed: str) -> bool:
-        """Load the program that was typed or picked; False when there is none of that name."""
-        path = self.program_folders.find(typed)
-        if path is None:
-            return False
-        self.put_on_desk(path)
-        return True
-
-    def put_on_desk(self, path: Path) -> None:
-        """Load it; where it would take the place of an interrupted job that is asked first."""
-        found = self.snapshot().interrupted
-        self.clear()
-        if found is not None and found.program != path.name:
-            self.ask(interrupted_notice.instead(found, path.name), partial(self._load, path))
-        else:
-            self._load(path)
-
-    def _load(self, path: Path) -> None:
-        if self.may_choose():
-            self.session.load(path, self.session.now.block_delete)
-            self.keep(partial(self.settings.persistence.save_setting, LAST_PROGRAM, str(path)))
 
     # --- keys ----------------------------------------------------------------------------------------
 
@@ -352,22 +294,11 @@ class Desk:
         if name not in SWITCHES:
             raise ValueError(f"there is no switch called {name!r}")
         self.clear()
-        self.post(SetSwitch(name, self._posted.toggled(name, getattr(self.snapshot(), name))))
-
-    def block_delete(self) -> None:
-        """Turn Block Delete over. It is part of the job that was proved, so the program is loaded anew."""
-        loaded = self.session.now
-        if loaded.path is None:
-            self.say("F2: CHOOSE A PROGRAM BEFORE CHANGING BLOCK DELETE")
-        elif self.snapshot().state in UNDER_WAY:
-            self.say("CHANGE BLOCK DELETE ONLY BETWEEN CYCLES")
-        else:
-            self.clear()
-            self.session.load(loaded.path, not loaded.block_delete)
+        self.post(SetSwitch(name, self.station.posted.toggled(name, getattr(self.snapshot(), name))))
 
     def may_close(self, close: Callable[[], None]) -> bool:
         """Whether the control may be left; where something would be lost by it Y does ``close``."""
-        waiting = self.waiting()
+        waiting = self.storage.waiting()
         if waiting:
             words = tr("UNSAVED WORK WILL BE LOST: {what}. Y: CLOSE   N: STAY")
             self.ask(tr(Message(words, what=waiting)), close)
@@ -395,14 +326,12 @@ class Desk:
     def yes(self) -> None:
         """Y: yes to the question that stands, or else to what is asked about an interrupted job."""
         snapshot = self.snapshot()
-        found = snapshot.interrupted
+        found, here = snapshot.interrupted, self.window.starts_here
         if self.asked:
             self.answer()
         elif found is None or not snapshot.interrupted_line:
             self.clear()
-        elif (
-            snapshot.state is not State.IDLE or not self.starts_here or snapshot.starts is not Starts.PROGRAM
-        ):
+        elif snapshot.state is not State.IDLE or snapshot.starts is not Starts.PROGRAM or not here:
             self.say(tr("Y: AUTOMATIC PAGE ONLY, DRIVES ON"))
         elif refusal := self.first_move_refusal(snapshot):
             self.say(Message("{no_start}: {refusal}", no_start=prompt_line.NO_START, refusal=refusal))
@@ -449,7 +378,7 @@ class Desk:
 
     def answer(self) -> None:
         """Yes to what is asked, as long as the machine is in the state in which it was asked."""
-        if self.late.refuses(Starting.YES):
+        if self.window.late.refuses(Starting.YES):
             return
         self.answers.expire(self.snapshot())
         self.answers.yes(self.hands.at())
@@ -458,42 +387,3 @@ class Desk:
     def read(self) -> bool:
         """Whether the question that stands can have been read when what is handled now was pressed."""
         return self.answers.read(self.hands.at())
-
-    # --- station -------------------------------------------------------------------------------------
-
-    def estop(self, press: int = 0) -> None:
-        """The mushroom of the simulated station. A real one is no key: this holds the feed, and says so."""
-        if self.station is None:
-            self.feed_hold(press=press)
-            self.say(prompt_line.NO_MUSHROOM)
-        else:
-            self.hands.estop(pressed=True)
-
-    def twist_out(self) -> None:
-        """Free the E-stop of the simulated station, after asking."""
-        if self.station is None:
-            self.say(prompt_line.NO_MUSHROOM)
-        elif not self.hands.estop_pressed:
-            self.say("THE E-STOP IS NOT PRESSED")
-        else:
-            self.ask(prompt_line.TWIST_OUT, partial(self.hands.estop, pressed=False))
-
-    def start_button(self) -> None:
-        """Cycle start of a machine with one button."""
-        if self.barred():
-            self.say(self.barred())
-        elif not self.two_hand:
-            self.clear()
-            self.post(CycleStart())
-
-    def turn_spindle_switch(self) -> None:
-        """The spindle switch to its other side."""
-        self.hands.set_spindle_auto(not self.snapshot().spindle_auto)
-
-    def override(self, steps: int) -> None:
-        """Change the feed override by so many steps of ten percent, at the pot where there is a station."""
-        if self.station is not None:
-            self.hands.turn_feed_pot(steps)
-            return
-        shown = self.snapshot().feed_override
-        self.post(FeedOverride(self._posted.changed("feed", shown, lambda now: override_of(now, steps))))

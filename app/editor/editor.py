@@ -314,7 +314,7 @@ def enter(desk: Desk, editor: Editor) -> bool:
     """
     name, now = editor.wanted.strip(), desk.session.now
     editor.wanted = ""
-    path = desk.program_folders.find(name) if name else now.path
+    path = desk.programs.folders.find(name) if name else now.path
     if why := editor_barred(desk.snapshot(), named=bool(name or path)):
         desk.say(why)
         return False
@@ -331,7 +331,7 @@ def _take_up(desk: Desk, left: LeftProgram) -> None:
     """Load the program if it was left by F3 and is not loaded yet; otherwise report what stays loaded."""
     path, now = left.path, desk.session.now
     if left.changed:
-        desk.saved_here()
+        desk.storage.recheck_file()
     if not left.to_desk:
         if left.changed or path != now.path:
             desk.done(tr(Message(_stays(left, now), name=path.name, other=now.name)))
@@ -343,7 +343,7 @@ def _take_up(desk: Desk, left: LeftProgram) -> None:
     elif path == now.path:
         desk.session.load(path, now.block_delete)
     else:
-        desk.put_on_desk(path)
+        desk.programs.load(path)
 
 
 def _stays(left: LeftProgram, now: Loaded) -> str:

@@ -233,7 +233,7 @@ class EditorPage(EditorParts):
         if self.typed_text.dirty:
             return "SAV+LOAD"
         document = editor.document
-        other = document is not None and document.path == now.path and self.desk.differs()
+        other = document is not None and document.path == now.path and self.desk.storage.difference()
         return "LOAD" if editor.was_saved or other or now.path is None else "LEAVE"
 
     def enter(self, mode: Mode) -> None:

@@ -67,7 +67,7 @@ class JogModel:
             desk.clear,
             self._now,
             self.barred,
-            refuses=desk.late.refuses,
+            refuses=desk.window.late.refuses,
         )
         moved = {each.axis for each in self.directions}
         names = tuple(axis.name for axis in self.machine.axes if axis.name in moved)
@@ -75,7 +75,7 @@ class JogModel:
         self.home = HomingQuestion(self.machine, desk)
         self.tool = ToolSetting(desk, desk.book)
         self.skim = SkimCut(desk, self.tool)
-        hand = desk.attached(HandFunctions)
+        hand = desk.pages.find(HandFunctions)
         if hand is None:
             raise RuntimeError("the desk was put together without functions by hand")
         self.hand = hand
@@ -96,7 +96,7 @@ class JogModel:
     def barred(self) -> str:
         """Why nothing is moved by hand now; empty when it may be."""
         state = self.desk.snapshot().state
-        if self.desk.stop_held():
+        if self.desk.window.is_stop_held():
             return tr(STOP_HELD)
         if self.asked:
             return tr("ARROWS DO NOT JOG WHILE YOU TYPE A VALUE. PRESS ENTER OR ESC")
@@ -248,7 +248,7 @@ class JogModel:
     def turn_wheel(self, clicks: int) -> None:
         """The wheel on the screen is turned."""
         station = self.desk.hands.station
-        if self.wheel_drawn and station is not None and not self.desk.late.refuses(Starting.HANDWHEEL):
+        if self.wheel_drawn and station is not None and not self.desk.window.late.refuses(Starting.HANDWHEEL):
             station.turn_handwheel(clicks * self.wheel.counts)
 
     def home_key(self) -> None:

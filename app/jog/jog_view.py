@@ -224,7 +224,7 @@ class JogPage(HeldKeysPage):
     model: JogModel
 
     def __init__(self, host: Host, parent: QWidget) -> None:
-        machine = host.desk.lathe
+        machine = host.desk.machine.model
         if machine is None:
             raise RuntimeError("the desk was put together without a machine to move by hand")
         super().__init__(host, JogModel(host.desk, machine), parent)

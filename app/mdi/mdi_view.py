@@ -242,7 +242,7 @@ class MdiPage(ModelPage):
         self.codes.refresh()
         angle = snapshot.demand[2] - snapshot.modal.offset_c
         point = Checkpoint(snapshot.modal, c=angle, kept=snapshot.kept)
-        self.inforce.rows = rows_of(point, self.desk.language)
+        self.inforce.rows = rows_of(point, self.desk.machine.language)
 
     def _show_first_move(self, snapshot: Snapshot, loaded: Loaded) -> None:
         """A line that is ready and moves is drawn over the program's path, in the place of the history."""

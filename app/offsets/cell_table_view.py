@@ -157,7 +157,7 @@ class ZeroOffsetsPage(CellTablePage):
 
     def labels(self) -> tuple[str, ...]:
         """A SINUMERIK lathe has no secondary offsets."""
-        return (*self.LABELS[:8], "", "") if self.desk.language == "sinumerik" else self.LABELS
+        return (*self.LABELS[:8], "", "") if self.desk.machine.language == "sinumerik" else self.LABELS
 
     def barred_by(self) -> dict[str, object]:
         """Return also why the position of the machine is not taken."""

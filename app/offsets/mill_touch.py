@@ -32,7 +32,7 @@ class MillTouch:
     @classmethod
     def of(cls, desk: Desk) -> MillTouch:
         """That of this desk."""
-        found = desk.attached(cls)
+        found = desk.pages.find(cls)
         return found if found is not None else cls(desk, None)
 
     def tip(self, zeros: Mapping[str, float]) -> Vector | str:
@@ -123,5 +123,5 @@ class MillLives:
     @classmethod
     def of(cls, desk: Desk) -> MillLives:
         """Those of this desk; a desk that counts nothing has none."""
-        found = desk.attached(cls)
+        found = desk.pages.find(cls)
         return found if found is not None else cls()

@@ -249,7 +249,7 @@ class OffsetQuestions:
         return tip > 0.0 if shape is not None and shape.rear else tip < 0.0
 
     def _travel(self) -> Mapping[str, tuple[float, float]]:
-        return travel_of(self.history.desk.lathe)
+        return travel_of(self.history.desk.machine.model)
 
     def _if_meant(
         self,

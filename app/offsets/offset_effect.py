@@ -142,7 +142,7 @@ class EffectDisplay:
     @property
     def effect(self) -> Effect | None:
         """The worker that draws; None where nothing is drawn."""
-        return self.table.desk.attached(Effect)
+        return self.table.desk.pages.find(Effect)
 
     def turn(self) -> None:
         """F6: the next of whole path, greatest change, part, table."""

@@ -32,7 +32,7 @@ class ToolOffsets(ToolEntry):
 
     def __init__(self, desk: Desk) -> None:
         super().__init__(desk)
-        self.own_key = EDGE_KEY if desk.language == "sinumerik" else ""
+        self.own_key = EDGE_KEY if desk.machine.language == "sinumerik" else ""
         self.fields = ToolFields(self.history)
         self.column = 0
         self.page = PAGE  # rows that fit now, which Page up and Page down go

@@ -270,7 +270,7 @@ class PartSheet:
         """Return why nothing may be changed now; empty when it may."""
         if not self.name:
             return tr("LOAD A PROGRAM FIRST. STOCK DATA IS SAVED WITH THE PROGRAM")
-        if self.desk.lathe is not None and self.desk.lathe.kind != "lathe":
+        if self.desk.machine.model is not None and self.desk.machine.model.kind != "lathe":
             return tr("ON A MILL, TURNDESK DOES NOT CHECK THE FINISHED PART")
         if self.desk.snapshot().state in UNDER_WAY:
             return tr("PROGRAM RUNNING. EDIT STOCK OR PART CHECKS ONLY BETWEEN CYCLES")
@@ -323,7 +323,7 @@ class PartSheet:
         there = beside / Path(name).expanduser()
         if name and there.is_file():
             return str(there)
-        path = self.desk.program_folders.find(name) if name else None
+        path = self.desk.programs.folders.find(name) if name else None
         if path is None:
             raise EntryError(
                 tr(Message("file {name} was not found in the program's folder", name=name or "–"))

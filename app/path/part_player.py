@@ -330,9 +330,9 @@ class PartPlayers(list[PartPlayer]):
 
 def player_of(desk: Desk) -> PartPlayer:
     """One more player of this desk."""
-    players = desk.attached(PartPlayers)
+    players = desk.pages.find(PartPlayers)
     if players is None:
         players = PartPlayers()
-        desk.attach(players)
+        desk.pages.attach(players)
     players.append(PartPlayer())
     return players[-1]

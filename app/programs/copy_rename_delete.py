@@ -170,7 +170,7 @@ class CopyRenameDelete:
     def answer(self) -> None:
         """Return: what was typed is the name."""
         here, name, question = self.marked_program(), self.entry.text, self.question
-        takes = self.desk.program_folders.takes
+        takes = self.desk.programs.folders.takes
         if here is None:
             self.question = ""
         elif self.desk.refused(Act.PROGRAMS):

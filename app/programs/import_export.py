@@ -314,7 +314,7 @@ class ImportExport:
                 self.persistence,
                 self.check,
                 replace=replace,
-                is_drawing=self.desk.program_folders.is_drawing,
+                is_drawing=self.desk.programs.folders.is_drawing,
                 told=told,
             )
         self.worker.queue(partial(self._carried, work, self.chooser.medium), self._done, self._failed)

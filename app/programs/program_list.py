@@ -75,7 +75,7 @@ class ProgramList:
 
     def look_again(self) -> None:
         """Read the folders again; the answer comes with a later frame."""
-        work = partial(list_programs, self.desk.program_folders, self.own, self.persistence)
+        work = partial(list_programs, self.desk.programs.folders, self.own, self.persistence)
         self.worker.queue(work, self._found, self.desk.refuse)
 
     def look(self) -> None:
@@ -176,11 +176,13 @@ class ProgramList:
         if self.program is None or self.program.drawing:
             self.desk.say(NONE if self.program is None else tr(Message(DRAWING, name=self.program.name)))
             return False
-        return self.desk.may_choose() and self.desk.program_folders.find(str(self.program.path)) is not None
+        programs = self.desk.programs
+        return programs.can_choose() and programs.folders.find(str(self.program.path)) is not None
 
     def load(self) -> bool:
         """The marked program becomes that of the desk, or that is asked; True when it can."""
-        return self.may_load() and self.program is not None and self.desk.choose(str(self.program.path))
+        program = self.program
+        return self.may_load() and program is not None and self.desk.programs.choose(str(program.path))
 
     def _changed(self, name: str) -> None:
         self._after = name

@@ -119,14 +119,14 @@ class ProgramsPage(ListPage):
 
     def labels(self) -> tuple[str, ...]:
         """Those of the list or of the chooser."""
-        added = {name: key.label for name, key in self.desk.program_keys.items()}
+        added = {name: key.label for name, key in self.desk.pages.program_keys.items()}
         own = {} if self.model.transfer.open else {"F3": "EDIT", **added}
         return self.labels_of(own, self.page_keys())
 
     def key_actions(self) -> KeyActions:
         """The function keys of the list, or of the chooser over it."""
         keys = self.page_keys()
-        added = {name: partial(self._use, key) for name, key in self.desk.program_keys.items()}
+        added = {name: partial(self._use, key) for name, key in self.desk.pages.program_keys.items()}
         own: KeyActions = {} if self.model.transfer.open else {"F3": self._edit, **added}
         return {**own, **{name: partial(self._do, name) for name in keys}}
 
@@ -136,7 +136,7 @@ class ProgramsPage(ListPage):
     def _edit(self) -> None:
         """The marked program, or a new one of the name that is typed; to look at it does not load it."""
         here = self.model.program
-        editor = self.desk.attached(Editor)
+        editor = self.desk.pages.find(Editor)
         if here is None and editor is not None and self.model.find.text:
             editor.wanted = self.model.find.text
             self.host.go(page_table.EDITOR)

@@ -24,7 +24,7 @@ class ScopeFunction(PageFunction):
 
     def facts(self) -> tuple[Row, ...]:
         """How long and how many channels."""
-        scope = self.desk.attached(Scope)
+        scope = self.desk.pages.find(Scope)
         live = scope.live if scope is not None else None
         if live is None:
             return (Row((tr("RECORDED"), tr("NO SCOPE DATA RECORDED ON THIS MACHINE"))),)

@@ -144,7 +144,7 @@ class Scope:
             self._freeze_at(released, wanted.span)
             return
         if not self._stays(wanted):
-            self._asked = wanted, self.desk.snapshot(), self.desk.clock()
+            self._asked = wanted, self.desk.snapshot(), self.desk.clock.seconds()
             taken = partial(self._take, of=(wanted.trigger, wanted.armed))
             self.worker.ask(lambda _: carried.sight(wanted, overlay), taken, self.desk.say)
 
@@ -153,7 +153,7 @@ class Scope:
         if self._asked is None or self.sight.level is None or self.armed:
             return False
         asked, snapshot, at = self._asked
-        recent = self.desk.clock() - at < LEVEL_FOR
+        recent = self.desk.clock.seconds() - at < LEVEL_FOR
         return recent and asked == wanted and snapshot.tells_as(self.desk.snapshot())
 
     def _take(self, sight: Sight, of: tuple[Trigger, float] | None = None) -> None:
@@ -398,7 +398,7 @@ class Scope:
 
     def open_alarm(self, name: str) -> None:
         """The seconds before an alarm; it may still be being written."""
-        recorder = self.desk.recorder
+        recorder = self.desk.control.recordings
         folder, shelf = self.shelf.folder, self.shelf
         self.side = Side.READINGS
 

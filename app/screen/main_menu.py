@@ -32,8 +32,8 @@ class MenuPage(Page):
 
     def __init__(self, host: Host, parent: QWidget) -> None:
         super().__init__(host, parent)
-        self._entries = menu_of(host.desk.language)
-        self._keys = menu_keys(host.desk.language)
+        self._entries = menu_of(host.desk.machine.language)
+        self._keys = menu_keys(host.desk.machine.language)
         labels = {"F1": "MENU", "F7": "ALARMS", **{key: each.label for key, each in self._keys.items()}}
         self._labels = tuple(labels.get(f"F{number}", "") for number in range(1, 11))
         self.list = _Tiles(self.look, host.press, self._entries, self)

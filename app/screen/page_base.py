@@ -98,7 +98,7 @@ class Page(QWidget):
 
     def labels(self) -> tuple[str, ...]:
         """The labels of this moment; asked for once a frame."""
-        return tuple(label_on(self.desk.language, label) for label in self.LABELS)
+        return tuple(label_on(self.desk.machine.language, label) for label in self.LABELS)
 
     def barred(self) -> frozenset[str]:
         """Return the function keys that would be refused now; asked for once a frame."""

@@ -231,7 +231,7 @@ def editor_panel(none: Any) -> Any:
 
 
 def _model(entry: PageEntry, host: Host) -> object:
-    model = host.desk.attached(class_of(entry.model))
+    model = host.desk.pages.find(class_of(entry.model))
     if model is None:
         raise RuntimeError(f"the desk was put together without {entry.model}")
     return model
@@ -268,12 +268,12 @@ class PagesAhead:
         self._desk, self._page_of = desk, page_of
         self._worker = Latest("editing-pages")
         self._slices = self._all()
-        self._next = desk.clock() + APART
+        self._next = desk.clock.seconds() + APART
         self.done = False
 
     def step(self) -> None:
         """One slice more, where there is one and the desk has time for it."""
-        now = self._desk.clock()
+        now = self._desk.clock.seconds()
         if self.done or now < self._next or self._desk.session.now.phase in _LOADING:
             return
         self._next = now + APART
@@ -290,7 +290,7 @@ class PagesAhead:
     def _all(self) -> Iterator[bool]:
         """False for every slice: a page loaded, a part of its charts made."""
         yield from make_types()
-        for entry in pages_of(self._desk.language):
+        for entry in pages_of(self._desk.machine.language):
             found: list[None] = []
             self._worker.queue(partial(load, entry), found.append, lambda _why: None)
             yield False
@@ -301,4 +301,4 @@ class PagesAhead:
                     yield False
 
     def _has_model(self, entry: PageEntry) -> bool:
-        return not entry.model or self._desk.attached(class_of(entry.model)) is not None
+        return not entry.model or self._desk.pages.find(class_of(entry.model)) is not None

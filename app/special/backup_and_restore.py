@@ -213,12 +213,12 @@ class BackupAndRestore(SpecialFunction):
             self.desk.say(BARRED)
             return
         self.busy = "Restoring …"
-        self.desk.restoring = True
+        self.desk.storage.begin_restore()
         self.worker.queue(lambda: self.persistence.restore(place.path), self._done, self._failed)
 
     def _done(self, kept: Path | None) -> None:
         self.busy = ""
-        self.desk.restoring = False
+        self.desk.storage.end_restore()
         where = kept.name if kept else "—"
         self.persistence.note_change(
             Message("restored; previous data saved as {place}", place=where)
@@ -230,7 +230,7 @@ class BackupAndRestore(SpecialFunction):
 
     def _failed(self, why: str) -> None:
         self.busy = ""
-        self.desk.restoring = False
+        self.desk.storage.end_restore()
         self.desk.refuse(why)
 
     def prompt(self) -> str:

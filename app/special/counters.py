@@ -183,7 +183,7 @@ class PartsCounterFunction(FigureFunction):
     @property
     def counter(self) -> PartCounter:
         """The count of the program on the desk."""
-        return self.desk.counter
+        return self.desk.runs.counter
 
     def sheet(self, snapshot: Snapshot) -> Sheet:
         """Count, target, what is left of it, times."""

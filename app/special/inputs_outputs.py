@@ -66,7 +66,7 @@ class InputsOutputs(SpecialFunction):
     @property
     def _simulated(self) -> bool:
         """Whether inputs are switched here: nobody else does it on a simulated machine."""
-        return self.desk.set_input is not None
+        return self.desk.control.set_input is not None
 
     def sheet(self, snapshot: Snapshot) -> Sheet:
         """The list, every state from the one snapshot."""
@@ -143,10 +143,10 @@ class InputsOutputs(SpecialFunction):
         if self.desk.refused(Act.INPUTS):
             return
         on = name not in self.desk.snapshot().inputs
-        assert self.desk.set_input is not None
-        if self.desk.late.refuses(Starting.INPUT):
+        assert self.desk.control.set_input is not None
+        if self.desk.window.late.refuses(Starting.INPUT):
             return
-        self.desk.set_input(name, on)
+        self.desk.control.set_input(name, on)
         self.desk.access.persistence.note_change(
             Message("simulated input {name}: {ending}", name=name, ending="on" if on else "off")
         )

@@ -59,7 +59,7 @@ class LoggedEvents(SpecialFunction):
 
     def sheet(self, _snapshot: Snapshot) -> Sheet:
         """What was found; looked for again every second while it is open."""
-        now = self.desk.clock()
+        now = self.desk.clock.seconds()
         if now >= self._next and not self.worker.busy:
             self._next = now + EVERY
             self.look()

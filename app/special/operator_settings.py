@@ -8,7 +8,6 @@ from functools import partial
 from app.desk.arithmetic import EntryError, value_of
 from app.desk.background_work import Latest
 from app.desk.desk import Desk
-from app.desk.pages.first_job import FirstJob
 from app.desk.pages.sheet import Key, Row, Sheet
 from app.desk.persistence import Persistence
 from app.desk.status import formats
@@ -195,17 +194,17 @@ class ScreenPreferences(SpecialFunction):
     def _go_on(self) -> None:
         name = tuple(WORDS)[self.marked]
         settings = self.desk.settings
-        if name == "dock" and self.desk.station is None:
+        if name == "dock" and self.desk.control.panel is None:
             self.desk.say("NOT AVAILABLE: THIS MACHINE HAS A REAL OPERATOR STATION")
             return
         if name == "dock" and settings.now.dock and self.desk.hands.estop_pressed:
             self.desk.say("RELEASE THE E-STOP (U) BEFORE HIDING THE OPERATOR STATION")
             return
-        if name == "latched" and not self.desk.one_hand:
+        if name == "latched" and not self.desk.machine.one_hand:
             self.desk.say(tr("SIMULATION ONLY: LATCHED PALM BUTTONS COULD START A REAL SPINDLE"))
             return
         if name == "first_job":
-            self.desk.first_job = FirstJob()
+            self.desk.runs.restart_first_job()
         self.desk.hands.let_go()
         self.desk.clear()
         self.desk.choose_setting(name, settings.following(name))

@@ -37,9 +37,10 @@ COMPOSED = (
     "accepted_machine.py",
     "desk_part.py",
     "journal.py",
+    "desk_assembly.py",
+    "desk_services.py",
     "screen_desk.py",
     "simulated_backend.py",
-    "desk_functions.py",
     "stored_offsets.py",
     "workshop.py",
 )

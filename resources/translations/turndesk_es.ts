@@ -5369,6 +5369,31 @@
       <translation>A la línea</translation>
     </message>
     <message>
+      <location filename="app/compose/desk_assembly.py" />
+      <source>CHECK: {what}</source>
+      <translation>REVISE: {what}</translation>
+    </message>
+    <message>
+      <location filename="app/compose/desk_assembly.py" />
+      <source>NO REAL-TIME PRIORITY: AXES STOP IF THE COMPUTER IS 10 MS LATE</source>
+      <translation>SIN PRIORIDAD DE TIEMPO REAL: LOS EJES PARAN SI LA COMPUTADORA TARDA 10 MS</translation>
+    </message>
+    <message>
+      <location filename="app/compose/desk_assembly.py" />
+      <source>SIMULATED</source>
+      <translation>SIMULADO</translation>
+    </message>
+    <message>
+      <location filename="app/compose/desk_assembly.py" />
+      <source>SIMULATED AXES · REAL SPINDLE</source>
+      <translation>EJES SIMULADOS · HUSILLO REAL</translation>
+    </message>
+    <message>
+      <location filename="app/compose/desk_assembly.py" />
+      <source>machine file: {item}</source>
+      <translation>archivo de máquina: {item}</translation>
+    </message>
+    <message>
       <location filename="app/compose/desk_part.py" />
       <source>Change the specified stock or the tool shapes.</source>
       <translation>Cambie el material en bruto indicado o las formas de herramienta.</translation>
@@ -5397,6 +5422,61 @@
       <location filename="app/compose/desk_part.py" />
       <source>The specified stock cannot be used ({why}). An assumed stock is used instead.</source>
       <translation>El material en bruto indicado no se puede usar ({why}). En su lugar se emplea uno supuesto.</translation>
+    </message>
+    <message>
+      <location filename="app/compose/desk_services.py" />
+      <source>CONTROL WATCHDOG</source>
+      <translation>VIGILANCIA DEL CONTROL</translation>
+    </message>
+    <message>
+      <location filename="app/compose/desk_services.py" />
+      <source>DAILY BACKUP</source>
+      <translation>COPIA DIARIA</translation>
+    </message>
+    <message>
+      <location filename="app/compose/desk_services.py" />
+      <source>DAILY BACKUPS: {folder} IS ON THE SAME DISK AS THE DATA. CHECK THAT THE BACKUP DISK IS MOUNTED</source>
+      <translation>COPIAS DIARIAS: {folder} ESTÁ EN EL MISMO DISCO QUE LOS DATOS. COMPRUEBE QUE EL DISCO DE COPIAS ESTÉ MONTADO</translation>
+    </message>
+    <message>
+      <location filename="app/compose/desk_services.py" />
+      <source>INVERTER CONNECTION</source>
+      <translation>CONEXIÓN CON EL VARIADOR</translation>
+    </message>
+    <message>
+      <location filename="app/compose/desk_services.py" />
+      <source>NO DAILY BACKUP: {why}</source>
+      <translation>SIN COPIA DIARIA: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/compose/desk_services.py" />
+      <source>NO SHOP-FLOOR DATA: {why}</source>
+      <translation>SIN DATOS PARA LA PLANTA: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/compose/desk_services.py" />
+      <source>OPERATION OF THE CONTROL</source>
+      <translation>MANEJO DEL CONTROL</translation>
+    </message>
+    <message>
+      <location filename="app/compose/desk_services.py" />
+      <source>PROGRAM FILE MONITOR</source>
+      <translation>VIGILANCIA DEL ARCHIVO DEL PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/compose/desk_services.py" />
+      <source>SCOPE RECORDER</source>
+      <translation>GRABADOR DEL OSCILOSCOPIO</translation>
+    </message>
+    <message>
+      <location filename="app/compose/desk_services.py" />
+      <source>STORAGE OF OFFSETS AND COUNTS</source>
+      <translation>ALMACENAMIENTO DE CORRECTORES Y CUENTAS</translation>
+    </message>
+    <message>
+      <location filename="app/compose/desk_services.py" />
+      <source>{what} STOPPED. SAVE THE LOG, THEN RESTART TURNDESK</source>
+      <translation>{what}: DETENIDO. GUARDE LA BITÁCORA Y REINICIE TURNDESK</translation>
     </message>
     <message>
       <location filename="app/compose/machine/accepted_machine.py" />
@@ -5430,88 +5510,8 @@
     </message>
     <message>
       <location filename="app/compose/screen_desk.py" />
-      <source>CHECK: {what}</source>
-      <translation>REVISE: {what}</translation>
-    </message>
-    <message>
-      <location filename="app/compose/screen_desk.py" />
-      <source>CONTROL WATCHDOG</source>
-      <translation>VIGILANCIA DEL CONTROL</translation>
-    </message>
-    <message>
-      <location filename="app/compose/screen_desk.py" />
-      <source>DAILY BACKUP</source>
-      <translation>COPIA DIARIA</translation>
-    </message>
-    <message>
-      <location filename="app/compose/screen_desk.py" />
-      <source>DAILY BACKUPS: {folder} IS ON THE SAME DISK AS THE DATA. CHECK THAT THE BACKUP DISK IS MOUNTED</source>
-      <translation>COPIAS DIARIAS: {folder} ESTÁ EN EL MISMO DISCO QUE LOS DATOS. COMPRUEBE QUE EL DISCO DE COPIAS ESTÉ MONTADO</translation>
-    </message>
-    <message>
-      <location filename="app/compose/screen_desk.py" />
-      <source>INVERTER CONNECTION</source>
-      <translation>CONEXIÓN CON EL VARIADOR</translation>
-    </message>
-    <message>
-      <location filename="app/compose/screen_desk.py" />
-      <source>NO DAILY BACKUP: {why}</source>
-      <translation>SIN COPIA DIARIA: {why}</translation>
-    </message>
-    <message>
-      <location filename="app/compose/screen_desk.py" />
-      <source>NO REAL-TIME PRIORITY: AXES STOP IF THE COMPUTER IS 10 MS LATE</source>
-      <translation>SIN PRIORIDAD DE TIEMPO REAL: LOS EJES PARAN SI LA COMPUTADORA TARDA 10 MS</translation>
-    </message>
-    <message>
-      <location filename="app/compose/screen_desk.py" />
-      <source>NO SHOP-FLOOR DATA: {why}</source>
-      <translation>SIN DATOS PARA LA PLANTA: {why}</translation>
-    </message>
-    <message>
-      <location filename="app/compose/screen_desk.py" />
-      <source>OPERATION OF THE CONTROL</source>
-      <translation>MANEJO DEL CONTROL</translation>
-    </message>
-    <message>
-      <location filename="app/compose/screen_desk.py" />
-      <source>PROGRAM FILE MONITOR</source>
-      <translation>VIGILANCIA DEL ARCHIVO DEL PROGRAMA</translation>
-    </message>
-    <message>
-      <location filename="app/compose/screen_desk.py" />
-      <source>SCOPE RECORDER</source>
-      <translation>GRABADOR DEL OSCILOSCOPIO</translation>
-    </message>
-    <message>
-      <location filename="app/compose/screen_desk.py" />
-      <source>SIMULATED</source>
-      <translation>SIMULADO</translation>
-    </message>
-    <message>
-      <location filename="app/compose/screen_desk.py" />
-      <source>SIMULATED AXES · REAL SPINDLE</source>
-      <translation>EJES SIMULADOS · HUSILLO REAL</translation>
-    </message>
-    <message>
-      <location filename="app/compose/screen_desk.py" />
-      <source>STORAGE OF OFFSETS AND COUNTS</source>
-      <translation>ALMACENAMIENTO DE CORRECTORES Y CUENTAS</translation>
-    </message>
-    <message>
-      <location filename="app/compose/screen_desk.py" />
       <source>control process: {name}: {granted}</source>
       <translation>proceso del control: {name}: {granted}</translation>
-    </message>
-    <message>
-      <location filename="app/compose/screen_desk.py" />
-      <source>machine file: {item}</source>
-      <translation>archivo de máquina: {item}</translation>
-    </message>
-    <message>
-      <location filename="app/compose/screen_desk.py" />
-      <source>{what} STOPPED. SAVE THE LOG, THEN RESTART TURNDESK</source>
-      <translation>{what}: DETENIDO. GUARDE LA BITÁCORA Y REINICIE TURNDESK</translation>
     </message>
     <message>
       <location filename="app/compose/stored_offsets.py" />
@@ -5630,11 +5630,6 @@
     </message>
     <message>
       <location filename="app/desk/desk.py" />
-      <source>CHANGE BLOCK DELETE ONLY BETWEEN CYCLES</source>
-      <translation>CAMBIE EL SALTO DE BLOQUE SÓLO ENTRE CICLOS</translation>
-    </message>
-    <message>
-      <location filename="app/desk/desk.py" />
       <source>CONTROL SILENT</source>
       <translation>CONTROL SIN RESPUESTA</translation>
     </message>
@@ -5647,11 +5642,6 @@
       <location filename="app/desk/desk.py" />
       <source>F1, THEN U: RELEASE E-STOP</source>
       <translation>F1, LUEGO U: SOLTAR EL PARO DE EMERGENCIA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/desk.py" />
-      <source>F2: CHOOSE A PROGRAM BEFORE CHANGING BLOCK DELETE</source>
-      <translation>F2: ELIJA UN PROGRAMA ANTES DE CAMBIAR EL SALTO DE BLOQUE</translation>
     </message>
     <message>
       <location filename="app/desk/desk.py" />
@@ -5707,11 +5697,6 @@
       <location filename="app/desk/desk.py" />
       <source>THE DRIVES ARE ALREADY ON</source>
       <translation>LOS SERVOS YA ESTÁN ENCENDIDOS</translation>
-    </message>
-    <message>
-      <location filename="app/desk/desk.py" />
-      <source>THE E-STOP IS NOT PRESSED</source>
-      <translation>EL PARO DE EMERGENCIA NO ESTÁ PULSADO</translation>
     </message>
     <message>
       <location filename="app/desk/desk.py" />
@@ -5989,6 +5974,16 @@
       <translation>La herramienta {number} no está reglada.</translation>
     </message>
     <message>
+      <location filename="app/desk/programs/program_choice.py" />
+      <source>CHANGE BLOCK DELETE ONLY BETWEEN CYCLES</source>
+      <translation>CAMBIE EL SALTO DE BLOQUE SÓLO ENTRE CICLOS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/programs/program_choice.py" />
+      <source>F2: CHOOSE A PROGRAM BEFORE CHANGING BLOCK DELETE</source>
+      <translation>F2: ELIJA UN PROGRAMA ANTES DE CAMBIAR EL SALTO DE BLOQUE</translation>
+    </message>
+    <message>
       <location filename="app/desk/programs/program_folder.py" />
       <source>CANNOT READ {name}: CHECK FOLDER. CYCLE START RUNS LOADED VERSION</source>
       <translation>NO SE PUEDE LEER {name}: REVISE LA CARPETA. EL ARRANQUE DE CICLO EJECUTA LA VERSIÓN CARGADA</translation>
@@ -6147,6 +6142,11 @@
       <location filename="app/desk/standard_input.py" />
       <source>stdin is closed, so the {what} cannot be read from it; specify a file</source>
       <translation>stdin está cerrado y «{what}» no se puede leer de ahí; indique un archivo</translation>
+    </message>
+    <message>
+      <location filename="app/desk/state/station_keys.py" />
+      <source>THE E-STOP IS NOT PRESSED</source>
+      <translation>EL PARO DE EMERGENCIA NO ESTÁ PULSADO</translation>
     </message>
     <message>
       <location filename="app/desk/status/busy_notice.py" />

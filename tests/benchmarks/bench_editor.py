@@ -70,7 +70,7 @@ def main() -> None:
 def _measured(app: QApplication, window: MainWindow) -> None:
     assert window.frame is not None
     desk = window.frame.desk
-    desk.choose("long")
+    desk.programs.choose("long")
     desk.session.settled(60)
     window.press("F3")
     page = window.frame.page

@@ -55,8 +55,8 @@ class Child:
         from app.compose.screen_desk import build_desk  # noqa: PLC0415  the parent needs none of it
 
         self.desk = build_desk(machine_file, begun=(read_machine(machine_file), None))
-        assert self.desk.lathe is not None
-        self.lathe = self.desk.lathe
+        assert self.desk.machine.model is not None
+        self.lathe = self.desk.machine.model
         thread = next(t for t in threading.enumerate() if t.name == "executor")
         self.executor = thread._target.__self__.executor  # type: ignore[attr-defined]
         self.jogging = 0.0
@@ -93,7 +93,7 @@ class Child:
 
     def _show(self) -> None:
         while True:
-            shot, played = self.desk.snapshot(), self.desk.station
+            shot, played = self.desk.snapshot(), self.desk.control.panel
             rpm, on, at = shot.rpm_actual, set(shot.outputs), shot.actual[:2]
             if isinstance(played, PlantHands):  # as the machine really is, also where nobody looks any more
                 rpm, at = played.spindle_rpm(), played.true_position()[:2]

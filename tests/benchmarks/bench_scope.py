@@ -87,7 +87,7 @@ def played() -> None:
         window._timer.stop()  # frames are made here, one by one
         assert window.frame is not None
         window.frame.go(page_table.SCOPE)
-        page, scope = window.frame.page, desk.attached(Scope)
+        page, scope = window.frame.page, desk.pages.find(Scope)
         assert isinstance(page, ScopePage)
         assert scope is not None
         scope.chosen = SHOWN
@@ -130,7 +130,7 @@ def running() -> None:
     """Frames with the scope open, once its window is full of samples of the program."""
     with tempfile.TemporaryDirectory() as home:
         bench, _recorder = _on_a_run(Path(home))
-        scope = bench.desk.attached(Scope)
+        scope = bench.desk.pages.find(Scope)
         assert scope is not None
         bench.window.press("Scope")
         scope.chosen = SHOWN
@@ -187,7 +187,7 @@ def pages() -> None:
         frame = bench.window.frame
         assert frame is not None
         begun = recorder.ring.samples.last
-        for entry in page_table.pages_of(bench.desk.language):
+        for entry in page_table.pages_of(bench.desk.machine.language):
             bench.frames.clear()
             bench.window.press_to(entry.name)
             bench.rest(0.5)
@@ -203,14 +203,14 @@ def _on_a_run(home: Path, *, rested: bool = True) -> tuple[Bench, Recorder]:
     bench = Bench(home, SIZE)
     bench.folder.mkdir(exist_ok=True)
     (bench.folder / "fro.nc").write_text(program())
-    bench.desk.choose("fro")
+    bench.desk.programs.choose("fro")
     session = bench.desk.session
     bench.until(lambda: session.now.phase in {Phase.READY, Phase.REFUSED})
     assert not session.now.errors, session.now.errors[0].message
     if rested:
         bench.until(lambda: bench.window.ahead is not None and bench.window.ahead.done)
     bench.start()
-    recorder = bench.desk.recorder
+    recorder = bench.desk.control.recordings
     assert isinstance(recorder, Recorder)
     return bench, recorder
 

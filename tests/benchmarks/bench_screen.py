@@ -159,7 +159,7 @@ class Bench:
         (self.folder / "many.nc").write_text(chords(blocks))
         self.rest(0.5)  # the writing was no frame
         self.frames.clear()
-        self.desk.choose("many")
+        self.desk.programs.choose("many")
         session = self.desk.session
         self.until(lambda: session.now.phase in {Phase.READY, Phase.REFUSED}, LOADING)
         if session.now.errors:

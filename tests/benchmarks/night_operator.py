@@ -75,7 +75,7 @@ class Operator:
         self.desk.book.read()
         self.desk.enable()
         self.shift.run(0.3)
-        if not self.desk.choose(NAME):
+        if not self.desk.programs.choose(NAME):
             raise FileNotFoundError(NAME)
         self._loaded()
 
@@ -193,8 +193,8 @@ class Operator:
         self._palms()
 
     def _bar_ends(self, *, ended: bool) -> None:
-        assert self.desk.set_input is not None
-        self.desk.set_input("TB2-9", ended)
+        assert self.desk.control.set_input is not None
+        self.desk.control.set_input("TB2-9", ended)
 
     def _acknowledge(self) -> None:
         self._mend()
@@ -237,7 +237,7 @@ class Operator:
     def _sections(self) -> Sequence[SpecialFunction]:
         """The sections of the page of measured parts; none where that feature is not installed."""
         entry = next((page for page in PAGES if page.name == "MEASURED PARTS"), None)
-        found = self.desk.attached(class_of(entry.model)) if entry is not None else None
+        found = self.desk.pages.find(class_of(entry.model)) if entry is not None else None
         return found.functions if isinstance(found, SpecialFunctions) else ()
 
     def _measure(self) -> None:
@@ -277,7 +277,7 @@ class Operator:
 
     def fresh_insert(self) -> None:
         """The insert has made its parts: a new one, and its wear is nought again."""
-        functions = self.desk.attached(SpecialFunctions)
+        functions = self.desk.pages.find(SpecialFunctions)
         assert functions is not None
         lives = next(
             each for each in (*self._sections(), *functions.functions) if isinstance(each, ToolLifeFunction)

@@ -12,9 +12,9 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 
+from app.compose.desk_assembly import desk_and_executor
 from app.compose.runs.error_log import Log
 from app.compose.runs.journal import Journal
-from app.compose.screen_desk import desk_and_executor
 from app.compose.stored_offsets import stored_offsets
 from app.desk.data_folder import RECORDS, data_folder
 from app.desk.desk import Desk
@@ -149,8 +149,8 @@ class NightShift:
 
     def __init__(self, desk: Desk, executor: Executor, clock: StepClock, journal: Journal) -> None:
         self.desk, self.executor, self.clock, self.journal = desk, executor, clock, journal
-        assert isinstance(desk.station, PlantHands)
-        self.lathe = desk.station
+        assert isinstance(desk.control.panel, PlantHands)
+        self.lathe = desk.control.panel
         self.witness = Witness()
         self._ticks = 0
         self._offsets: dict[str, float] = {}  # X of T1 by job
@@ -171,7 +171,7 @@ class NightShift:
     @property
     def parts_book(self) -> PartsBook:
         """Measured parts and lives."""
-        watch = self.desk.attached(PartsWatch)
+        watch = self.desk.pages.find(PartsWatch)
         assert watch is not None
         return watch.book
 
@@ -183,8 +183,8 @@ class NightShift:
         self._ticks += 1
         if self._ticks % FRAME == 0:
             self.frame()
-        if self._ticks % DRAIN == 0 and isinstance(self.desk.recorder, Recorder):
-            self.desk.recorder.drain()
+        if self._ticks % DRAIN == 0 and isinstance(self.desk.control.recordings, Recorder):
+            self.desk.control.recordings.drain()
 
     def frame(self) -> None:
         """What the window asks for in a frame, without its drawing."""
@@ -230,8 +230,8 @@ def night_shift() -> Iterator[NightShift]:
         yield NightShift(desk, executor, clock, journal)
     finally:
         executor.shut()
-        if isinstance(desk.recorder, Recorder):
-            desk.recorder.close()
+        if isinstance(desk.control.recordings, Recorder):
+            desk.control.recordings.close()
         desk.close()
         journal.close()
         log.close()

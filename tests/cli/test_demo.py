@@ -13,8 +13,8 @@ from app.compose.machine.machine_setup import read_machine, setup_for
 from app.compose.runs.journal import Journal
 from app.compose.stored_offsets import book_of, stored_offsets
 from app.desk.command_errors import CommandError
-from app.desk.desk import LAST_PROGRAM
 from app.desk.pages.first_job import FirstJob
+from app.desk.programs.program_choice import LAST_PROGRAM
 from core.language.diagnostics import Severity
 from core.language.source import load_source
 from core.message import CodedError

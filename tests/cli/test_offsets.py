@@ -11,9 +11,9 @@ from pathlib import Path
 import pytest
 
 from app.cli.main import main
+from app.compose.desk_assembly import desk_and_executor
 from app.compose.machine.machine_setup import remember_machine
 from app.compose.runs.journal import Journal
-from app.compose.screen_desk import desk_and_executor
 from app.compose.stored_offsets import stored_offsets
 from core.message import CodedError
 from core.store.store import Store

@@ -13,9 +13,9 @@ import pytest
 import resources
 from app.compose.control.control_messages import Shown
 from app.compose.control.control_server import watched
+from app.compose.desk_services import SUPERVISED
 from app.compose.machine.machine_files import load_machine
 from app.compose.machine.machine_setup import control_limits, read_machine
-from app.compose.screen_desk import SUPERVISED
 from core.executor import commands
 from core.executor.commands import (
     BarNextPart,

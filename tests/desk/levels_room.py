@@ -11,8 +11,8 @@ from typing import TypeVar
 import pytest
 
 import resources
+from app.compose.desk_assembly import desk_and_executor
 from app.compose.runs.journal import Journal
-from app.compose.screen_desk import desk_and_executor
 from app.compose.stored_offsets import stored_offsets
 from app.desk.access import Access, Session
 from app.desk.desk import Desk
@@ -61,7 +61,7 @@ class Room:
         self.desk.book.poll()
 
     def find(self, kind: type[T]) -> T:
-        special = self.desk.attached(SpecialFunctions)
+        special = self.desk.pages.find(SpecialFunctions)
         assert special is not None
         return next(each for each in special.functions if isinstance(each, kind))
 

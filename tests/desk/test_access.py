@@ -137,7 +137,7 @@ def test_without_people_nothing_is_asked_and_nothing_more_is_logged(room: Room) 
     assert [room.access.refusal(act) for act in Act] == [""] * len(Act)
     assert room.access.words == ""
     room.desk.book.change(Kind.TOOL, 3, {"x": 1.0, "z": -1.0}, "typed")
-    room.desk.counter.program = "pin.nc"
+    room.desk.runs.counter.program = "pin.nc"
     room.find(PartsCounterFunction).correct(1)
     room.settle()
     assert room.store.offsets.tools.read_history()[0].who == "operator"
@@ -207,7 +207,7 @@ def test_nothing_is_asked_that_the_level_does_not_allow(room: Room) -> None:
 
 def test_pages_without_a_book_refuse_too(room: Room) -> None:
     room.enter_people()
-    programs, editor = room.desk.attached(ProgramList), room.desk.attached(Editor)
+    programs, editor = room.desk.pages.find(ProgramList), room.desk.pages.find(Editor)
     assert programs is not None
     assert editor is not None
     assert shows(editor.may_save(), "screen.level-needed", what="PROGRAMS", level="SETUP")
@@ -290,7 +290,7 @@ def test_what_stops_the_machine_is_behind_no_level(room: Room) -> None:
     room.run()
     assert desk.snapshot().state is State.IDLE
     desk.feed_hold()
-    desk.estop()
+    desk.station.press_estop()
     room.run()
     assert desk.snapshot().state is State.ESTOP
     desk.hands.estop(pressed=False)
@@ -307,7 +307,7 @@ def test_what_stops_the_machine_is_behind_no_level(room: Room) -> None:
 def test_every_history_has_the_name(room: Room) -> None:
     room.enter_people()
     room.sign_in("BEN")
-    book, watch = room.desk.book, room.desk.attached(PartsWatch)
+    book, watch = room.desk.book, room.desk.pages.find(PartsWatch)
     assert watch is not None
     for kind, number, values in (
         (Kind.TOOL, 3, {"x": 1.0, "z": -1.0}),
@@ -326,7 +326,7 @@ def test_every_history_has_the_name(room: Room) -> None:
     room.settle()
     with room.store.read() as connection:
         assert [row.who for row in insert_changes(connection, 9)] == ["BEN"]
-    room.desk.counter.program = "pin.nc"
+    room.desk.runs.counter.program = "pin.nc"
     room.find(PartsCounterFunction).correct(1)
     assert room.log("change")[-1] == (
         wording("log.parts-changed", program="pin.nc", before=0, after=1),

@@ -66,9 +66,9 @@ def desk_of(machine: FakeMachine, closings: Closings) -> Desk:
     desk.closing.wait = closings.wait
     desk.closing.stops = [ClosingStep("executor", step("executor"))]
     desk.closing.shut = step("drivers")
-    desk.session = Part(step("loading"))  # type: ignore[assignment]
-    desk.access = Part(step("levels"))  # type: ignore[assignment]
-    desk.attach(Part(step("Part")))
+    desk.session = Part(step("loading"))  # type: ignore[misc, assignment]
+    desk.access = Part(step("levels"))  # type: ignore[misc, assignment]
+    desk.pages.attach(Part(step("Part")))
     desk.closing.workers = [ClosingStep(name, step(name)) for name in ("broker", "backup")]
     desk.closing.ends = [ClosingStep(name, step(name)) for name in ("store", "log")]
     return desk

@@ -11,6 +11,7 @@ import pytest
 from app.desk.desk import SILENT, Desk
 from app.desk.programs.program_folder import ProgramFolders
 from app.desk.programs.program_loading import LoadingSteps, Phase, ProgramLoader
+from app.desk.state.desk_control import DeskControl
 from app.desk.status.machine_status import Tone
 from app.desk.status.prompt_line import CONTROL_SILENT, GIVE_UP, ONE_HAND, ONE_PALM, RESTORING
 from app.desk.status.standing_prompt import prompt, time_left
@@ -53,26 +54,26 @@ def test_an_unknown_switch_is_a_mistake(desk: Desk) -> None:
 @pytest.mark.parametrize("state", [State.RUN, State.HOLD, State.WAIT, State.PROGRAM_STOP, State.JOG])
 def test_no_other_program_while_one_is_under_way(desk: Desk, machine: FakeMachine, state: State) -> None:
     at(machine, state)
-    assert desk.may_choose() is False
+    assert desk.programs.can_choose() is False
     by_hand = state is State.JOG
     assert shows(desk.notice, "screen.axes-move-no-program" if by_hand else "screen.program-runs-no-other")
 
 
 def test_an_unknown_program_is_not_loaded(desk: Desk) -> None:
-    assert desk.choose("nosuch") is False
+    assert desk.programs.choose("nosuch") is False
     assert desk.session.now.phase is Phase.EMPTY
 
 
 def test_block_delete_needs_a_program_and_rest(desk: Desk, machine: FakeMachine) -> None:
-    desk.block_delete()
+    desk.programs.switch_block_delete()
     assert shows(desk.notice, "screen.choose-program-for-block-delete")
-    assert desk.choose("grooves")
+    assert desk.programs.choose("grooves")
     at(machine, State.HOLD)
-    desk.block_delete()
+    desk.programs.switch_block_delete()
     assert shows(desk.notice, "desk.block-delete-between-cycles")
     assert desk.session.now.block_delete is False
     at(machine, State.IDLE)
-    desk.block_delete()
+    desk.programs.switch_block_delete()
     assert desk.session.now.block_delete is True
 
 
@@ -173,7 +174,7 @@ def test_one_palm_does_not_start_and_is_told(desk: Desk, machine: FakeMachine) -
 
 def test_one_palm_of_a_simulated_machine_says_how_one_hand_starts(machine: FakeMachine) -> None:
     """A finger at a touch panel has pressed one, and knew of no other way."""
-    desk = replace(desk_on(machine), one_hand=True)
+    desk = desk_on(machine, one_hand=True)
     desk.hands.palm("left", down=True)
     desk.hands.palm("left", down=False)
     assert CycleStart() not in machine.posted
@@ -181,11 +182,12 @@ def test_one_palm_of_a_simulated_machine_says_how_one_hand_starts(machine: FakeM
 
 
 def test_the_prompt_says_how_the_palms_on_the_glass_start(machine: FakeMachine) -> None:
-    desk = replace(desk_on(machine), one_hand=True)
+    desk = desk_on(machine, one_hand=True)
     assert desk.start_words == text("screen.both-palms")
     desk.choose_setting("latched", True)
     assert desk.start_words == text("screen.one-palm")
-    desk.one_hand = False  # something real moves: the choice counts for nothing
+    desk = desk_on(machine, one_hand=False)  # something real moves: the choice counts for nothing
+    desk.choose_setting("latched", True)
     assert desk.start_words == text("screen.both-palms")
 
 
@@ -243,7 +245,7 @@ def test_the_override_key_turns_the_stations_pot(machine: FakeMachine) -> None:
     ticks = iter(range(1000))
     desk = desk_on(machine)
     desk.hands.clock = lambda: next(ticks) / 10
-    desk.override(-3)
+    desk.station.step_override(-3)
     for _ in range(10):
         desk.look()
     assert machine.now.feed_override == pytest.approx(0.7)
@@ -253,12 +255,11 @@ def test_the_override_key_turns_the_stations_pot(machine: FakeMachine) -> None:
 
 def test_without_a_station_the_override_is_posted(machine: FakeMachine, tmp_path: Path) -> None:
     desk = Desk(
-        machine.post,
-        machine.snapshot,
+        DeskControl(machine.post, machine.snapshot),
         ProgramLoader(_no_workshop(), machine.post),
         ProgramFolders((tmp_path,)),
     )
-    desk.override(-20)
+    desk.station.step_override(-20)
     assert machine.posted == [FeedOverride(0.0)]
     desk.hands.palm("left", down=True)
     desk.hands.estop(pressed=True)
@@ -269,9 +270,9 @@ def test_without_a_station_the_override_is_posted(machine: FakeMachine, tmp_path
 
 def test_one_button_starts_only_where_the_machine_file_says_one(machine: FakeMachine) -> None:
     two, one = desk_on(machine), desk_on(machine, two_hand=False)
-    two.start_button()
+    two.station.press_start()
     assert machine.posted == []
-    one.start_button()
+    one.station.press_start()
     assert machine.posted == [CycleStart()]
     for desk in (one, two):
         desk.close()
@@ -324,7 +325,7 @@ def _no_workshop() -> LoadingSteps:
 
 def test_a_store_that_fails_in_the_middle_of_a_run_is_told_once(desk: Desk, machine: FakeMachine) -> None:
     trouble = ""
-    desk.not_kept = lambda: trouble
+    desk.storage.follow_store(lambda: trouble)
     at(machine, State.HOLD)
     desk.look()
     assert not shows(desk.notice, "screen.not-kept")
@@ -350,9 +351,9 @@ class _PageReady:
 
 def test_nothing_starts_from_any_page_while_a_backup_is_restored(desk: Desk, machine: FakeMachine) -> None:
     at(machine, State.IDLE)
-    desk.own_starts.append(_PageReady())
+    desk.pages.add_start(_PageReady())
     assert desk.barred() == ""
-    desk.restoring = True
+    desk.storage.begin_restore()
     assert desk.barred() == RESTORING
 
 
@@ -375,9 +376,9 @@ def test_what_is_attached_for_later_is_made_once_when_it_is_asked_for(desk: Desk
         made.append(_Model())
         return made[-1]
 
-    desk.attach_later(f"{__name__}._Model", make)
-    assert (desk.attached(_Other), made) == (None, [])
-    assert desk.attached(_Model) is desk.attached(_Model) is made[0]
+    desk.pages.attach_later(f"{__name__}._Model", make)
+    assert (desk.pages.find(_Other), made) == (None, [])
+    assert desk.pages.find(_Model) is desk.pages.find(_Model) is made[0]
     desk.close()
     assert (len(made), made[0].closed) == (1, 1)
 
@@ -386,5 +387,5 @@ def test_what_nobody_asked_for_is_not_made_by_closing(desk: Desk) -> None:
     def make() -> _Model:
         raise AssertionError("made although nobody asked")
 
-    desk.attach_later(f"{__name__}._Model", make)
+    desk.pages.attach_later(f"{__name__}._Model", make)
     desk.close()

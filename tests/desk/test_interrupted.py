@@ -125,11 +125,11 @@ def desk(tmp_path: Path) -> Desk:
         (tmp_path / name).write_text("G90G94F300\nT1\nX2Z2\nM30\n")
     machine = FakeMachine()
     desk = desk_on(machine, tmp_path)
-    assert desk.choose("PIN.NC")
+    assert desk.programs.choose("PIN.NC")
     desk.session.settled(20)
     now = machine.snapshot()
     machine.posted.clear()
-    desk.snapshot = lambda: replace(now, interrupted=broken_off(), state=State.IDLE, program="PIN.NC")
+    desk.control.snapshot = lambda: replace(now, interrupted=broken_off(), state=State.IDLE, program="PIN.NC")
     return desk
 
 
@@ -139,8 +139,8 @@ def has_been_read(desk: Desk) -> None:
 
 
 def posted(desk: Desk) -> list[object]:
-    assert isinstance(desk.station, FakeMachine)
-    return list(desk.station.posted)
+    assert isinstance(desk.control.panel, FakeMachine)
+    return list(desk.control.panel.posted)
 
 
 def test_y_answers_for_the_job_that_is_shown(desk: Desk) -> None:
@@ -150,7 +150,7 @@ def test_y_answers_for_the_job_that_is_shown(desk: Desk) -> None:
 
 
 def test_y_means_nothing_where_no_cycle_is_started(desk: Desk) -> None:
-    desk.starts_here = False
+    desk.window.show_page(starts=False)
     desk.yes()
     assert posted(desk) == []
     assert begins(desk.notice, "desk.y-on-automatic")
@@ -159,10 +159,10 @@ def test_y_means_nothing_where_no_cycle_is_started(desk: Desk) -> None:
 
 def test_another_program_is_asked_for_and_loaded_by_y_alone(desk: Desk) -> None:
     loads = desk.session.loads
-    assert desk.choose("OTHER.NC")
+    assert desk.programs.choose("OTHER.NC")
     assert desk.session.loads == loads
     assert desk.notice == text("desk.gives-job-up", tool=3, program="PIN.NC", line=8, name="OTHER.NC")
-    assert desk.choose("OTHER.NC")  # the same again is no answer
+    assert desk.programs.choose("OTHER.NC")  # the same again is no answer
     assert desk.session.loads == loads
     has_been_read(desk)
     desk.yes()
@@ -173,7 +173,7 @@ def test_another_program_is_asked_for_and_loaded_by_y_alone(desk: Desk) -> None:
 
 
 def test_another_key_takes_the_question_back(desk: Desk) -> None:
-    assert desk.choose("OTHER.NC")
+    assert desk.programs.choose("OTHER.NC")
     assert desk.escape()
     desk.yes()
     assert desk.session.now.name == "PIN.NC"
@@ -182,7 +182,7 @@ def test_another_key_takes_the_question_back(desk: Desk) -> None:
 
 
 def test_an_answer_covers_no_question(desk: Desk) -> None:
-    assert desk.choose("OTHER.NC")
+    assert desk.programs.choose("OTHER.NC")
     has_been_read(desk)
     desk.say("NOT KEPT: the disk is full")
     assert (desk.answers.answer, bool(desk.answers.question)) == ("NOT KEPT: the disk is full", True)
@@ -195,7 +195,7 @@ def test_an_answer_covers_no_question(desk: Desk) -> None:
 def test_the_interrupted_program_keeps_its_name_and_its_file(
     desk: Desk, question: str, tmp_path: Path
 ) -> None:
-    files = desk.attached(ProgramList)
+    files = desk.pages.find(ProgramList)
     assert files is not None
     files.opened()
     files.worker.settle(60.0)
@@ -213,7 +213,7 @@ def test_the_interrupted_program_keeps_its_name_and_its_file(
 
 def test_the_same_program_is_read_again_without_a_question(desk: Desk) -> None:
     loads = desk.session.loads
-    assert desk.choose("PIN.NC")
+    assert desk.programs.choose("PIN.NC")
     assert desk.session.loads == loads + 1
     desk.close()
 
@@ -235,7 +235,7 @@ def test_at_the_start_an_interrupted_program_that_is_not_there_is_told(desk: Des
 def test_closing_with_something_unwritten_says_so_and_means_it_only_later(desk: Desk) -> None:
     closed: list[bool] = []
     assert desk.may_close(lambda: closed.append(True))
-    desk.waiting = lambda: "20 parts, 61 events"
+    desk.storage.follow_store(waiting=lambda: "20 parts, 61 events")
     for _ in range(3):  # a key that repeats
         assert not desk.may_close(lambda: closed.append(True))
         assert "20 parts, 61 events" in desk.notice

@@ -10,10 +10,10 @@ from pathlib import Path
 import pytest
 
 import resources
+from app.compose.desk_assembly import desk_and_executor
 from app.compose.machine.accepted_machine import differences, key_of, record_of
 from app.compose.machine.machine_files import load_machine
 from app.compose.runs.journal import Journal
-from app.compose.screen_desk import desk_and_executor
 from app.compose.stored_offsets import NONE
 from app.desk.desk import Desk
 from app.desk.persistence import Persistence

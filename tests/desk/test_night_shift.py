@@ -52,7 +52,7 @@ def test_a_count_that_is_not_what_was_made_is_told(shift: NightShift) -> None:
     operator.make(1)
     operator.finish()
     made = counted(shift)["seen at the slides"]
-    shift.desk.counter.correct(1)
+    shift.desk.runs.counter.correct(1)
     shift.saved()
     assert disagreeing(shift, operator, counted(shift)) == [
         f"desk: {made + 1} of {made}",

@@ -18,12 +18,15 @@ from app.desk.kept_part import KeptPart, kept_part
 from app.desk.persistence import Persistence
 from app.desk.programs.program_folder import ProgramFolders
 from app.desk.programs.program_loading import Phase, ProgramLoader
+from app.desk.state.desk_control import DeskControl
+from app.desk.state.desk_machine import DeskMachine
 from app.part.part_sheet import PartSheet, Section
 from app.part.part_tables import table
 from app.part.stock_entry import StockEntry, StockField, StockKind
 from core.executor.commands import Command
 from core.executor.snapshot import Snapshot, State
 from core.language.diagnostics import Diagnostic, Severity
+from core.machine.machine_model import Machine
 from core.part.stock_spec import stock_spec
 from core.proving.checks.part_checks import CHECKS
 from core.store.store_errors import StoreError
@@ -35,7 +38,9 @@ from tests.texts import text as wording
 class Bench:
     """The page of a desk that loads real programs."""
 
-    def __init__(self, folder: Path, of_machine: frozenset[str] = frozenset()) -> None:
+    def __init__(
+        self, folder: Path, of_machine: frozenset[str] = frozenset(), model: Machine | None = None
+    ) -> None:
         self.state, self.folder = State.IDLE, folder
         self.keep, posted = Persistence(), list[Command]()
         steps = workshop(
@@ -45,15 +50,15 @@ class Bench:
             kept=partial(kept_part, self.keep.read_setting),
         )
         self.desk = Desk(
-            post=posted.append,
-            snapshot=lambda: Snapshot(state=self.state),
-            session=ProgramLoader(steps, posted.append),
-            program_folders=ProgramFolders((folder,)),
+            DeskControl(posted.append, lambda: Snapshot(state=self.state)),
+            ProgramLoader(steps, posted.append),
+            ProgramFolders((folder,)),
+            machine=DeskMachine(model=model),
         )
         self.page = PartSheet(self.desk, self.keep, frozenset(CHECKS), of_machine)
         self.shown: list[Diagnostic] = []
         self.page.shows = self.shown.append
-        self.desk.attach(self.page)
+        self.desk.pages.attach(self.page)
 
     def load(self, text: str, name: str = "part.nc") -> None:
         (self.folder / name).write_text(text)
@@ -208,12 +213,14 @@ def test_under_a_running_program_nothing_is_changed(bench: Bench) -> None:
     assert bench.kept == KeptPart()
 
 
-def test_on_a_mill_no_stock_is_said(bench: Bench) -> None:
+def test_on_a_mill_no_stock_is_said(tmp_path: Path) -> None:
+    mill = parse_machine(resources.machine_file("ac-table-mill.toml"), "mill")
+    bench = Bench(tmp_path, model=mill)
     bench.load(SHAFT)
-    bench.desk.lathe = parse_machine(resources.machine_file("ac-table-mill.toml"), "mill")
     bench.press("F2", "Right")
     assert bench.desk.notice == wording("desk.no-part-on-mill")
     assert bench.kept == KeptPart()
+    bench.desk.close()
 
 
 def test_without_a_program_there_is_nothing_to_say(bench: Bench) -> None:

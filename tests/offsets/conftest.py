@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -11,10 +12,14 @@ import pytest
 from app.desk.desk import Desk
 from app.desk.programs.program_folder import ProgramFolders
 from app.desk.programs.program_loading import LoadingSteps, ProgramLoader, Proved
+from app.desk.state.desk_clock import DeskClock
+from app.desk.state.desk_control import DeskControl
+from app.desk.state.desk_machine import DeskMachine
 from app.offsets.offset_book import OffsetBook
 from app.offsets.secondary_offsets import SecondaryOffsets
 from app.offsets.tool_offsets import ToolOffsets
 from app.path.path_picture import PictureBuilder
+from core.executor.commands import Command
 from core.executor.job import Proof, make_job
 from core.executor.snapshot import Snapshot, State
 from core.interpreter.shared.job_setup import Setup
@@ -33,6 +38,7 @@ class Room:
     store: Store
     now: list[Snapshot]
     loads: list[str] = field(default_factory=list)
+    posted: list[Command] = field(default_factory=list)
 
     def at(self, state: State = State.IDLE, *, metric: bool = False, diameter: bool = False) -> None:
         """The machine is in this state and mode."""
@@ -74,9 +80,13 @@ class Room:
         page.look(self.now[0])
 
 
-@pytest.fixture
-def room(tmp_path: Path) -> Iterator[Room]:
-    store, now, loads = Store.open(tmp_path / "home"), [Snapshot(state=State.IDLE)], []
+@contextmanager
+def room_on(
+    folder: Path, machine: DeskMachine | None = None, book: OffsetBook | None = None
+) -> Iterator[Room]:
+    """A desk on this machine; its store is in a folder, and its book reads that unless one is given."""
+    store, now, loads = Store.open(folder / "home"), [Snapshot(state=State.IDLE)], []
+    posted: list[Command] = []
 
     def read(path: Path) -> Source:
         loads.append(path.name)
@@ -89,13 +99,19 @@ def room(tmp_path: Path) -> Iterator[Room]:
         lambda _job, _watch: PictureBuilder().picture(),
     )
     desk = Desk(
-        post=lambda _command: None,
-        snapshot=lambda: now[0],
-        session=ProgramLoader(workshop, lambda _command: None),
-        program_folders=ProgramFolders(()),
-        clock=lambda: 0.0,
-        book=OffsetBook(store),
+        DeskControl(posted.append, lambda: now[0]),
+        ProgramLoader(workshop, lambda _command: None),
+        ProgramFolders(()),
+        machine=machine or DeskMachine(),
+        clock=DeskClock(seconds=lambda: 0.0),
+        book=book or OffsetBook(store),
     )
-    yield Room(desk, store, now, loads)
+    yield Room(desk, store, now, loads, posted)
     desk.close()
     store.close()
+
+
+@pytest.fixture
+def room(tmp_path: Path) -> Iterator[Room]:
+    with room_on(tmp_path) as made:
+        yield made

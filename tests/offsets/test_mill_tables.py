@@ -30,7 +30,7 @@ AXES = ("X", "Y", "Z", "A", "C")
 def mill(room: Room, *at: float, tool: int = 0) -> None:
     """The machine is an A-C table that stands there."""
     machine = kinematics_of(named_machine("ac-table-mill"))
-    room.desk.attach(MillTouch(room.desk, machine))
+    room.desk.pages.attach(MillTouch(room.desk, machine))
     snapshot, place = room.now[0], (*at, *(0.0,) * (5 - len(at)))
     modal = snapshot.modal._replace(metric=True, tool=tool)
     room.now[0] = replace(snapshot, axes=AXES, actual=place, demand=place, homed=(True,) * 5, modal=modal)
@@ -214,7 +214,7 @@ def test_cur_time_is_what_was_cut_and_goes_to_what_counts_it(room: Room) -> None
     mill(room)
     told: list[tuple[int, float]] = []
     lives = {1: ToolLife(1, limit_seconds=1800.0, seconds=1680.0)}
-    room.desk.attach(MillLives(lambda: lives, lambda number, cut: told.append((number, cut))))
+    room.desk.pages.attach(MillLives(lambda: lives, lambda number, cut: told.append((number, cut))))
     page = MillTools(room.desk)
     page.choose(0, page.columns.index("used"))
     assert page.value_at(1, "used") == 28.0

@@ -26,7 +26,7 @@ INCH = Mode()
 def shown(room: Room) -> EffectDisplay:
     """F8 with the shaft on the desk: .8 in diameter .5 in long, a cone, then the bar."""
     machine = load_machine(None)
-    room.desk.attach(Effect(drawer(machine), part_comparer(machine)))
+    room.desk.pages.attach(Effect(drawer(machine), part_comparer(machine)))
     for number, tool in TOOLS.items():
         room.desk.book.change(Kind.TOOL, number, {"x": tool.x, "z": tool.z}, "before")
     page = room.grid()

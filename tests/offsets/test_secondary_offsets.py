@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,7 +13,7 @@ from app.offsets.offset_values import Mode, in_words
 from app.offsets.secondary_offsets import Step
 from core.executor.snapshot import State
 from core.store.store_rows import Kind, SecondaryRow
-from tests.offsets.conftest import LIMIT, Room
+from tests.offsets.conftest import LIMIT, Room, room_on
 from tests.texts import text
 
 
@@ -303,8 +304,15 @@ def test_a_correction_at_a_stop_counts_when_the_job_has_ended(room: Room) -> Non
     assert room.loads == ["part.nc", "part.nc"]
 
 
-def test_offsets_of_a_file_are_read_only(room: Room) -> None:
-    room.desk.book = OffsetBook(locked="READ ONLY", secondary={1: SecondaryRow(0.0, 0.1, 0.0)})
+@pytest.fixture
+def read_only(tmp_path: Path) -> Iterator[Room]:
+    book = OffsetBook(locked="READ ONLY", secondary={1: SecondaryRow(0.0, 0.1, 0.0)})
+    with room_on(tmp_path, book=book) as made:
+        yield made
+
+
+def test_offsets_of_a_file_are_read_only(read_only: Room) -> None:
+    room = read_only
     page = room.page()
     room.enter(page, "1")
     assert room.desk.notice == "READ ONLY"

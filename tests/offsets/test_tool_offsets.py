@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from pathlib import Path
+
 import pytest
 
 from app.compose.machine.machine_files import shipped_machine
+from app.desk.state.desk_machine import DeskMachine
 from app.offsets.tool_offsets import ToolOffsets
 from core.executor.snapshot import State
 from core.store.store_rows import ToolRow
-from tests.offsets.conftest import LIMIT, Room
+from tests.offsets.conftest import LIMIT, Room, room_on
 from tests.texts import text
 
 INCH = 25.4
@@ -315,10 +319,10 @@ def test_d_is_no_key_where_the_language_has_no_edges(room: Room) -> None:
 
 
 @pytest.fixture
-def with_edges(room: Room) -> Room:
+def with_edges(tmp_path: Path) -> Iterator[Room]:
     """At a lathe whose programs are SINUMERIK's."""
-    room.desk.lathe = shipped_machine("sinumerik-modulo")
-    return room
+    with room_on(tmp_path, DeskMachine(model=shipped_machine("sinumerik-modulo"))) as made:
+        yield made
 
 
 def test_d_opens_another_cutting_edge(with_edges: Room) -> None:

@@ -15,8 +15,8 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
+from app.compose.desk_assembly import desk_and_executor
 from app.compose.runs.journal import Journal
-from app.compose.screen_desk import desk_and_executor
 from app.compose.stored_offsets import stored_offsets
 from app.desk.data_folder import data_folder
 from app.desk.desk import Desk
@@ -75,8 +75,8 @@ class Day:
     @property
     def slides(self) -> tuple[float, float]:
         """Where X and Z of the lathe really stand, inches from home."""
-        assert isinstance(self.desk.station, PlantHands)
-        x, z = self.desk.station.true_position()[:2]
+        assert isinstance(self.desk.control.panel, PlantHands)
+        x, z = self.desk.control.panel.true_position()[:2]
         return x / INCH, z / INCH
 
     # --- hands ---------------------------------------------------------------------------------------

@@ -5,8 +5,18 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from app.compose.desk_functions import furnish, give_production, give_scope
-from app.compose.extra import drawing_endings, extras
+from app.compose.desk_pages import (
+    PageSetup,
+    own_folder,
+    register_extras,
+    register_pages,
+    register_production,
+    register_programs,
+    register_scope_page,
+    register_sounds,
+    register_special_functions,
+)
+from app.compose.extra import drawing_endings
 from app.compose.machine.machine_files import load_machine
 from app.compose.machine.machine_setup import setup_for
 from app.compose.runs.journal import Journal
@@ -16,9 +26,13 @@ from app.desk.desk import Desk
 from app.desk.persistence import Persistence
 from app.desk.programs.program_folder import ProgramFolders
 from app.desk.programs.program_loading import LoadingSteps, ProgramLoader, Proved
+from app.desk.state.desk_clock import DeskClock
+from app.desk.state.desk_control import DeskControl
+from app.desk.state.desk_machine import DeskMachine
 from app.editor.editor import Editor
 from app.editor.versions import Archive, NoArchive
 from app.jog.hand_functions import HandFunctions
+from app.offsets.offset_book import OffsetBook
 from app.offsets.offset_effect import Effect
 from app.path.path_picture import Picture, picture_of
 from app.scope.scope_curves import LiveSamples
@@ -32,6 +46,14 @@ from core.proving.prove_program import prove
 from tests.screen.fake import FakeMachine
 
 SAMPLES = Path(__file__).parents[2] / "resources" / "programs"
+PAGES = (
+    register_sounds,
+    register_special_functions,
+    register_programs,
+    register_scope_page,
+    register_production,
+    register_extras,
+)
 TOOLS = {n: ToolOffset(x, z) for n, x, z in ((1, -12.7, -76.2), (2, 6.35, -63.5), (3, -25.4, -81.28))}
 
 
@@ -39,9 +61,11 @@ def desk_on(
     machine: FakeMachine,
     *folders: Path,
     two_hand: bool = True,
+    one_hand: bool = False,
     archive: Archive | None = None,
     keep: Persistence | None = None,
     live: LiveSamples | None = None,
+    book: OffsetBook | None = None,
 ) -> Desk:
     """A desk with the simulated station, on these folders or on the samples."""
     lathe = load_machine(None)
@@ -66,27 +90,33 @@ def desk_on(
 
     work = LoadingSteps(load_source, make_job, proved, draw, renewed)
     archive = archive or NoArchive()
+    own = folders[0] if folders else None
+    persistence = keep or Persistence()
     desk = Desk(
-        post=machine.post,
-        snapshot=machine.snapshot,
-        session=ProgramLoader(work, machine.post),
-        program_folders=ProgramFolders(folders or (SAMPLES,), drawing_endings()),
-        station=machine,
-        two_hand=two_hand,
-        lathe=lathe,
-        machine="GT-75 SIMULATED",
-        time_of_day=lambda: "09:41:07",
+        DeskControl(machine.post, machine.snapshot, machine),
+        ProgramLoader(work, machine.post),
+        ProgramFolders(folders or (SAMPLES,), drawing_endings()),
+        machine=DeskMachine("GT-75 SIMULATED", lathe, two_hand=two_hand, one_hand=one_hand),
+        persistence=persistence,
+        book=book,
+        clock=DeskClock(time_of_day=lambda: "09:41:07"),
     )
-    desk.attach(Effect(drawer(lathe)))
-    desk.attach(Editor(work, archive, folders[0] if folders else Path("/dev/null"), SAMPLES))
-    furnish(desk, lathe, keep or Persistence(), work, folders[0] if folders else None)
+    desk.pages.attach(Effect(drawer(lathe)))
+    desk.pages.attach(Editor(work, archive, own or Path("/dev/null"), SAMPLES))
     hand = HandFunctions(desk, lathe, unproved)
-    desk.attach(hand)
-    desk.own_starts.append(hand)
-    give_scope(desk, live)
-    give_production(desk, lathe, keep if isinstance(keep, Journal) else None)
-    for extra in extras().values():
-        extra.attach(desk, lathe, keep if isinstance(keep, Journal) else None, work)
+    desk.pages.attach(hand)
+    desk.pages.add_start(hand)
+    setup = PageSetup(
+        desk=desk,
+        machine=lathe,
+        persistence=persistence,
+        journal=keep if isinstance(keep, Journal) else None,
+        own=own or own_folder(),
+        work=work,
+        proving=work,
+        live=live,
+    )
+    register_pages(setup, PAGES)
     built.append(desk)
     machine.hear = desk.hear
     return desk

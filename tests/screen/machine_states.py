@@ -54,7 +54,7 @@ MACHINES = {"omniturn": OMNITURN, "klartext": KLARTEXT, "sinumerik": SINUMERIK}
 
 def choose(day: Day, program: str) -> None:
     """Load a program; it may be started then."""
-    assert day.desk.choose(program)
+    assert day.desk.programs.choose(program)
     day.sees(lambda: not day.desk.session.now.busy and bool(day.shot.program) and not day.shot.proof_wanted)
     assert not day.desk.session.now.errors, day.desk.session.now.errors
 
@@ -109,7 +109,7 @@ def _homing(day: Day) -> None:
 
 def _stopped(day: Day) -> None:
     _running(day)
-    day.desk.estop()
+    day.desk.station.press_estop()
     day.reaches(State.ESTOP)
 
 
@@ -130,8 +130,8 @@ def _empty(day: Day) -> None:
 
 def hands(day: Day) -> PlantHands:
     """What an operator does at the simulated machine, and what breaks in it."""
-    assert isinstance(day.desk.station, PlantHands)
-    return day.desk.station
+    assert isinstance(day.desk.control.panel, PlantHands)
+    return day.desk.control.panel
 
 
 STATES: dict[State, Callable[[Day], None]] = {

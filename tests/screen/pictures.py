@@ -21,9 +21,9 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QApplication
 
+from app.compose.desk_assembly import desk_and_executor
 from app.compose.extra import insert_after
 from app.compose.runs.journal import Journal
-from app.compose.screen_desk import desk_and_executor
 from app.compose.stored_offsets import read_offsets
 from app.compose.workshop import samples
 from app.desk.desk import Desk
@@ -42,6 +42,7 @@ from core.store.production.tool_lives import LifeRow
 from core.store.store import Store
 from drivers.waiting import StepClock
 from tests.extras.modules import of_extras
+from tests.offset_store import use_store
 
 SIZES = ((1024, 600), (1920, 1080), (3840, 2160))
 THEMES = ("dark", "light")
@@ -74,9 +75,9 @@ class Stage:
             raise OSError(book.locked)
         self.store = book.store
         self._fill(self.store)
-        self.desk.book = OffsetBook(self.store)
+        use_store(self.desk, self.store)
         self.desk.hands.clock = self.clock.now
-        self.desk.time_of_day = lambda: "09:41:07"
+        self.desk.clock.time_of_day = lambda: "09:41:07"
 
     def _fill(self, store: Store) -> None:
         """The offsets of the samples and some corrections."""
@@ -110,7 +111,7 @@ class Stage:
     def make_ready(self, program: str = PROGRAM) -> None:
         """Load a program, prove it and switch the drives on."""
         desk = self.desk
-        desk.choose(program)
+        desk.programs.choose(program)
         loaded = desk.session.settled(LOADING)
         if loaded.errors:
             raise ValueError(f"{program} does not prove: {loaded.errors[0].message}")
@@ -255,7 +256,7 @@ def _of_the_mill(out: Path, looks: Looks) -> Iterator[Path]:
     stage = Stage(machine=MILL)
     stage.make_ready(TILTED)
     yield from taken(stage.desk, out, False, looks, mill=True)
-    stage.desk.starts_here = True  # the editor was in front, and has handed its program over again
+    stage.desk.window.show_page(starts=True)  # the editor was in front, and has handed its program over again
     stage.desk.session.settled(LOADING)
     stage.press_start()
     stage.tick(lambda: stage.desk.snapshot().block >= TILTED_BLOCK)

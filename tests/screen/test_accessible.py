@@ -53,7 +53,7 @@ def without_name(window: MainWindow) -> list[str]:
     """Each page on which something has no name or no role."""
     assert window.frame is not None
     found = []
-    for entry in pages_of(window.frame.desk.language):
+    for entry in pages_of(window.frame.desk.machine.language):
         window.frame.go(entry.name)
         window.refresh()
         found += [

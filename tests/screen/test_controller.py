@@ -67,7 +67,7 @@ def desk(
     (tmp_path / "grbl.toml").write_text(text)
     (tmp_path / "part.nc").write_text(PROGRAM)
     made = build_desk(str(tmp_path / "grbl.toml"))
-    made.choose(str(tmp_path / "part.nc"))
+    made.programs.choose(str(tmp_path / "part.nc"))
     yield made
     made.close()
 

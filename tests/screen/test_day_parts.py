@@ -171,7 +171,7 @@ def search(day: Day, text: str, line: str) -> None:
     """F6, a text or nothing, Return to its state, F10 to take it."""
     day.key(Key.Key_F6)
     assert day.page == page_table.SEARCHTO
-    model = day.desk.attached(SearchtoModel)
+    model = day.desk.pages.find(SearchtoModel)
     assert model is not None
     if text:
         day.type(text)

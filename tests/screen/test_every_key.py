@@ -265,8 +265,9 @@ def test_every_key_does_what_the_page_offers(day: Day, typists: list[Typist]) ->
     typists.append(typist)
     faults: list[str] = []
     seen: list[str] = []
-    for entry in pages_of(day.desk.language):
-        own = day.desk.language == "omniturn" or entry.name in BY_MACHINE or len(entry.languages) < ALL
+    language = day.desk.machine.language
+    for entry in pages_of(language):
+        own = language == "omniturn" or entry.name in BY_MACHINE or len(entry.languages) < ALL
         if not own or not typist.opens(entry.name):
             continue
         seen.append(entry.name)

@@ -9,9 +9,9 @@ import pytest
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
+from app.compose.desk_assembly import desk_and_executor
 from app.compose.machine.machine_files import load_machine
 from app.compose.machine.machine_setup import setup_for
-from app.compose.screen_desk import desk_and_executor
 from app.compose.stored_offsets import Offsets
 from app.screen.look import DARK, Look
 from app.screen.window.main_window import MainWindow
@@ -109,7 +109,7 @@ def test_it_ends_on_the_screen_where_the_proof_ends(lathe: Lathe, name: str) -> 
     path = worked(name)
     proof = proved(path)
     assert proof.errors == ()
-    lathe.desk.choose(str(path))
+    lathe.desk.programs.choose(str(path))
     lathe.desk.session.settled(60.0)
     lathe.until(State.DISABLED)
     lathe.key(Key.Key_D)

@@ -27,7 +27,7 @@ class Stall:
 
     def __init__(self, hands: Hands) -> None:
         self.hands, self.time = hands, Time()
-        hands.window.times.clock = hands.desk.hands.clock = hands.desk.late.clock = self.time
+        hands.window.times.clock = hands.desk.hands.clock = hands.desk.window.late.clock = self.time
         send(hands, Key.Key_F5, at=round(1000 * self.time.now))  # the stamps are of our own clock
         send(hands, Key.Key_F5, up=True, at=round(1000 * self.time.now))
         hands.window._faces.append((0.0, hands.frame.face))

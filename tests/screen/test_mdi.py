@@ -169,7 +169,7 @@ def test_mdi_does_not_open_while_a_program_is_under_way(operator: Operator) -> N
 
 def test_the_palms_start_no_program_in_mdi(at_mdi: Operator) -> None:
     desk = at_mdi.stage.desk
-    desk.choose("bushing")
+    desk.programs.choose("bushing")
     desk.session.settled(30.0)
     at_mdi.palms()
     assert at_mdi.shot.state is State.IDLE
@@ -190,7 +190,7 @@ def test_a_tool_that_was_never_set_is_refused_before_the_start(at_mdi: Operator)
 
 def test_a_unit_left_by_mdi_is_the_unit_of_a_program_that_names_none(at_mdi: Operator) -> None:
     desk = at_mdi.stage.desk
-    desk.choose("bushing")
+    desk.programs.choose("bushing")
     desk.session.settled(30.0)
     at_mdi.run("G71")
     at_mdi.key(Key.Key_F2)

@@ -12,18 +12,18 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.automatic.automatic_view import AutomaticPage
-from app.compose.screen_desk import desk_and_executor
+from app.compose.desk_assembly import desk_and_executor
 from app.compose.stored_offsets import read_offsets
 from app.compose.workshop import samples
 from app.editor.editor_view import EditorPage
 from app.jog.jog_view import JogPage
-from app.offsets.offset_book import OffsetBook
 from app.screen.look import DARK, Look
 from app.screen.window.main_window import MainWindow
 from app.searchto.searchto_view import SearchtoPage
 from core.executor.snapshot import Snapshot, State
 from core.store.store import Store
 from drivers.waiting import StepClock
+from tests.offset_store import use_store
 from tests.screen.hands import Key
 from tests.screen.yes import yes
 from tests.texts import shows
@@ -45,7 +45,7 @@ class Mill:
             self._store.offsets.tools.change_row(
                 number, "measured", {"x": tool.x, "z": tool.z, "nose_radius": tool.nose_radius}
             )
-        self.desk.book = OffsetBook(self._store)
+        use_store(self.desk, self._store)
         self.desk.hands.clock = self._clock.now
         self.window = MainWindow(Look(DARK))
         self.window.resize(1024, 600)

@@ -35,8 +35,7 @@ from tests.texts import Pattern, begins, text
 )
 def test_an_interrupted_job_and_a_full_disk_stand_on_every_page(hands: Hands, page: str) -> None:
     hands.machine.now = replace(hands.machine.now, interrupted=broken_off())
-    hands.desk.not_kept = lambda: "the disk is full"
-    hands.desk.waiting = lambda: "20 parts"
+    hands.desk.storage.follow_store(lambda: "the disk is full", lambda: "20 parts")
     hands.frame.go(page)
     hands.window.refresh()
     rows = hands.frame.notices
@@ -49,7 +48,7 @@ def test_an_interrupted_job_and_a_full_disk_stand_on_every_page(hands: Hands, pa
     assert not rows.geometry().intersects(hands.frame.page.geometry())
     assert "NOT SAVED" in [lamp.word for lamp in hands.frame.strip.lamps]
     hands.machine.now = replace(hands.machine.now, interrupted=None)
-    hands.desk.not_kept = str
+    hands.desk.storage.follow_store()
     hands.window.refresh()
     assert not rows.isVisible()
 
@@ -59,11 +58,11 @@ def test_no_target_slips_away_under_a_finger_that_jogs(hands: Hands) -> None:
     hands.desk.hands.clock = lambda: time[0]
     hands.frame.go(page_table.JOG)
     now = hands.desk.snapshot()
-    hands.desk.snapshot = lambda: replace(now, state=State.JOG)
+    hands.desk.control.snapshot = lambda: replace(now, state=State.JOG)
     hands.window.refresh()
     stands = hands.frame.page.geometry()
-    hands.desk.not_kept = lambda: "the disk is full"
-    hands.desk.snapshot = lambda: replace(now, state=State.IDLE)  # between two steps
+    hands.desk.storage.follow_store(lambda: "the disk is full")
+    hands.desk.control.snapshot = lambda: replace(now, state=State.IDLE)  # between two steps
     time[0] += 1.0
     hands.window.refresh()
     assert hands.frame.page.geometry() == stands

@@ -11,7 +11,6 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
 from app.desk.programs.program_loading import Phase
-from app.offsets.offset_book import OffsetBook
 from app.offsets.secondary_offsets_view import SecondaryOffsetsPage
 from app.offsets.tool_offsets_view import ToolOffsetsPage
 from app.screen import page_table
@@ -21,6 +20,7 @@ from core.executor.commands import LoadJob, Renew, UseOffsets
 from core.executor.snapshot import State
 from core.store.store import Store
 from core.store.store_rows import ToolRow
+from tests.offset_store import use_store
 from tests.screen.hands import Hands, Key
 from tests.screen.yes import yes
 from tests.texts import begins, shows
@@ -30,7 +30,7 @@ from tests.texts import text as wording
 @pytest.fixture
 def store(hands: Hands, tmp_path: Path) -> Iterator[Store]:
     with Store.open(tmp_path / "home") as store:
-        hands.desk.book = OffsetBook(store)
+        use_store(hands.desk, store)
         yield store
 
 
@@ -190,7 +190,7 @@ def renewals(hands: Hands) -> list[Renew]:
 
 def test_metric_when_the_control_is_metric(hands: Hands, store: Store) -> None:
     store.offsets.secondary.change_row(1, "inch", {"z": 2.54}).result(60)
-    hands.desk.book = OffsetBook(store)
+    use_store(hands.desk, store)
     hands.key(Key.Key_F9)
     modal = hands.machine.now.modal._replace(metric=True)
     hands.machine.now = replace(hands.machine.now, modal=modal)
@@ -220,7 +220,7 @@ def test_a_tool_is_set_with_f8_and_refused_while_running(hands: Hands, store: St
 
 def test_wear_between_two_parts(hands: Hands, store: Store) -> None:
     store.offsets.tools.change_row(1, "touched off", {"x": -12.7, "z": -76.2}).result(60)
-    hands.desk.book = OffsetBook(store)
+    use_store(hands.desk, store)
     hands.load("pin")
     hands.key(Key.Key_F8)
     for _ in range(4):
@@ -240,7 +240,7 @@ def test_wear_between_two_parts(hands: Hands, store: Store) -> None:
 
 def test_a_remark_takes_the_letters_that_are_keys_elsewhere(hands: Hands, store: Store) -> None:
     store.offsets.tools.change_row(1, "touched off", {"x": 1.0, "z": 1.0}).result(60)
-    hands.desk.book = OffsetBook(store)
+    use_store(hands.desk, store)
     hands.key(Key.Key_F8)
     for _ in range(7):
         hands.key(Key.Key_Right)
@@ -256,7 +256,7 @@ def test_a_remark_takes_the_letters_that_are_keys_elsewhere(hands: Hands, store:
 def test_a_remark_is_written_by_a_finger(hands: Hands, store: Store) -> None:
     """The pad has figures; a text had no letters, and none of it could be typed."""
     store.offsets.tools.change_row(1, "touched off", {"x": 1.0, "z": 1.0}).result(60)
-    hands.desk.book = OffsetBook(store)
+    use_store(hands.desk, store)
     hands.window.resize(1024, 600)
     hands.key(Key.Key_F8)
     page = tools_of(hands)

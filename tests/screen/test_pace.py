@@ -50,7 +50,7 @@ def test_a_change_of_the_machine_ends_it_from_any_thread(
     hands.sees(lambda: interval(hands) == REST_MS)
     seen: list[int] = []
     monkeypatch.setattr(hands.window, "_pace", seen.append)
-    executor = threading.Thread(target=hands.desk.stirs)
+    executor = threading.Thread(target=hands.desk.window.wake)
     executor.start()
     executor.join()
     hands.sees(lambda: FRAME_MS in seen)
@@ -93,7 +93,7 @@ class Counted:
         self._hands, self._window = hands, hands.window
         self._window._timer.stop()
         self.t = 1000.0
-        hands.desk.clock = self._window.times.clock = lambda: self.t
+        hands.desk.clock.seconds = self._window.times.clock = lambda: self.t
         self.frames = 0
         self._refresh, self._window.refresh = self._window.refresh, self._count  # type: ignore[method-assign]
         self.until_still()

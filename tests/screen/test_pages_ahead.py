@@ -37,7 +37,7 @@ class Clock:
 def idle() -> Iterator[Desk]:
     """A desk without a window, and time that stands."""
     found = desk_on(FakeMachine())
-    found.clock = Clock()
+    found.clock.seconds = Clock()
     yield found
     found.close()
 
@@ -61,11 +61,11 @@ class Asked:
 
 def steps(ahead: PagesAhead, idle: Desk) -> int:
     """As many slices as there are, each at its time; how many looks it took."""
-    assert isinstance(idle.clock, Clock)
+    assert isinstance(idle.clock.seconds, Clock)
     for count in range(SLICES):
         if ahead.done:
             return count
-        idle.clock.now += 2 * APART
+        idle.clock.seconds.now += 2 * APART
         ahead.step()
         ahead._worker.settle(60.0)
     raise AssertionError("it never ends")
@@ -118,7 +118,7 @@ def test_frames_between_two_slices_have_nothing_of_it(idle: Desk, monkeypatch: p
     entries(monkeypatch, ONE)
     asked = Asked()
     ahead = PagesAhead(idle, asked)
-    idle.clock.now += 2 * APART  # type: ignore[attr-defined]
+    idle.clock.seconds.now += 2 * APART  # type: ignore[attr-defined]
     for _ in range(SLICES):
         ahead.step()
         ahead._worker.settle(60.0)

@@ -56,7 +56,7 @@ def test_no_page_offers_a_start_that_is_refused(operator: Operator) -> None:
     operator.stage.make_ready()
     operator.window.refresh()
     assert desk.start_words in frame.prompt.state
-    for entry in menu_of(desk.language):
+    for entry in menu_of(desk.machine.language):
         if frame.go(entry.name):
             operator.window.refresh()
             assert desk.start_words not in frame.prompt.state or not desk.barred(), entry.name

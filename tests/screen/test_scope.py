@@ -127,7 +127,7 @@ def test_frozen_curves_do_not_move(hands: Hands, played: PlayedSamples) -> None:
 
 
 def test_level_curves_that_roll_are_not_drawn_again(hands: Hands, played: PlayedSamples) -> None:
-    page, scope = opened(hands), hands.desk.attached(Scope)
+    page, scope = opened(hands), hands.desk.pages.find(Scope)
     assert scope is not None
     assert page.lively()  # they swing
     scope.chosen = ("spindle command", "C actual")
@@ -141,9 +141,9 @@ def test_level_curves_that_roll_are_not_drawn_again(hands: Hands, played: Played
     assert chart.sight is seen
     played.now += 1.0
     hands.machine.now = replace(hands.machine.now, inputs=frozenset({"guard"}))  # something happens
-    before = hands.desk.clock()
+    before = hands.desk.clock.seconds()
     hands.sees(lambda: scope.sight.zero > played.now - 0.1)
-    hands.desk.clock = lambda: before  # no second passes any more
+    hands.desk.clock.seconds = lambda: before  # no second passes any more
     scope.chosen = ("spindle command", "C actual", "Z actual")
 
     def three() -> bool:
@@ -489,7 +489,7 @@ def colours_of(image: QImage) -> set[str]:
 
 
 def test_nothing_is_recorded_on_a_machine_without(hands: Hands) -> None:
-    scope = hands.desk.attached(Scope)
+    scope = hands.desk.pages.find(Scope)
     assert scope is not None
     scope.live = scope._carried = None
     scope.signals = ()
@@ -531,7 +531,7 @@ def test_f7_opens_what_was_recorded_before_an_alarm(hands: Hands, tmp_path: Path
     hands.sees(lambda: shows(hands.prompt(), "scope.nothing-before"))
     hands.key(Key.Key_Down, CTRL)
     hands.key(Key.Key_F10, SHIFT)
-    scope = hands.desk.attached(Scope)
+    scope = hands.desk.pages.find(Scope)
     assert scope is not None
     hands.sees(lambda: scope.name == "one-alarm301.scope")
     assert hands.frame.page.NAME == page_table.SCOPE

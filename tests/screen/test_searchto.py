@@ -33,7 +33,7 @@ def page_of(operator: Operator) -> SearchtoPage:
 def loaded(operator: Operator) -> None:
     """The sample program on the desk, proved; drives on."""
     desk = operator.stage.desk
-    desk.choose("bushing")
+    desk.programs.choose("bushing")
     desk.session.settled(30.0)
     operator.drives_on()
 
@@ -163,7 +163,7 @@ def test_a_finger_marks_a_line_or_types_its_number(operator: Operator) -> None:
 
 def test_a_line_that_is_not_good_offers_its_neighbours(operator: Operator) -> None:
     desk = operator.stage.desk
-    desk.choose("pin")
+    desk.programs.choose("pin")
     desk.session.settled(30.0)
     operator.drives_on()
     operator.key(Key.Key_F6)
@@ -248,7 +248,7 @@ def test_searchto_does_not_open_without_a_program_nor_while_one_runs(operator: O
 
 def test_with_the_drives_off_nothing_is_confirmed(operator: Operator) -> None:
     desk = operator.stage.desk
-    desk.choose("bushing")
+    desk.programs.choose("bushing")
     desk.session.settled(30.0)
     operator.until(lambda: operator.shot.state is State.DISABLED)
     operator.key(Key.Key_F6)
@@ -312,7 +312,7 @@ def test_another_tool_at_the_part_leaves_it_by_its_own_way_and_what_is_left_out_
 
 def test_the_pass_of_a_loop_is_chosen_by_keys_and_by_fingers(operator: Operator) -> None:
     desk = operator.stage.desk
-    desk.choose("pin")
+    desk.programs.choose("pin")
     desk.session.settled(30.0)
     operator.drives_on()
     operator.key(Key.Key_F6)

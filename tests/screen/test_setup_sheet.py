@@ -34,7 +34,7 @@ def desk(machine: FakeMachine, journal: Journal) -> Desk:
 
 def opened(hands: Hands, program: str = "bushing") -> tuple[SpecialPage, SetupSheetFunction]:
     if program:
-        hands.desk.choose(program)
+        hands.desk.programs.choose(program)
         hands.desk.session.settled(60.0)
     hands.key(Key.Key_F10)
     page = hands.frame.page
@@ -85,7 +85,7 @@ def test_notes_stay_with_their_program(hands: Hands, journal: Journal) -> None:
     hands.sees(lambda: journal.read_setting("notes:bushing.nc") == ["SOFT JAWS", "BAR .02 OUT MORE"])
     function.opened()  # read anew from what is kept
     assert function.notes == ["SOFT JAWS", "BAR .02 OUT MORE"]
-    hands.desk.choose("pin")
+    hands.desk.programs.choose("pin")
     hands.desk.session.settled(60.0)
     assert function.notes == []
     store = journal.book().store

@@ -31,7 +31,7 @@ from tests.texts import text as wording
 
 @pytest.fixture
 def desk(machine: FakeMachine, journal: Journal) -> Desk:
-    return desk_on(machine, keep=journal)
+    return desk_on(machine, keep=journal, book=journal.book())
 
 
 def open_function(hands: Hands, number: int) -> SpecialPage:
@@ -118,10 +118,10 @@ def test_a_target_stops_the_repeating_and_is_told(hands: Hands, journal: Journal
     assert begins(hands.prompt(), "screen.last-part-of-target")
     hands.machine.now = replace(hands.machine.now, parts=2, state=State.IDLE)
     hands.sees(lambda: hands.prompt() == wording("screen.target-reached", count=2, target=2))
-    assert hands.desk.counter.words == "2/2"
+    assert hands.desk.runs.counter.words == "2/2"
     hands.key(Key.Key_F4)
     yes(hands.window)
-    hands.sees(lambda: hands.desk.counter.words == "0/2")
+    hands.sees(lambda: hands.desk.runs.counter.words == "0/2")
 
 
 def test_the_counter_without_a_program_refuses(hands: Hands) -> None:
@@ -148,7 +148,7 @@ def test_a_target_below_what_is_made_is_refused(hands: Hands, journal: Journal) 
     hands.sees(lambda: journal.runs.count_parts("pin.nc") == 3)
     hands.load("pin")
     open_function(hands, 2)
-    hands.sees(lambda: hands.desk.counter.count == 3)
+    hands.sees(lambda: hands.desk.runs.counter.count == 3)
     hands.type("2")
     hands.key(Key.Key_Return)
     assert hands.prompt() == wording("screen.parts-made-already", made=3)
@@ -228,7 +228,6 @@ def test_the_log_is_searched_and_filtered(hands: Hands, journal: Journal) -> Non
 
 
 def test_a_backup_is_made_and_restored(hands: Hands, journal: Journal) -> None:
-    hands.desk.book = journal.book()
     store = hands.desk.book.store
     assert store is not None
     store.settings.save_setting("mark", "before").result(60)
@@ -252,7 +251,6 @@ def test_a_backup_is_made_and_restored(hands: Hands, journal: Journal) -> None:
 
 
 def test_the_list_tells_what_a_backup_is_worth(hands: Hands, journal: Journal) -> None:
-    hands.desk.book = journal.book()
     store = hands.desk.book.store
     assert store is not None
     store.offsets.tools.change_row(3, "x", {"x": 1.0, "z": 0.0}).result(60)
@@ -460,7 +458,7 @@ def test_the_list_has_rows_of_a_fingertip_and_leafs(hands: Hands) -> None:
 
 def test_a_simulated_input_is_switched_and_one_of_the_station_is_not(hands: Hands) -> None:
     switched: list[tuple[str, bool]] = []
-    hands.desk.set_input = lambda name, on: switched.append((name, on))
+    hands.desk.control.set_input = lambda name, on: switched.append((name, on))
     page = open_function(hands, 3)
     hands.machine.now = replace(hands.machine.now, state=State.WAIT)  # also while a program waits for it
     hands.key(Key.Key_F4)

@@ -13,7 +13,7 @@ from app.compose.extra import extras
 DESK = """
 import sys
 import app.screen.run_screen
-from app.compose.screen_desk import desk_and_executor
+from app.compose.desk_assembly import desk_and_executor
 from app.compose.stored_offsets import stored_offsets
 from drivers.waiting import StepClock
 desk, _ = desk_and_executor(None, stored_offsets, StepClock())

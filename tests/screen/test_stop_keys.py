@@ -59,7 +59,7 @@ def test_both_keys_stop_in_every_entry(day: Day, typists: list[Typist]) -> None:
     typist = Typist(day)
     typists.append(typist)
     deaf, written = [], set()
-    for entry in pages_of(day.desk.language):
+    for entry in pages_of(day.desk.machine.language):
         if not typist.opens(entry.name):
             continue
         known: set[object] = {typist.face}
@@ -80,7 +80,7 @@ def test_both_drawn_buttons_stop_on_every_page(day: Day, typists: list[Typist]) 
     typists.append(typist)
     dock = day.frame.dock
     assert dock is not None
-    for entry in pages_of(day.desk.language):
+    for entry in pages_of(day.desk.machine.language):
         if not typist.opens(entry.name):
             continue
         dock.grab()

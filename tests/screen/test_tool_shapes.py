@@ -10,7 +10,6 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
-from app.offsets.offset_book import OffsetBook
 from app.offsets.tool_offsets_view import ShapeTable, ToolShapePage
 from app.screen import page_table
 from app.screen.entry_panel import KeyPad
@@ -19,6 +18,7 @@ from app.screen.window_layout import FINGER
 from core.executor.snapshot import State
 from core.store.store import Store
 from core.store.store_rows import ShapeRow
+from tests.offset_store import use_store
 from tests.screen.hands import Hands, Key
 from tests.screen.yes import yes
 from tests.texts import begins, text
@@ -34,7 +34,7 @@ def store(hands: Hands, tmp_path: Path) -> Iterator[Store]:
         )
         store.offsets.shapes.change_row(1, "set", {"kind": "turning", "insert": "CNMG432"})
         store.offsets.tools.change_row(2, "set", {"x": 25.4, "z": -50.8}).result(LIMIT)
-        hands.desk.book = OffsetBook(store)
+        use_store(hands.desk, store)
         yield store
 
 

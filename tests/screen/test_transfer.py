@@ -230,7 +230,7 @@ def test_without_a_program_on_the_desk_nothing_is_sent(hands: Hands, lines: Fake
 
 
 def test_the_program_on_the_desk_goes_out(hands: Hands, lines: FakeLines) -> None:
-    assert hands.desk.choose("pin.nc")
+    assert hands.desk.programs.choose("pin.nc")
     hands.sees(lambda: hands.desk.session.now.path is not None)
     hands.key(Key.Key_F4)
     hands.sees(lambda: lines.job is not None)

@@ -9,11 +9,11 @@ from pathlib import Path
 import pytest
 
 from app.offsets.cell_table_view import ZeroOffsetsPage
-from app.offsets.offset_book import OffsetBook
 from app.screen import page_table
 from core.executor.snapshot import State
 from core.store.store import Store
 from core.store.store_rows import ZeroRow
+from tests.offset_store import use_store
 from tests.screen.hands import Hands, Key
 from tests.screen.yes import yes
 from tests.texts import begins
@@ -23,7 +23,7 @@ from tests.texts import text as wording
 @pytest.fixture
 def store(hands: Hands, tmp_path: Path) -> Iterator[Store]:
     with Store.open(tmp_path / "home") as store:
-        hands.desk.book = OffsetBook(store)
+        use_store(hands.desk, store)
         yield store
 
 

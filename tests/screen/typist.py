@@ -115,7 +115,7 @@ class Typist:
         told |= {
             "feed_pot": desk.hands.feed_pot.wanted,
             "spindle_pot": desk.hands.spindle_pot.wanted,
-            "counter": desk.counter.count,
+            "counter": desk.runs.counter.count,
             "loaded program": (loaded.path, loaded.block_delete, loaded.source),
             "snapshot": self.day.shot,
         }

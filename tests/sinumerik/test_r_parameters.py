@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from app.compose.desk_assembly import desk_and_executor
 from app.compose.runs.journal import Journal
-from app.compose.screen_desk import desk_and_executor
 from app.compose.stored_offsets import offsets_of, setup_with, stored_offsets
 from app.offsets.offsets_in_force import R_PARAMETERS, r_parameters
 from app.special.operator_settings import RParameters
@@ -75,7 +75,7 @@ def page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[RParameter
     clock, journal = StepClock(), Journal.at_home()
     desk, executor = desk_and_executor(str(file), stored_offsets, clock, journal)
     executor.tick()
-    functions = desk.attached(SpecialFunctions)
+    functions = desk.pages.find(SpecialFunctions)
     assert functions is not None
     (found,) = [each for each in functions.functions if isinstance(each, RParameters)]
     yield found

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from app.compose.desk_assembly import desk_and_executor
 from app.compose.runs.journal import Journal
-from app.compose.screen_desk import desk_and_executor
 from app.compose.stored_offsets import stored_offsets
 from app.desk.desk import Desk
 from app.desk.programs.program_loading import Phase
@@ -64,7 +64,7 @@ class Bench:
         self.until(lambda s: s.t > end)
 
     def started(self) -> None:
-        assert self.desk.choose("part")
+        assert self.desk.programs.choose("part")
         loaded = self.desk.session.settled(60.0)
         errors = [each for each in loaded.diagnostics if each.severity is Severity.ERROR]
         assert (loaded.phase, errors) == (Phase.READY, [])
@@ -75,7 +75,7 @@ class Bench:
         assert first_move is not None
         self.until(lambda _: first_move.seen is not None)
         self.wait(0.5)  # what is announced was read
-        self.desk.start_button()
+        self.desk.station.press_start()
         self.until(lambda s: s.state is State.RUN)
 
     def c(self) -> str:
@@ -114,7 +114,7 @@ def test_held_while_c_turns_alone_and_gone_on(bench: Bench) -> None:
     assert 400 < held.actual[2] < 990
     still = bench.until(lambda s: s.t > held.t + 1.0)
     assert still.actual[2] == pytest.approx(held.actual[2], abs=0.05)
-    bench.desk.start_button()
+    bench.desk.station.press_start()
     end = bench.until(lambda s: s.state is State.IDLE)
     assert (end.parts, end.alarms) == (1, ())
 
@@ -129,7 +129,7 @@ def test_single_block_stops_between_a_move_and_a_turn_of_c(bench: Bench) -> None
     for line in (1, 2, 3, 4):
         bench.until(partial(stands_behind, line))
         bench.wait(2.0)  # into a cut only with the spindle at speed
-        bench.desk.start_button()
+        bench.desk.station.press_start()
     bench.until(lambda s: s.line == 5)
 
 
@@ -150,7 +150,7 @@ def test_an_offset_of_c_turns_the_part(bench: Bench) -> None:
 
 def test_a_missing_subprogram_is_told_before_anything_moves(bench: Bench, tmp_path: Path) -> None:
     (tmp_path / "home" / "programs" / "facet.spf").unlink()
-    bench.desk.choose("part")
+    bench.desk.programs.choose("part")
     loaded = bench.desk.session.settled(60.0)
     assert loaded.phase is Phase.REFUSED
     assert [each.code for each in loaded.errors] == ["subprogram-missing"]
@@ -192,11 +192,11 @@ def test_a_program_of_the_lathes_own_language_runs_in_mm_there_and_is_warned(
     bench.until(lambda s: s.state is State.DISABLED)
     path = tmp_path / "home" / "programs" / "plain.nc"
     path.write_text("G90G94F300\nX10Z-10\nM30\n")
-    assert bench.desk.choose("plain")
+    assert bench.desk.programs.choose("plain")
     loaded = bench.desk.session.settled(60.0)
     assert [d.code for d in loaded.diagnostics] == ["units-unnamed"]
     assert loaded.job is not None
-    editor = bench.desk.attached(Editor)
+    editor = bench.desk.pages.find(Editor)
     assert editor is not None
     proved = editor.steps.make_job(loaded.job.source, False)
     assert proved.digest == loaded.job.digest

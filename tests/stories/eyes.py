@@ -220,8 +220,8 @@ def _break(told: Told) -> None:
     """Something of the simulated lathe breaks, by the name of its method."""
     desk = _desk()
     assert desk is not None
-    assert isinstance(desk.station, PlantHands)
-    getattr(desk.station, told["name"])(*told["values"])
+    assert isinstance(desk.control.panel, PlantHands)
+    getattr(desk.control.panel, told["name"])(*told["values"])
 
 
 def _executor() -> Any:
@@ -276,7 +276,7 @@ _FORGOTTEN = [0]  # presses that the screen has said to have dropped
 def _machine(desk: Desk) -> Told:
     """The machine of now: as the control has it, and where the simulated slides really stand (mm)."""
     shot = desk.snapshot()
-    hands = desk.station if isinstance(desk.station, PlantHands) else None
+    hands = desk.control.panel if isinstance(desk.control.panel, PlantHands) else None
     true = hands.true_position() if hands is not None else shot.actual
     outputs = hands.outputs() if hands is not None else dict.fromkeys(shot.outputs, True)
     return {

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.desk.desk import LAST_PROGRAM
+from app.desk.programs.program_choice import LAST_PROGRAM
 from app.desk.translation import tr
 from core.executor.snapshot import CYCLE
 from core.message import Message
@@ -22,11 +22,11 @@ def begin_with(desk: Desk, named: str | None) -> None:
     found = desk.snapshot().interrupted
     path = str(Path(named).absolute()) if named is not None else ""
     if found is None:
-        if named is not None and not desk.choose(path):
+        if named is not None and not desk.programs.choose(path):
             desk.say(Message("FILE NOT FOUND: {named}", named=named))
-    elif named is not None and Path(named).name == found.program and desk.choose(path):
+    elif named is not None and Path(named).name == found.program and desk.programs.choose(path):
         return
-    elif not desk.choose(found.program):
+    elif not desk.programs.choose(found.program):
         desk.say(
             tr(
                 Message(
@@ -47,7 +47,7 @@ def _show_program_under_way(desk: Desk, named: str | None) -> None:
     last = desk.settings.persistence.read_setting(LAST_PROGRAM)
     known = (Path(each) for each in (named, last) if isinstance(each, str))
     path = next((each for each in known if each.name == now.program), None)
-    path = path or desk.program_folders.find(now.program)
+    path = path or desk.programs.folders.find(now.program)
     if path is None:
         words = "RUNNING PROGRAM {name} NOT FOUND. ITS TEXT IS NOT SHOWN"
     else:

@@ -22,19 +22,19 @@ def prompt(desk: Desk, snapshot: Snapshot, loaded: Loaded, page: str = "") -> st
     ``page`` is what the page in front would say there; an alarm and an E-stop go before it.
     """
     desk.answers.expire(snapshot)
-    if desk.silence.is_silent:
+    if desk.control.silence.is_silent:
         return prompt_line.CONTROL_SILENT
-    if desk.keyboard_away and snapshot.state in prompt_line.MOVING:
+    if desk.window.keyboard_away and snapshot.state in prompt_line.MOVING:
         return prompt_line.KEYBOARD_AWAY
-    announced = prompt_line.announced(snapshot, starts_here=desk.starts_here)
+    announced = prompt_line.announced(snapshot, starts_here=desk.window.starts_here)
     return join_messages(" · ", filter(None, (*announced, _prompt(desk, snapshot, loaded, page))))
 
 
 def _prompt(desk: Desk, snapshot: Snapshot, loaded: Loaded, page: str) -> str:
     if page:
-        return prompt_line.alarm_of(snapshot, desk.release_words, field_open=desk.field_open()) or page
+        return prompt_line.alarm_of(snapshot, desk.release_words, field_open=desk.window.has_field()) or page
     words = desk.start_words, desk.release_words
-    standing = prompt_line.prompt(snapshot, loaded, *words, field_open=desk.field_open())
+    standing = prompt_line.prompt(snapshot, loaded, *words, field_open=desk.window.has_field())
     if snapshot.state is State.DISABLED and desk.changes.barred:
         standing = desk.changes.barred
     elif refusal := desk.first_move_refusal(snapshot):
@@ -42,7 +42,7 @@ def _prompt(desk: Desk, snapshot: Snapshot, loaded: Loaded, page: str) -> str:
     elif desk.first_move is not None and desk.first_move.checking and snapshot.state is State.IDLE:
         standing = tr("CHECKING THE FIRST MOVE FOR COLLISION WITH THE PART")
     if snapshot.state is State.WAIT:
-        standing = how_it_ends(snapshot, desk.set_input is not None) or standing
+        standing = how_it_ends(snapshot, desk.control.set_input is not None) or standing
     return join_messages(" · ", filter(None, (_due(desk, snapshot, standing), standing)))
 
 
@@ -51,7 +51,7 @@ def _due(desk: Desk, snapshot: Snapshot, standing: str) -> str:
     waits = snapshot.state in {State.ESTOP, State.FAULT} or snapshot.interrupted_line
     if waits or standing.startswith(prompt_line.NO_START):
         return ""
-    return join_messages(" · ", filter(None, (watcher.due() for watcher in desk.watches)))
+    return join_messages(" · ", filter(None, (watcher.due() for watcher in desk.pages.run_watchers)))
 
 
 def start_refusal(desk: Desk, snapshot: Snapshot) -> str:

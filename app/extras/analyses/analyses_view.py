@@ -116,7 +116,7 @@ class AnalysesPage(ListPage):
 
     def _keys(self) -> Mapping[str, Key]:
         choose = self.analyses.choose
-        mill = self.desk.language == "klartext"  # no slide follows its spindle
+        mill = self.desk.machine.language == "klartext"  # no slide follows its spindle
         thread = {} if mill else {"F3": Key("THREAD", partial(choose, Kind.THREAD))}
         return {
             "F2": Key("PATH", partial(choose, Kind.PATH)),

@@ -109,7 +109,7 @@ class DriveTests:
             desk.clear,
             self._now,
             self.barred,
-            refuses=desk.late.refuses,
+            refuses=desk.window.late.refuses,
             path=self.path,
         )
 
@@ -193,7 +193,7 @@ class DriveTests:
     def barred(self) -> str:
         """Why nothing is tested now; empty when it may be."""
         snapshot = self.desk.snapshot()
-        if self.desk.stop_held():
+        if self.desk.window.is_stop_held():
             return tr(STOP_HELD)
         if snapshot.drive_test.barred:
             return tr(Message("DRIVE TEST NOT POSSIBLE: {why}", why=snapshot.drive_test.barred))

@@ -48,14 +48,14 @@ class ScopeAnalyses(Extra):
         )
 
     def attach(self, desk: Desk, machine: Machine, journal: Journal | None, work: LoadingSteps) -> None:
-        desk.attach_later(_ANALYSES, partial(_analyses, desk, machine))
-        desk.attach_later(_DRIVE_TESTS, partial(_drive_tests, desk, machine))
+        desk.pages.attach_later(_ANALYSES, partial(_analyses, desk, machine))
+        desk.pages.attach_later(_DRIVE_TESTS, partial(_drive_tests, desk, machine))
 
 
 def _scope_of(desk: Desk) -> Scope:
     from app.scope.scope_model import Scope
 
-    scope = desk.attached(Scope)
+    scope = desk.pages.find(Scope)
     assert scope is not None
     return scope
 

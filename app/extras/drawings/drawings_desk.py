@@ -23,7 +23,7 @@ def add_drawing(shapes: Shapes, desk: Desk, machine: Machine) -> None:
     """Add the form of a drawing to the list of shapes."""
 
     def files() -> dict[str, Path]:
-        return {each.name: each.path for each in desk.program_folders.drawings()}
+        return {each.name: each.path for each in desk.programs.folders.drawings()}
 
     shapes.added = (*shapes.added, AddedDrawing(files, partial(attempt, machine, shapes_at_hand)))
 

@@ -29,7 +29,7 @@ Before = Callable[[str], tuple[str, dict[int, ToolRow]]]
 
 def attach_jobs(desk: Desk, machine: Machine, journal: Journal | None, work: LoadingSteps) -> None:
     """Give the desk the queue and its page, and the list of programs its key."""
-    parts = desk.attached(PartsWatch)
+    parts = desk.pages.find(PartsWatch)
     if parts is None:
         return
     kept = partial(kept_part, (journal or Persistence()).read_setting)
@@ -37,12 +37,12 @@ def attach_jobs(desk: Desk, machine: Machine, journal: Journal | None, work: Loa
     before = journal.tools_of_last_run if journal is not None else _never
     parts.book.readers[FEATURE] = lambda store, _program: store.jobs.read_jobs()
     watch = JobsWatch(desk, parts, JobProofs(partial(_proved, desk, machine, work, of_part, before)))
-    desk.attach(watch)
-    desk.watches.append(watch)
+    desk.pages.attach(watch)
+    desk.pages.add_run_watcher(watch)
     model = JobsModel(desk, watch)
-    desk.attach(model)
-    desk.program_keys["F10"] = ProgramKey("JOB", "JOBS", model.add_program)
-    desk.offered = watch.notice
+    desk.pages.attach(model)
+    desk.pages.add_program_key("F10", ProgramKey("JOB", "JOBS", model.add_program))
+    desk.pages.set_notice(watch.notice)
 
 
 def _proved(
@@ -57,7 +57,7 @@ def _proved(
     """On the worker: its setup sheet, with the offsets and shapes of this moment. Raises ValueError."""
     from app.special.setup_sheet import setup_sheet
 
-    path = desk.program_folders.find(program)
+    path = desk.programs.folders.find(program)
     if path is None:
         raise ValueError(
             tr(Message("{name} IS NOT IN THE PROGRAM LIST. F1, THEN F6: CHECK LIST", name=program))

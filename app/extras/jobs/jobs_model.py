@@ -107,7 +107,7 @@ class JobsModel:
         ):
             tone = Tone.PAUSE
         cycle = made.sheet.cycle if isinstance(made, ProvedJob) else 0.0
-        if job.under_way and self.desk.counter.program == job.program:
+        if job.under_way and self.desk.runs.counter.program == job.program:
             cycle = snapshot.last_cycle or cycle
         left = duration(job.left * cycle) if cycle and job.left else NOTHING
         cells = (str(number), f"{job.program}\n{job.note}", f"{job.made}/{job.wanted}", left, state)
@@ -167,7 +167,7 @@ class JobsModel:
         """What was noted on the program's setup sheet (F10)."""
         if self._notes[0] != program:
             try:
-                kept = self.desk.counter.persistence.read_setting(notes_key(program))
+                kept = self.desk.runs.counter.persistence.read_setting(notes_key(program))
             except StoreError:
                 kept = None
             texts = kept if isinstance(kept, list) else []

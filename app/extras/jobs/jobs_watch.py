@@ -152,7 +152,7 @@ class JobsFunction(PageFunction):
 
     def facts(self) -> tuple[Row, ...]:
         """Under way, next, waiting."""
-        watch = self.desk.attached(JobsWatch)
+        watch = self.desk.pages.find(JobsWatch)
         if watch is None:
             return ()
         job, coming = watch.under_way, watch.next
@@ -257,7 +257,7 @@ class JobsWatch:
 
     def see(self, snapshot: Snapshot, loaded: Loaded) -> None:
         """One frame."""
-        counter = self.desk.counter
+        counter = self.desk.runs.counter
         if (counter.program, counter.count) != self._counted:
             self._counted = counter.program, counter.count
             self.parts.book.refresh()
@@ -277,16 +277,16 @@ class JobsWatch:
 
     def load(self, job: JobRow) -> None:
         """The operator has chosen it: its program is loaded; once the desk has taken it, its parts count."""
-        if not self.desk.may_choose():
+        if not self.desk.programs.can_choose():
             return
-        path = self.desk.program_folders.find(job.program)
+        path = self.desk.programs.folders.find(job.program)
         if path is None:
             self.desk.say(
                 tr(Message("{name} IS NOT IN THE PROGRAM LIST. F1, THEN F6: CHECK LIST", name=job.program))
             )
             return
         loads = self.desk.session.loads
-        self.desk.put_on_desk(path)
+        self.desk.programs.load(path)
         self._loading = job, path, loads
 
     def _begin(self, loaded: Loaded) -> None:

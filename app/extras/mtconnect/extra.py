@@ -31,11 +31,11 @@ class Mtconnect(Extra):
         return (DRIVER,)
 
     def start(self, desk: Desk, journal: Journal, tell: Tell) -> Close | None:
-        if desk.lathe is None or _TABLE not in desk.lathe.hardware.tables:
+        if desk.machine.model is None or _TABLE not in desk.machine.model.hardware.tables:
             return None
         from app.extras.mtconnect.shop_floor import open_shop_floor
 
-        return open_shop_floor(desk.lathe, desk.snapshot, tell)
+        return open_shop_floor(desk.machine.model, desk.snapshot, tell)
 
     def start_headless(
         self, machine: Machine, snapshot: Callable[[], Snapshot], tell: Tell, *, paced: bool

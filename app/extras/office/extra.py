@@ -35,11 +35,11 @@ class Office(Extra):
         return (DRIVER,)
 
     def start(self, desk: Desk, journal: Journal, tell: Tell) -> Close | None:
-        if desk.lathe is None or _TABLES.isdisjoint(desk.lathe.hardware.tables):
+        if desk.machine.model is None or _TABLES.isdisjoint(desk.machine.model.hardware.tables):
             return None
         from app.extras.office.office_desk import open_office
 
-        return open_office(desk, desk.lathe, journal, tell)
+        return open_office(desk, desk.machine.model, journal, tell)
 
     def floor_outputs(self) -> Sequence[Output]:
         from app.extras.office.office_reference import OUTPUTS

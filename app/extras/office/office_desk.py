@@ -132,7 +132,7 @@ def _look(desk: Desk, machine: Machine) -> OfficeLook:
         return time_left(snapshot, desk.session.now)
 
     def stops() -> Sequence[StopRow]:
-        watch = desk.attached(PartsWatch)
+        watch = desk.pages.find(PartsWatch)
         return watch.book.now.stops if watch is not None else ()
 
     return OfficeLook(machine.name, reader, desk.snapshot, left, stops, partial(datetime.now, UTC))
@@ -188,7 +188,8 @@ def _page(
     kept = partial(kept_part, journal.read_setting)
     pictures = thumbnails(machine, shapes_at_hand, kept, size=PICTURE)
     part = PartPicture(lambda: desk.session.now.job, still, pictures)
-    alarm = AlarmDrawing(desk.recorder.folder if desk.recorder is not None else None, still)
+    recordings = desk.control.recordings
+    alarm = AlarmDrawing(recordings.folder if recordings is not None else None, still)
 
     def draw() -> None:
         part.look()

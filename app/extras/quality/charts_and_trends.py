@@ -76,7 +76,7 @@ class TrendsSection(QualitySection):
         """First hour and last of the shift, by the clock on the wall; read once."""
         if self._shift is None:
             try:
-                kept = self.desk.counter.persistence.read_setting(SETTING)
+                kept = self.desk.runs.counter.persistence.read_setting(SETTING)
             except StoreError:
                 kept = None
             self._shift = hours_of(kept)
@@ -285,10 +285,10 @@ class TrendsSection(QualitySection):
             return False
         self._shift = int(first), int(last)
         hours = list(self._shift)
-        self.desk.counter.persistence.note_change(
+        self.desk.runs.counter.persistence.note_change(
             Message("shift hours: {first} to {last}", first=first, last=last)
         )
-        self.desk.keep(lambda: self.desk.counter.persistence.save_setting(SETTING, hours))
+        self.desk.keep(lambda: self.desk.runs.counter.persistence.save_setting(SETTING, hours))
         return True
 
     def prompt(self) -> str:

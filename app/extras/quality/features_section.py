@@ -127,7 +127,7 @@ class FeaturesSection(QualitySection):
     def fields(self) -> tuple[str, ...]:
         """What is asked of a feature on a machine of this language."""
         absent = {"omniturn": set[str](), "sinumerik": _OF_OMNITURN, "klartext": _OF_OMNITURN | _OF_LATHES}
-        return tuple(each for each in FIELDS if each not in absent[self.desk.language])
+        return tuple(each for each in FIELDS if each not in absent[self.desk.machine.language])
 
     @property
     def count(self) -> int:

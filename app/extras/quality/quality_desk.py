@@ -28,7 +28,7 @@ class MeasuredPartsFunction(PageFunction):
 
     def facts(self) -> tuple[Row, ...]:
         """How many there are, and what is due."""
-        watch = self.desk.attached(PartsWatch)
+        watch = self.desk.pages.find(PartsWatch)
         if watch is None or watch.book.locked:
             return (Row((tr("STORED"), watch.book.locked if watch is not None else NOTHING)),)
         data = parts_of(watch.book)
@@ -45,13 +45,13 @@ class MeasuredPartsFunction(PageFunction):
 
 def attach_quality(desk: Desk, machine: Machine) -> None:
     """Give the desk what it measures and remembers of parts."""
-    watch = desk.attached(PartsWatch)
+    watch = desk.pages.find(PartsWatch)
     if watch is None:
         return
     watch.book.readers[FEATURE] = parts_data
     plan = SamplePlan(desk, watch)
     watch.plans.append(plan)
-    desk.attach(QualityFunctions(lambda: _sections(desk, machine, watch, plan), watch.book.worker))
+    desk.pages.attach(QualityFunctions(lambda: _sections(desk, machine, watch, plan), watch.book.worker))
 
 
 def _sections(desk: Desk, machine: Machine, watch: PartsWatch, plan: SamplePlan) -> Sequence[SpecialFunction]:

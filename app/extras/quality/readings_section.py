@@ -65,7 +65,7 @@ class ReadingsSection(QualitySection):
     @property
     def part(self) -> int:
         """The number of the part that is measured."""
-        return self._part or max(1, self.desk.counter.count)
+        return self._part or max(1, self.desk.runs.counter.count)
 
     # --- what is shown -------------------------------------------------------------------------------
 
@@ -123,7 +123,7 @@ class ReadingsSection(QualitySection):
     def _step(self, by: int) -> None:
         self.desk.clear()
         self._part = max(1, self.part + by)
-        if self._part == self.desk.counter.count:
+        if self._part == self.desk.runs.counter.count:
             self._part = 0
 
     def prompt(self) -> str:

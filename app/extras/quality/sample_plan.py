@@ -59,12 +59,12 @@ class SamplePlan:
         """Why no other part begins; the part under way counts already."""
         if not self.waits:
             return ""
-        made = self.desk.counter.count + (1 if snapshot.counts else 0)
+        made = self.desk.runs.counter.count + (1 if snapshot.counts else 0)
         return bar(self._planned(made))
 
     def due(self) -> str:
         """What to measure; empty: nothing."""
-        return notice(self._planned(self.desk.counter.count))
+        return notice(self._planned(self.desk.runs.counter.count))
 
     def _planned(self, made: int) -> dict[str, int]:
         """What the plan asks for behind so many parts; worked out when something has changed."""
@@ -80,7 +80,7 @@ class SamplePlan:
         program = self.watch.program
         if self._waits[0] != program:
             try:
-                kept = self.desk.counter.persistence.read_setting(_key(program)) is True
+                kept = self.desk.runs.counter.persistence.read_setting(_key(program)) is True
             except StoreError:
                 kept = False
             self._waits = program, kept
@@ -90,7 +90,7 @@ class SamplePlan:
         """Parts wait for the plan, or go on. Raises StoreError when it is not kept."""
         on, program = not self.waits, self.watch.program
         self._waits = program, on
-        persistence = self.desk.counter.persistence
+        persistence = self.desk.runs.counter.persistence
         persistence.save_setting(_key(program), on or None)
         template = (
             "program {program}: the next part cannot start before the required parts are measured"

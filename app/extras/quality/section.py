@@ -158,7 +158,7 @@ class QualitySection(FigureFunction):
     @property
     def of_mill(self) -> bool:
         """Whether the machine is a mill: no slide's wear corrects a feature there, DL and DR are typed."""
-        return self.desk.language == "klartext"
+        return self.desk.machine.language == "klartext"
 
     @property
     def mode(self) -> Mode:

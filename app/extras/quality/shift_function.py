@@ -47,7 +47,7 @@ class ShiftReport(SpecialFunction):
         return len(self.places)
 
     def _store(self) -> Store | None:
-        watch = self.desk.attached(PartsWatch)
+        watch = self.desk.pages.find(PartsWatch)
         return watch.book.store if watch is not None else None
 
     def sheet(self, _snapshot: Snapshot) -> Sheet:
@@ -160,7 +160,7 @@ def _rows(found: ShiftFigures) -> list[tuple[str, str]]:
 def _made(store: Store, desk: Desk, back: int) -> ShiftFigures:
     """On the worker. Raises StoreError."""
     now = datetime.now().astimezone()
-    watch = desk.attached(PartsWatch)
+    watch = desk.pages.find(PartsWatch)
     assert watch is not None
     store.write(
         lambda _connection: None

@@ -137,7 +137,7 @@ class CorrectionEffect:
 
     @property
     def _effect(self) -> Effect | None:
-        return self.desk.attached(Effect)
+        return self.desk.pages.find(Effect)
 
     def _tables(self, change: Correction) -> tuple[Tables, Tables]:
         book = self.desk.book

@@ -26,7 +26,7 @@ class ShapesAndCalculators(Extra):
     editor_panel = "app.extras.shapes.shapes_view.ShapesView"
 
     def attach(self, desk: Desk, machine: Machine, journal: Journal | None, work: LoadingSteps) -> None:
-        desk.attach_later("app.extras.shapes.shapes_model.Shapes", partial(_shapes, desk, machine))
+        desk.pages.attach_later("app.extras.shapes.shapes_model.Shapes", partial(_shapes, desk, machine))
 
     def json_outputs(self) -> Mapping[str, Sequence[Output]]:
         from app.extras.shapes.shapes_command import OUTPUTS

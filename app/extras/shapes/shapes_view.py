@@ -325,10 +325,10 @@ class ShapesView(EditorPanel):
 
 def _shapes_of(desk: Desk) -> Shapes:
     """Those of the desk; one that was put together without gets some, which know no machine."""
-    found = desk.attached(Shapes)
+    found = desk.pages.find(Shapes)
     if found is None:
         found = Shapes()
-        desk.attach(found)
+        desk.pages.attach(found)
     return found
 
 

@@ -48,7 +48,7 @@ def attach_sharing(desk: Desk, machine: Machine, journal: Journal | None) -> Non
             sharing = sharing_of(machine, journal.opened)
         except CommandError as error:
             desk.say(tr(Message("PROGRAMS NOT SHARED: {why}", why=error)))
-    desk.attach_later("app.extras.sharing.sharing_model.SharingModel", partial(_model, desk, sharing))
+    desk.pages.attach_later("app.extras.sharing.sharing_model.SharingModel", partial(_model, desk, sharing))
 
 
 def _model(desk: Desk, sharing: Sharing | None) -> SharingModel:
@@ -62,13 +62,13 @@ def start_sharing(desk: Desk, journal: Journal) -> Callable[[], None] | None:
 
     None: the machine file has no [sharing], or the place cannot be used.
     """
-    table = desk.lathe.hardware.table(SharingTable) if desk.lathe is not None else None
+    table = desk.machine.model.hardware.table(SharingTable) if desk.machine.model is not None else None
     if table is None:
         return None
     from app.extras.sharing.sharing import SharingThread
     from app.extras.sharing.sharing_model import SharingModel
 
-    model = desk.attached(SharingModel)
+    model = desk.pages.find(SharingModel)
     if model is None or model.sharing is None:
         return None
     heard = Heard(desk, journal)

@@ -96,18 +96,19 @@ class MainWindow(QWidget):
     def open_desk(self, desk: Desk) -> None:
         """Put the desk on the screen and begin to poll it."""
         self.frame = Frame(self.look, desk, self.press, self)
-        if (earlier := desk.attached(PagesAhead)) is not None:  # of another window on this desk
+        if (earlier := desk.pages.find(PagesAhead)) is not None:  # of another window on this desk
             earlier.close()
         self.ahead = PagesAhead(desk, self.frame.page_named)
-        desk.attach(self.ahead)
+        desk.pages.attach(self.ahead)
         self._keys = self._table(desk)
-        desk.stirs = self._stir
-        desk.stop_held = self.keyboard.stop_held
-        watched = self.keyboard.watch_stops(desk.open_stop_line)
+        desk.window.connect(
+            self._stir, self.keyboard.stop_held, lambda: self.times.clock() - self.keyboard.now
+        )
+        watched = self.keyboard.watch_stops(desk.control.open_stop_line)
         if watched is not None:
-            desk.attach(watched)
-        desk.late.report, desk.late.on_answer = self._show_dropped, self.keyboard.answer_dropped
-        desk.hands.ago = lambda: self.times.clock() - self.keyboard.now
+            desk.pages.attach(watched)
+        late = desk.window.late
+        late.report, late.on_answer = self._show_dropped, self.keyboard.answer_dropped
         self.frame.setGeometry(self.rect())
         self.refresh()
         self.frame.show()
@@ -155,7 +156,7 @@ class MainWindow(QWidget):
     def refresh(self) -> None:
         """Poll the snapshot once, and show it everywhere."""
         if self.frame is not None:
-            with self.frame.desk.late.suspended():
+            with self.frame.desk.window.late.suspended():
                 self._look_at_hands(self.frame)
                 self.frame.refresh()
                 self._wear(self.frame)
@@ -191,19 +192,19 @@ class MainWindow(QWidget):
             "O": partial(desk.switch, "optional_stop"),
             "C": partial(desk.switch, "cycle_repeat"),
             "P": partial(desk.switch, "no_count"),
-            "/": desk.block_delete,
+            "/": desk.programs.switch_block_delete,
             "H": desk.feed_hold,
             "R": desk.reset,
             "D": desk.enable,
-            "E": desk.estop,
-            "U": desk.twist_out,
+            "E": desk.station.press_estop,
+            "U": desk.station.release_estop,
             ANSWER: desk.answer,
             NO: desk.no,
-            "A": desk.turn_spindle_switch,
+            "A": desk.station.turn_spindle_switch,
             ",": partial(desk.hands.turn_spindle_pot, -1),
             ".": partial(desk.hands.turn_spindle_pot, 1),
-            "+": partial(desk.override, 1),
-            "-": partial(desk.override, -1),
+            "+": partial(desk.station.step_override, 1),
+            "-": partial(desk.station.step_override, -1),
             "T": self.other_theme,
             "Y": desk.yes,
             "Esc": self._escape,
@@ -278,13 +279,13 @@ class MainWindow(QWidget):
         """E-stop, whatever page, field or question has the keyboard."""
         if self.frame is not None:
             self.frame.page.pressed()
-            self.frame.desk.estop(press)
+            self.frame.desk.station.press_estop(press)
             self.refresh()
 
     def estop_sent(self) -> None:
         """Show the E-stop of the simulated station pressed: the key watcher has pressed it."""
-        if self.frame is not None and self.frame.desk.station is not None:
-            self.frame.desk.estop()
+        if self.frame is not None and self.frame.desk.control.panel is not None:
+            self.frame.desk.station.press_estop()
 
     def esc_holds(self) -> bool:
         """Return whether Esc holds the feed now: something moves, and nothing else is offered for Esc."""
@@ -307,7 +308,7 @@ class MainWindow(QWidget):
     def judge(self, *, late: bool) -> None:
         """Note whether the event that is handled now waited behind a stall: it starts nothing then."""
         if self.frame is not None:
-            self.frame.desk.late.late = late
+            self.frame.desk.window.late.late = late
 
     def looks_different(self, at: float) -> bool:
         """Return whether the screen showed something else at this time, so that a touch meant that."""
@@ -317,7 +318,7 @@ class MainWindow(QWidget):
     def drop(self, starting: Starting) -> None:
         """Report a press that waited behind a stall and is not carried out."""
         if self.frame is not None:
-            self.frame.desk.late.report_dropped(starting)
+            self.frame.desk.window.late.report_dropped(starting)
 
     def _show_dropped(self, names: tuple[str, ...]) -> None:
         if self.frame is not None:
@@ -419,10 +420,10 @@ class MainWindow(QWidget):
     def _palm(self, side: str, *, down: bool) -> None:
         if self.frame is not None:
             desk = self.frame.desk
-            if desk.two_hand:
+            if desk.machine.two_hand:
                 desk.hands.palm(side, down)
             elif down and side == "right":
-                desk.start_button()
+                desk.station.press_start()
             self.refresh()
 
     def changeEvent(self, event: QEvent) -> None:
@@ -437,7 +438,7 @@ class MainWindow(QWidget):
 
     def _tell_keyboard(self) -> None:
         if self.frame is not None:
-            self.frame.desk.keyboard_away = not self.isActiveWindow()
+            self.frame.desk.window.set_keyboard_away(not self.isActiveWindow())
 
     def let_go(self) -> None:
         """Hands off everything that is held."""

@@ -42,14 +42,14 @@ class StationDock(FingerPanel):
         self._auto, self.barred = snapshot.spindle_auto, bool(start_refusal(desk, snapshot))
         palms = frozenset(desk.hands.palms.down)
         pots = (desk.hands.spindle_pot.wanted, desk.hands.feed_pot.wanted)
-        latched = desk.settings.now.latched and desk.one_hand
+        latched = desk.settings.now.latched and desk.machine.one_hand
         self._shown = (desk.hands.estop_pressed, pots, palms, latched, desk.hands.latch_now())
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         """Over a pot the wheel turns it."""
         steps = 1 if event.angleDelta().y() > 0 else -1
         if self._feed_box().contains(event.position()):
-            self._desk.override(steps)
+            self._desk.station.step_override(steps)
         elif self._spindle_box().contains(event.position()):
             self._desk.hands.turn_spindle_pot(steps)
 
@@ -75,7 +75,7 @@ class StationDock(FingerPanel):
         name = "SPINDLE SPEED"
         self._pot(painter, self._spindle_box(), name, keys, spindle, desk.hands.turn_spindle_pot)
         self._label(painter, self._row(36.1, 2.4), "FEED RATE", formats.percent(feed.wanted), "text")
-        self._pot(painter, self._feed_box(), "FEED RATE", ("−", "+"), feed, desk.override)
+        self._pot(painter, self._feed_box(), "FEED RATE", ("−", "+"), feed, desk.station.step_override)
         self._hold(painter)
         self._start(painter)
 
@@ -113,7 +113,7 @@ class StationDock(FingerPanel):
 
     def _struck(self, _at: QPointF) -> None:
         self._twisting = False
-        self._desk.estop()
+        self._desk.station.press_estop()
 
     def _twist_begins(self, _at: QPointF) -> None:
         self._twisting = self.fingers == 1
@@ -193,14 +193,14 @@ class StationDock(FingerPanel):
     def _start(self, painter: Painter) -> None:
         desk = self._desk
         head = self._row(54.2, 2.4)
-        text = "CYCLE START: BOTH BUTTONS" if desk.two_hand else "CYCLE START"
+        text = "CYCLE START: BOTH BUTTONS" if desk.machine.two_hand else "CYCLE START"
         if self._latches:
             text = "CYCLE START: TAP F11, F12"
         painter.write(head, text, 1.6, "pause" if self._latches else "soft")
         box = self._row(56.8, 13.6)
-        if not desk.two_hand:
+        if not desk.machine.two_hand:
             self._palm(painter, box, "F12", down=False)
-            self.controls.append(pressed(box, desk.start_button))
+            self.controls.append(pressed(box, desk.station.press_start))
             return
         half = box.width() / 2
         for number, (side, key) in enumerate((("left", "F11"), ("right", "F12"))):
@@ -212,7 +212,7 @@ class StationDock(FingerPanel):
     @property
     def _latches(self) -> bool:
         """Whether one finger is enough: chosen in F10 7, where nothing real moves."""
-        return self._desk.settings.now.latched and self._desk.one_hand
+        return self._desk.settings.now.latched and self._desk.machine.one_hand
 
     def _palm_control(self, at: QRectF, side: str) -> Control:
         hands = self._desk.hands

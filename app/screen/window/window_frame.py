@@ -69,11 +69,12 @@ class Frame(QWidget):
         self.position = PositionPanel(look, self)
         self.feed = FeedGauge(look, "FEED", self)
         self.spindle = SpindleGauge(look, "SPINDLE", self)
-        self.tool = ToolGauge(look, "TOOL" if desk.language == "klartext" else "TOOL  ·  OFFSET", self)
+        is_mill = desk.machine.language == "klartext"
+        self.tool = ToolGauge(look, "TOOL" if is_mill else "TOOL  ·  OFFSET", self)
         self.times = TimesGauge(look, "PARTS  ·  TIME", self)
         self.strip = LampStrip(look, press, self)
         self.notices = NoticeRows(look, press, self)
-        self.dock = StationDock(look, desk, self) if desk.station else None
+        self.dock = StationDock(look, desk, self) if desk.control.panel else None
         self.prompt = PromptLine(look, press, self)
         self.keys = FunctionKeys(look, lambda number: press(f"F{number}"), self)
         self.notice = Notice(look, self)
@@ -94,7 +95,7 @@ class Frame(QWidget):
 
     def go(self, name: str) -> bool:
         """Open a page; one that does not open now, or that does not let go, says so."""
-        name = page_on(self.desk.language, name)
+        name = page_on(self.desk.machine.language, name)
         if name == self.page.NAME:
             return True
         page = self.page_named(name)
@@ -118,7 +119,7 @@ class Frame(QWidget):
         if before == page_table.SCOPE or self.go(page_table.SCOPE):
             self._before_scope = self._before_scope if before == page_table.SCOPE else before
             self.log.hide()
-            self.desk.open_record(name)
+            self.desk.pages.open_record(name)
 
     def toggle_scope(self) -> None:
         """The scope from any page, and back to that page."""
@@ -131,7 +132,7 @@ class Frame(QWidget):
 
     def _front(self) -> None:
         page = self.page
-        self.desk.starts_here, self.desk.field_open = page.STARTS, self.has_field
+        self.desk.window.show_page(starts=page.STARTS, has_field=self.has_field)
         self.keys.labels, self.keys.barred = page.labels(), page.barred()
         self._lay_out()
         self.log.hide()
@@ -274,12 +275,13 @@ class Frame(QWidget):
 
     def aged(self) -> bool:
         """Whether it is a while since all was shown."""
-        return self.desk.clock() - self._shown_at > STALE
+        return self.desk.clock.seconds() - self._shown_at > STALE
 
     def refresh(self) -> None:
         """Take one snapshot and show it everywhere."""
         snapshot, view, loaded = self.desk.look()
-        self._shown, self._shown_at, self._paints = (snapshot, loaded), self.desk.clock(), Panel.paints
+        self._shown, self._paints = (snapshot, loaded), Panel.paints
+        self._shown_at = self.desk.clock.seconds()
         self.at_rest = snapshot.state in _RESTING and not snapshot.wheel
         self.notices.rows = self._notices_of(snapshot, loaded, here=self.page is self.automatic)
         by_hand = self._by_hand(snapshot)
@@ -335,7 +337,7 @@ class Frame(QWidget):
         name = view.program or loaded.name
         self.title.page = self.page.NAME
         self.title.access = desk.access.words
-        self.title.show_state(name, view.state, view.tone, desk.machine, desk.time_of_day())
+        self.title.show_state(name, view.state, view.tone, desk.machine.name, desk.clock.time_of_day())
         state = prompt(desk, snapshot, loaded, self.page.prompt())
         self.prompt.show_state(state, prompt_line.reason(view) or prompt_line.remedy(loaded, state))
         self.prompt.show_question(desk.answers.question or self.page.asks(), desk.asked)
@@ -353,7 +355,7 @@ class Frame(QWidget):
         """Parts and times, as the run's row has them too."""
         left = formats.duration(time_left(snapshot, loaded))
         return (
-            ("PARTS", self.desk.counter.words),
+            ("PARTS", self.desk.runs.counter.words),
             ("CYCLE", view.cycle),
             ("LEFT", left),
             ("LAST", view.last_cycle),
@@ -361,7 +363,7 @@ class Frame(QWidget):
 
     def _lamps_of(self, snapshot: Snapshot, view: MachineStatus) -> tuple[Lamp, ...]:
         """The lit words, from left to right."""
-        kept = (Lamp("NOT SAVED", lit=True, warn=True),) if self.desk.not_kept() else ()
+        kept = (Lamp("NOT SAVED", lit=True, warn=True),) if self.desk.storage.problem() else ()
         return (*view.modes, *view.lamps, *kept, drives_lamp(snapshot, "D"), Lamp("RESET", False, "R"))
 
     def _notices_of(self, snapshot: Snapshot, loaded: Loaded, *, here: bool) -> tuple[NoticeRow, ...]:
@@ -374,17 +376,17 @@ class Frame(QWidget):
         if found is not None:
             rows.append(replace(found, keys=self._keys_of(snapshot, loaded) if here else ()))
         if here and desk.settings.now.first_job:
-            rows.append(desk.first_job.row)
-        differs = desk.differs()
+            rows.append(desk.runs.first_job.row)
+        differs = desk.storage.difference()
         if differs:
             rows.append(NoticeRow(differs))
-        offered_job = desk.offered(snapshot) if here else None
+        offered_job = desk.pages.offered_notice(snapshot) if here else None
         if offered_job is not None:
             rows.append(offered_job)
-        if desk.not_kept():
-            held = desk.waiting()
+        if desk.storage.problem():
+            held = desk.storage.waiting()
             waits = tr(Message("NOT SAVED YET: {what}. DO NOT EXIT TURNDESK NOW", what=held)) if held else ""
-            rows.append(NoticeRow(tr(Message("NOT SAVED: {why}", why=desk.not_kept())), waits))
+            rows.append(NoticeRow(tr(Message("NOT SAVED: {why}", why=desk.storage.problem())), waits))
         return tuple(rows)
 
     def _keys_of(self, snapshot: Snapshot, loaded: Loaded) -> tuple[tuple[str, str], ...]:

@@ -171,7 +171,8 @@ def test_levels_come_back_with_a_store_that_was_away_at_the_start(room: PinRoom,
     room.enter_people()
     store, room.journal._store = room.journal._store, None
     folder, room.journal._folder = room.journal._folder, damaged_home(tmp_path)
-    room.desk.access = again = Access(room.journal, clock=lambda: room.at)
+    again = Access(room.journal, clock=lambda: room.at)
+    room.desk.access = again  # type: ignore[misc]
     again.level = Level.OPERATOR
     SignIn(again)
     assert (again.people.on, again.people.rows) == (True, ())
@@ -261,7 +262,7 @@ def test_a_pin_is_not_shown(room: PinRoom) -> None:
 
 def pressed(room: PinRoom) -> Callable[[], None]:
     room.enter_people()
-    room.desk.estop()
+    room.desk.station.press_estop()
     room.run()
     levels = room.find(AccessLevels)
     levels.keys()["F9"].action()
@@ -316,7 +317,7 @@ def test_who_has_gone_away_finishes_nothing_by_other_hands(room: PinRoom) -> Non
     """What was begun in a level is not ended by whoever finds it open when that level has fallen back."""
     room.enter_people()
     room.sign_in("ANNA")
-    levels, programs = room.find(AccessLevels), room.desk.attached(ProgramList)
+    levels, programs = room.find(AccessLevels), room.desk.pages.find(ProgramList)
     assert programs is not None
     levels.keys()["F3"].action()
     typed(levels, "eve", "3", "1357")

@@ -85,11 +85,11 @@ def _picture(
     journal = Journal.at_home()
     stage = Stage(journal)
     desk = stage.desk
-    recorder, scope = desk.recorder, desk.attached(Scope)
+    recorder, scope = desk.control.recordings, desk.pages.find(Scope)
     assert recorder is not None
     assert scope is not None
     stage.make_ready(str(file))
-    wear(desk.station)
+    wear(desk.control.panel)
     stage.press_start()
 
     assert isinstance(recorder, Recorder)
@@ -113,7 +113,7 @@ def _picture(
             if key != "F2" or scope.frozen is not None:
                 break
             _settle(window, 0.1)
-    analyses = desk.attached(Analyses)
+    analyses = desk.pages.find(Analyses)
     assert analyses is not None
     for _ in range(_PATIENCE):
         if "F8" not in keys or analyses.found is not None:

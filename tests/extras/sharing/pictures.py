@@ -36,10 +36,10 @@ def prepare(desk: Desk, journal: Journal, folder: Path) -> None:
         better.write_bytes(better.read_bytes().replace(b"G95F.008", b"G95F.010"))
         other.look()
     made.look()
-    before = desk.attached(SharingModel)
+    before = desk.pages.find(SharingModel)
     if before is not None:
         before.close()
-    desk.attach(SharingModel(desk, made))
+    desk.pages.attach(SharingModel(desk, made))
 
 
 def settle(_page: Page | None, _wait: Callable[[], None]) -> None:

@@ -11,8 +11,8 @@ from PySide6.QtGui import QColor
 from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
+from app.compose.desk_assembly import desk_and_executor
 from app.compose.runs.journal import Journal
-from app.compose.screen_desk import desk_and_executor
 from app.compose.stored_offsets import NONE
 from app.desk.status.formats import local_time
 from app.editor.editor import Editor, Stage, enter
@@ -110,7 +110,7 @@ def test_versions_are_in_the_store(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     journal = Journal.at_home()
     desk, executor = desk_and_executor(None, lambda: NONE, StepClock(), journal)
     executor.tick()
-    editor = desk.attached(Editor)
+    editor = desk.pages.find(Editor)
     assert editor is not None
     editor.wanted = "new"
     assert enter(desk, editor)

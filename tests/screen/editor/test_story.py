@@ -107,7 +107,7 @@ def test_a_text_is_written_while_a_program_runs_as_it_was_loaded(writer: Writer,
     writer.key(Key.Key_F3)
     writer.sees(lambda: writer.front == page_table.EDITOR)
     assert writer.desk.session.now is loaded
-    assert not writer.desk.starts_here  # the palms are for the Automatic page
+    assert not writer.desk.window.starts_here  # the palms are for the Automatic page
 
 
 def test_refused_while_a_slide_is_moved_by_hand(writer: Writer) -> None:
@@ -305,12 +305,12 @@ def test_f1_saves_and_leads_to_the_main_menu(writer: Writer, tmp_path: Path) -> 
 def test_who_only_looks_at_a_program_changes_nothing_on_the_desk(writer: Writer, tmp_path: Path) -> None:
     for name in ("mine.nc", "other.nc"):
         (tmp_path / name).write_text(GOOD)
-    assert writer.desk.choose("mine")
+    assert writer.desk.programs.choose("mine")
     writer.sees(lambda: writer.desk.session.now.phase is Phase.READY)
     on_desk, posted, model = (
         writer.desk.session.now,
         len(writer.machine.posted),
-        writer.desk.attached(ProgramList),
+        writer.desk.pages.find(ProgramList),
     )
     assert model is not None
     for leaves in (Key.Key_F1, Key.Key_F3, Key.Key_Escape):
@@ -331,7 +331,7 @@ def test_who_only_looks_at_a_program_changes_nothing_on_the_desk(writer: Writer,
 def test_f1_saves_only_and_f3_loads_the_saved_text(writer: Writer, tmp_path: Path) -> None:
     """F1 loaded the text although the prompt said that it does not, and the next start ran it."""
     (tmp_path / "mine.nc").write_text(GOOD)
-    assert writer.desk.choose("mine")
+    assert writer.desk.programs.choose("mine")
     writer.sees(lambda: writer.desk.session.now.phase is Phase.READY)
     on_desk, posted = writer.desk.session.now, len(writer.machine.posted)
     writer.key(Key.Key_F3)
@@ -354,7 +354,7 @@ def test_f1_saves_only_and_f3_loads_the_saved_text(writer: Writer, tmp_path: Pat
 
 
 def test_every_page_says_that_the_saved_text_is_not_loaded(writer: Writer) -> None:
-    writer.desk.differs = lambda: "DIFFERENT"
+    writer.desk.storage.follow_program(lambda: "DIFFERENT", lambda: None)
     for page in (page_table.AUTOMATIC, page_table.PROGRAMS, page_table.MENU):
         writer.frame.go(page)
         writer.sees(lambda page=page: writer.front == page)  # type: ignore[misc]
@@ -383,7 +383,7 @@ def test_the_program_on_the_desk_is_read_anew_when_its_text_has_changed(
     writer: Writer, tmp_path: Path
 ) -> None:
     (tmp_path / "mine.nc").write_text(GOOD)
-    assert writer.desk.choose("mine")
+    assert writer.desk.programs.choose("mine")
     writer.sees(lambda: writer.desk.session.now.phase is Phase.READY)
     before = writer.desk.session.loads
     writer.key(Key.Key_F3)
@@ -403,10 +403,10 @@ def test_the_program_on_the_desk_is_read_anew_when_its_text_has_changed(
 def test_f3_of_the_list_begins_a_program_of_a_name_that_none_has(writer: Writer, tmp_path: Path) -> None:
     """It edits no other one, and nothing is there before it is said so."""
     (tmp_path / "mine.nc").write_text(GOOD)
-    assert writer.desk.choose("mine")
+    assert writer.desk.programs.choose("mine")
     writer.sees(lambda: writer.desk.session.now.phase is Phase.READY)
     writer.frame.go(page_table.PROGRAMS)
-    model = writer.desk.attached(ProgramList)
+    model = writer.desk.pages.find(ProgramList)
     assert model is not None
     writer.sees(lambda: bool(model.listed))
     writer.type("NOSUCHNAME")
@@ -420,7 +420,7 @@ def test_f3_of_the_list_begins_a_program_of_a_name_that_none_has(writer: Writer,
 
 def test_f3_of_an_empty_list_edits_nothing(writer: Writer) -> None:
     writer.frame.go(page_table.PROGRAMS)
-    model = writer.desk.attached(ProgramList)
+    model = writer.desk.pages.find(ProgramList)
     assert model is not None
     writer.sees(lambda: bool(model.listed))
     model.all, model.listed = (), ()
@@ -432,7 +432,7 @@ def test_f3_of_an_empty_list_edits_nothing(writer: Writer) -> None:
 def test_at_the_question_for_a_file_f3_edits_what_is_marked_or_typed(writer: Writer, tmp_path: Path) -> None:
     for name in ("mine.nc", "other.nc"):
         (tmp_path / name).write_text(GOOD)
-    assert writer.desk.choose("mine")
+    assert writer.desk.programs.choose("mine")
     writer.sees(lambda: writer.desk.session.now.phase is Phase.READY)
     writer.key(Key.Key_F2)
     writer.key(Key.Key_F3)

@@ -12,11 +12,10 @@ from PySide6.QtGui import QKeyEvent
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
-from app.compose.screen_desk import desk_and_executor
+from app.compose.desk_assembly import desk_and_executor
 from app.compose.stored_offsets import offsets_of
 from app.desk.desk import Desk
 from app.jog.jog_view import JogPage
-from app.offsets.offset_book import OffsetBook
 from app.screen.look import DARK, Look
 from app.screen.window.main_window import MainWindow
 from app.screen.window.window_frame import Frame
@@ -24,6 +23,7 @@ from core.executor.executor import Executor
 from core.executor.snapshot import Snapshot, State
 from core.store.store import Store
 from drivers.waiting import StepClock
+from tests.offset_store import use_store
 from tests.screen.yes import yes
 
 Key = Qt.Key
@@ -172,7 +172,7 @@ def bench_on(folder: Path, *, absolute: bool = True, **more: bool) -> JogBench:
     store = Store.open(folder / "home")
     file = shipped(folder, absolute=absolute, **more)
     desk, executor = desk_and_executor(file, lambda: offsets_of(store), clock)
-    desk.book = OffsetBook(store)
+    use_store(desk, store)
     desk.hands.clock = clock.now
     window = MainWindow(Look(DARK))
     window.resize(1024, 600)

@@ -204,13 +204,13 @@ def test_an_alarm_stops_it_and_lets_nothing_be_chosen(jog: JogBench) -> None:
 
 def test_a_held_feed_hold_lets_nothing_start(jog: JogBench) -> None:
     chosen(jog)
-    assert jog.desk.station is not None
-    jog.desk.station.press_hold()
+    assert jog.desk.control.panel is not None
+    jog.desk.control.panel.press_hold()
     palms(jog)
     jog.run(0.5)
     assert (jog.shot.state, jog.shot.rpm_command) == (State.IDLE, 0.0)
     assert text("jog.in-feed-hold") in jog.shot.start_refused
-    jog.desk.station.release_hold()
+    jog.desk.control.panel.release_hold()
 
 
 @pytest.mark.parametrize("page", [Key.Key_F8, Key.Key_F1])

@@ -78,7 +78,7 @@ def test_a_program_that_began_while_jog_was_opened_does_not_begin_there_again(
     jog.key(Key.Key_F1)
     jog.key(Key.Key_F2)
     jog.run(0.1)
-    jog.desk.put_on_desk(part)
+    jog.desk.programs.load(part)
     jog.desk.session.settled(60.0)
     jog.run(0.3)
     jog.executor.post(CycleStart())

@@ -16,7 +16,7 @@ PROGRAM = "G90G94F300\nG72\nT1\nM03S1000\nX1Z.1\nG01F60X.5Z.1\nZ-.5\nX1Z.5G00\nM
 def load(jog: JogBench, folder: Path, program: str = PROGRAM) -> None:
     path = folder / "part.nc"
     path.write_text(program, encoding="utf-8")
-    assert jog.desk.choose(str(path))
+    assert jog.desk.programs.choose(str(path))
     proved(jog)
 
 

@@ -210,7 +210,7 @@ def test_esc_gives_it_up_and_changes_nothing(jog: JogBench, until: Callable[[Jog
 @pytest.mark.parametrize("until", [away, measuring])
 def test_estop_gives_it_up(jog: JogBench, until: Callable[[JogBench], None]) -> None:
     until(jog)
-    jog.desk.estop()
+    jog.desk.station.press_estop()
     jog.run(0.3)
     assert step(jog) is CutStep.OFF
     assert rows(jog) == {}

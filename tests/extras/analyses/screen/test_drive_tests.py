@@ -84,8 +84,8 @@ def test_held_to_its_end_it_is_kept_and_told_in_figures(
     jog.up(Key.Key_Right)
     assert jog.shot.drive_test.whole == 1
     assert jog.shot.demand[1] == pytest.approx(0.0, abs=1e-9)
-    assert jog.desk.recorder is not None
-    jog.desk.recorder.drain()
+    assert jog.desk.control.recordings is not None
+    jog.desk.control.recordings.drain()
 
     def worked_out() -> bool:
         jog.run(0.01)
@@ -232,8 +232,8 @@ def test_an_axis_that_is_not_homed_is_not_tested(lost: JogBench) -> None:
 
 
 def test_no_room_is_told_before(jog: JogBench, page: DriveTestPage) -> None:
-    assert jog.desk.lathe is not None
-    travel = jog.desk.lathe.axis("Z").travel
+    assert jog.desk.machine.model is not None
+    travel = jog.desk.machine.model.axis("Z").travel
     assert travel is not None
     jog.frame.go(page_table.JOG)
     jog.down(Key.Key_Right, SHIFT)

@@ -42,13 +42,13 @@ def day(qtbot: QtBot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterat
         day.desk.book.read()
         day.run(0.02)
         day.key(Key.Key_D)
-        assert day.desk.choose("peg")
+        assert day.desk.programs.choose("peg")
         day.sees(lambda: day.prompt.startswith(wording("screen.to-start")))
         yield day
 
 
 def model(day: Day) -> JobsModel:
-    found = day.desk.attached(JobsModel)
+    found = day.desk.pages.find(JobsModel)
     assert found is not None
     return found
 
@@ -102,7 +102,7 @@ def test_a_queue_is_worked_off_and_nothing_starts_by_itself(day: Day) -> None:
     assert rows(day) == [("peg.nc\n", "0/2"), ("cap.nc\n", "0/5")]
     day.key(Key.Key_Up)
     loaded(day, "peg.nc")
-    assert day.desk.counter.words == "0/2"
+    assert day.desk.runs.counter.words == "0/2"
     day.key(Key.Key_C)  # cycle repeat
     day.palms()
     day.reaches(State.RUN)
@@ -122,7 +122,7 @@ def test_a_queue_is_worked_off_and_nothing_starts_by_itself(day: Day) -> None:
     day.run(3.0)
     assert (day.shot.state, day.shot.program, day.shot.parts) == (State.IDLE, day.shot.program, 2)
     assert day.desk.session.now.name == "peg.nc"
-    row = day.desk.offered(day.shot)
+    row = day.desk.pages.offered_notice(day.shot)
     assert row is not None
     assert row.figures == following
     assert [each.made for each in day.store.jobs.read_jobs()] == [2, 0]
@@ -131,8 +131,8 @@ def test_a_queue_is_worked_off_and_nothing_starts_by_itself(day: Day) -> None:
     day.key(Key.Key_Down)
     loaded(day, "cap.nc")
     assert day.desk.session.now.name == "cap.nc"
-    assert day.desk.counter.words == "0/5"
-    assert day.desk.offered(day.shot) is None
+    assert day.desk.runs.counter.words == "0/5"
+    assert day.desk.pages.offered_notice(day.shot) is None
 
 
 def test_what_is_missing_on_the_plate_is_named(day: Day) -> None:
@@ -240,7 +240,7 @@ def test_the_counter_leaves_the_number_to_the_job(day: Day) -> None:
     day.key(Key.Key_F10)
     day.enter("2", "7")
     assert day.prompt == wording("screen.job-has-own-count")
-    assert day.desk.counter.aim == 3
+    assert day.desk.runs.counter.aim == 3
 
 
 def test_a_program_that_has_gone_is_said(day: Day, tmp_path: Path) -> None:
@@ -267,12 +267,12 @@ def test_a_job_whose_program_is_not_on_the_desk_is_proved_and_loaded_like_any_ot
     opened(day)
     assert model(day).sheet(day.shot).rows[0].cells[4] == "IN PROGRESS"
     day.key(Key.Key_F1, Key.Key_F2)
-    assert day.desk.choose("cap")
+    assert day.desk.programs.choose("cap")
     day.sees(lambda: not day.desk.session.now.busy)
     opened(day)
     day.sees(lambda: model(day).sheet(day.shot).rows[0].cells[4] == wording("screen.tool-complete"))
     loaded(day, "peg.nc")
-    day.sees(lambda: day.desk.counter.words == "0/3")
+    day.sees(lambda: day.desk.runs.counter.words == "0/3")
 
 
 def test_an_empty_queue_says_how_a_job_is_added(day: Day) -> None:

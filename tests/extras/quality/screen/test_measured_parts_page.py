@@ -37,13 +37,13 @@ def day(qtbot: QtBot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterat
         day.desk.book.read()
         day.run(0.02)
         day.key(Key.Key_D)
-        day.desk.put_on_desk(tmp_path / "peg.nc")
+        day.desk.programs.load(tmp_path / "peg.nc")
         day.sees(lambda: day.prompt.startswith(wording("screen.to-start")))
         yield day
 
 
 def model(day: Day) -> QualityFunctions:
-    found = day.desk.attached(QualityFunctions)
+    found = day.desk.pages.find(QualityFunctions)
     assert found is not None
     return found
 
@@ -61,7 +61,7 @@ def section(day: Day, number: str) -> None:
 
 def settled(day: Day) -> bool:
     """What is known is what is kept."""
-    watch = day.desk.attached(PartsWatch)
+    watch = day.desk.pages.find(PartsWatch)
     assert watch is not None
     return watch.book.settled
 
@@ -287,7 +287,7 @@ def test_parts_of_before_the_correction_ask_for_no_other(day: Day) -> None:
     measured(day, ".5012")
     day.key(Key.Key_Escape)
     day.key(Key.Key_F8)
-    watch, read = day.desk.attached(PartsWatch), Event()
+    watch, read = day.desk.pages.find(PartsWatch), Event()
     assert watch is not None
     yes(day.window)
     watch.book.worker.queue(lambda: read.wait(60.0), lambda _read: None, day.desk.say)
@@ -491,7 +491,7 @@ def test_trends_of_what_was_made(day: Day, tmp_path: Path) -> None:
     assert re.fullmatch(r"0–24: \d+ %, in cycle for \d:\d\d of .+", ran)
     # of the machine, whatever program is on the desk
     (tmp_path / "other.nc").write_text(PEG)
-    day.desk.put_on_desk(tmp_path / "other.nc")
+    day.desk.programs.load(tmp_path / "other.nc")
     day.sees(lambda: texts(day)["CYCLE TIME"] == wording("measure.no-part-made") and settled(day))
     assert texts(day)["AVAILABILITY"] >= ran  # the clock on the wall goes on
 

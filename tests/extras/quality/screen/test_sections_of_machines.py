@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from app.compose.screen_desk import desk_and_executor
+from app.compose.desk_assembly import desk_and_executor
 from app.compose.stored_offsets import read_offsets
 from app.compose.workshop import samples
 from app.extras.quality.charts_and_trends import TrendsSection

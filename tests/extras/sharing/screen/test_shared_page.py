@@ -55,10 +55,10 @@ def sharing(day: Day, other: Sharing, tmp_path: Path) -> Sharing:
         tmp_path / "home" / "programs",
         day.journal.opened,
     )
-    before = day.desk.attached(SharingModel)
+    before = day.desk.pages.find(SharingModel)
     assert before is not None
     before.close()
-    day.desk.attach(SharingModel(day.desk, made))
+    day.desk.pages.attach(SharingModel(day.desk, made))
     made.look()
     other.take(other.look().families["peg.nc"].newest[0])
     (tmp_path / "other" / "programs" / "peg.nc").write_text(BETTER)
@@ -68,7 +68,7 @@ def sharing(day: Day, other: Sharing, tmp_path: Path) -> Sharing:
 
 
 def model(day: Day) -> SharingModel:
-    found = day.desk.attached(SharingModel)
+    found = day.desk.pages.find(SharingModel)
     assert found is not None
     return found
 
@@ -102,7 +102,7 @@ def test_what_is_newer_is_compared_and_taken_when_asked(day: Day, sharing: Shari
 
 def test_a_program_that_runs_is_not_replaced(day: Day, sharing: Sharing, tmp_path: Path) -> None:
     day.key(Key.Key_D)
-    assert day.desk.choose("peg")
+    assert day.desk.programs.choose("peg")
     day.sees(lambda: day.prompt.startswith(wording("screen.to-start")))
     day.palms()
     day.reaches(State.RUN)
@@ -154,7 +154,7 @@ def test_a_place_that_is_away_is_told_on_the_page_and_once_in_the_log(
 
 
 def test_a_change_to_the_program_on_the_desk_is_said_once(day: Day, sharing: Sharing) -> None:
-    assert day.desk.choose("peg")
+    assert day.desk.programs.choose("peg")
     day.sees(lambda: not day.desk.session.now.busy)
     heard = Heard(day.desk, day.journal)
     day.desk.ask("PRESS Y TO DELETE IT", lambda: None)

@@ -1,0 +1,16 @@
+"""The clocks of the desk."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import partial
+
+
+@dataclass(slots=True)
+class DeskClock:
+    """Monotonic time in seconds, and the local time of day as text."""
+
+    seconds: Callable[[], float] = time.monotonic
+    time_of_day: Callable[[], str] = field(default=partial(time.strftime, "%H:%M:%S"))

@@ -1,0 +1,106 @@
+"""The objects that the desk shares: what they report before anybody has connected them, and after."""
+
+from __future__ import annotations
+
+import pytest
+
+from app.desk.late_presses import LatePresses
+from app.desk.page_description import ProgramKey
+from app.desk.pages.page_registry import PageRegistry
+from app.desk.state.desk_machine import DeskMachine
+from app.desk.state.storage_state import StorageState
+from app.desk.state.window_state import WindowState
+from core.executor.snapshot import Snapshot
+
+
+class Model:
+    def __init__(self, why: str = "") -> None:
+        self.open, self._why = False, why
+
+    def barred(self) -> str:
+        return self._why
+
+    def close(self) -> None:
+        """Nothing is open."""
+
+
+class Other(Model):
+    """Another class of model."""
+
+
+def test_a_model_is_found_by_its_class_and_no_other_is() -> None:
+    pages, model = PageRegistry(), Model()
+    pages.attach(model)
+    assert pages.find(Model) is model
+    assert pages.find(Other) is None
+    assert [step.name for step in pages.closing_steps()] == ["Model"]
+
+
+def test_a_model_of_later_is_made_once_and_only_when_it_is_asked_for() -> None:
+    pages, made = PageRegistry(), list[Other]()
+
+    def make() -> Other:
+        made.append(Other())
+        return made[-1]
+
+    pages.attach_later(f"{Other.__module__}.Other", make)
+    assert pages.find(Model) is None
+    assert (made, pages.closing_steps()) == ([], [])
+    assert pages.find(Other) is pages.find(Other)
+    assert len(made) == 1
+
+
+def test_of_the_pages_with_a_start_the_open_one_has_the_buttons() -> None:
+    pages, first, second = PageRegistry(), Model("first"), Model("second")
+    for each in (first, second):
+        pages.add_start(each)
+    assert pages.open_start is None
+    second.open = True
+    assert pages.open_start is second
+
+
+def test_without_a_feature_nothing_is_offered() -> None:
+    pages = PageRegistry()
+    assert pages.offered_notice(Snapshot()) is None
+    assert dict(pages.program_keys) == {}
+    key = ProgramKey("JOB", "JOBS", lambda _path: None)
+    pages.add_program_key("F10", key)
+    assert dict(pages.program_keys) == {"F10": key}
+
+
+def test_a_window_that_is_not_there_bars_nothing_and_a_page_may() -> None:
+    window = WindowState(LatePresses(Snapshot, float))
+    assert (window.starts_here, window.keyboard_away, window.is_stop_held()) == (True, False, False)
+    assert (window.has_field(), window.press_age()) == (False, 0.0)
+    woken: list[bool] = []
+    window.connect(lambda: woken.append(True), lambda: True, lambda: 0.25)
+    window.show_page(starts=False, has_field=lambda: True)
+    window.set_keyboard_away(True)
+    window.wake()
+    assert (window.starts_here, window.keyboard_away, window.is_stop_held()) == (False, True, True)
+    assert (window.has_field(), window.press_age(), woken) == (True, 0.25, [True])
+
+
+@pytest.mark.parametrize("problem", ["", "the disk is full"])
+def test_the_state_of_storage_is_that_of_the_store_it_follows(problem: str) -> None:
+    storage, checked = StorageState(), list[bool]()
+    assert (storage.problem(), storage.waiting(), storage.difference()) == ("", "", "")
+    storage.follow_store(lambda: problem, lambda: "20 parts")
+    storage.follow_program(lambda: "DIFFERENT", lambda: checked.append(True))
+    storage.recheck_file()
+    assert (storage.problem(), storage.waiting(), storage.difference()) == (problem, "20 parts", "DIFFERENT")
+    assert checked == [True]
+
+
+def test_starts_are_barred_from_the_begin_of_a_restore_to_its_end() -> None:
+    storage = StorageState()
+    assert not storage.restoring
+    storage.begin_restore()
+    assert storage.restoring
+    storage.end_restore()
+    assert not storage.restoring
+
+
+def test_a_machine_without_a_file_is_an_omniturn_lathe() -> None:
+    machine = DeskMachine()
+    assert (machine.language, machine.third_axis, machine.table_turns) == ("omniturn", "C", True)

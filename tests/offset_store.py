@@ -1,0 +1,13 @@
+"""A store of offsets under a desk that a test has built without one."""
+
+from __future__ import annotations
+
+from app.desk.desk import Desk
+from core.store.store import Store
+
+
+def use_store(desk: Desk, store: Store) -> None:
+    """Have the desk's book read this store and save to it, as a desk that opens on it does."""
+    book = desk.book
+    book.store, book.locked, book.unread = store, "", False
+    book.read()
