@@ -96,15 +96,9 @@ def screen(words: list[str]) -> int:
         )
         if now != before[0]:
             before[0] = now
-            say(
-                {
-                    "t": client.hello.zero + shot.t,
-                    "state": now[0],
-                    "parts": now[1],
-                    "later": now[2],
-                    "alarms": now[3],
-                }
-            )
+            seconds = client.hello.zero + shot.t
+            names = ("state", "parts", "later", "underruns", "alarms")
+            say({"t": seconds, **dict(zip(names, now, strict=True))})
 
     class Paints(QObject):
         def __init__(self) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import resource
+import shutil
 import signal
 import socket
 import subprocess
@@ -17,6 +18,7 @@ import pytest
 
 from app.compose.control.control_client import ControlClient, find_control
 from app.compose.control.control_events import ControlEvents
+from app.compose.control.control_process import ScreenListener
 from app.compose.control.control_start import socket_path, start_control
 from app.compose.control.left_note import NAME
 from app.desk.data_folder import HOME
@@ -277,3 +279,27 @@ def _listens(path: Path) -> bool:
         sock.connect(str(path))
         return True
     return False
+
+
+def test_a_control_leaves_the_socket_of_another_one(tmp_path: Path) -> None:
+    path = tmp_path / "control.sock"
+    first = ScreenListener(path)
+    path.unlink()
+    second = ScreenListener(path)
+    first.close()
+    assert path.is_socket()
+    second.close()
+    assert not path.exists()
+
+
+def test_nobody_takes_the_socket_of_a_control_that_listens(tmp_path: Path) -> None:
+    listener = ScreenListener(tmp_path / "control.sock")
+    assert ScreenListener.at(tmp_path / "control.sock") is None
+    listener.close()
+
+
+def test_a_folder_that_has_gone_is_no_trouble_at_the_end(tmp_path: Path) -> None:
+    listener = ScreenListener(tmp_path / "home" / "control.sock")
+    shutil.rmtree(tmp_path / "home")
+    listener.close()
+    assert not (tmp_path / "home").exists()

@@ -14,7 +14,7 @@ import socket
 import sys
 import threading
 from contextlib import suppress
-from multiprocessing.connection import Connection, Listener
+from multiprocessing.connection import Connection
 from pathlib import Path
 
 from app.compose.control.control_messages import Failed, is_own_user
@@ -50,19 +50,22 @@ def main(arguments: list[str]) -> int:
     for number in (signal.SIGTERM, signal.SIGINT):  # of a computer that shuts down
         signal.signal(number, lambda *_: server.closing.set())
     server.start()
-    threading.Thread(target=_serve_screens, args=(server, first, folder), name="screens", daemon=True).start()
+    _serve(server, first)  # before anybody else finds the control
+    listener = ScreenListener.at(socket_path(folder))
+    if listener is not None:
+        threading.Thread(target=_serve_screens, args=(server, listener), name="screens", daemon=True).start()
     while not server.closing.wait(LOOK):
         server.look()
     server.close()
+    if listener is not None:
+        listener.close()
     log.close()
     return 0
 
 
-def _serve_screens(server: ControlServer, first: Connection, folder: Path) -> None:
-    """Talk to the screen that has started the control, then to one after the other that finds it."""
-    _serve(server, first)  # before anybody else finds the control
-    listener = _listener(socket_path(folder))
-    while listener is not None and not server.closing.is_set():
+def _serve_screens(server: ControlServer, listener: ScreenListener) -> None:
+    """Talk to one screen after the other that finds the control."""
+    while not server.closing.is_set():
         with suppress(OSError, EOFError):
             connection = listener.accept()
             if is_own_user(connection):
@@ -76,20 +79,41 @@ def _serve(server: ControlServer, connection: Connection) -> None:
     threading.Thread(target=server.serve, args=(connection,), name="screen", daemon=True).start()
 
 
-def _listener(path: Path | None) -> Listener | None:
-    """The socket in the data folder; None where it cannot be made, so that no other screen finds this one."""
-    if path is None or _listens(path):
-        return None
-    try:
+class ScreenListener:
+    """The socket in the data folder at which a screen finds the control. Raises OSError."""
+
+    def __init__(self, path: Path) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
         path.unlink(missing_ok=True)
+        self._path, self._socket = path, socket.socket(socket.AF_UNIX)
         before = os.umask(0o177)
         try:
-            return Listener(str(path), "AF_UNIX")
+            self._socket.bind(str(path))
         finally:
             os.umask(before)
-    except OSError:
-        return None
+        self._socket.listen()
+        self._inode = path.stat().st_ino
+
+    @classmethod
+    def at(cls, path: Path | None) -> ScreenListener | None:
+        """Return one at this path; None where there can be none: no other screen finds this control."""
+        if path is None or _listens(path):
+            return None
+        try:
+            return cls(path)
+        except OSError:
+            return None
+
+    def accept(self) -> Connection:
+        """Wait for a screen and return its connection. Raises OSError."""
+        return Connection(self._socket.accept()[0].detach())
+
+    def close(self) -> None:
+        """Listen no more. The file goes, if it is still that of this socket. Raises nothing."""
+        with suppress(OSError):
+            if self._path.stat().st_ino == self._inode:
+                self._path.unlink()
+        self._socket.close()
 
 
 def _listens(path: Path) -> bool:
