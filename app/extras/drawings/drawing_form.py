@@ -133,6 +133,13 @@ class DrawingForm(ShapeForm):
             self._ask(asked)
         self._show()
 
+    def use_setting(self, setting: Setting) -> None:
+        """Calculate again with other tool data, except where the reading was canceled: F6 begins it again."""
+        if self.canceled:
+            self.setting = setting
+        else:
+            ShapeForm.use_setting(self, setting)  # super() fails in a dataclass with slots
+
     def _ask(self, asked: Asked) -> None:
         if self.plan is None or self.plan.asked != asked:
             self.pending = asked

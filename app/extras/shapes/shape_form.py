@@ -67,6 +67,11 @@ class ShapeForm:
         self.work()
         self.marked = self._first()
 
+    def use_setting(self, setting: Setting) -> None:
+        """Calculate again with other tool data."""
+        self.setting = setting
+        self.work()
+
     def _take(self, one: Filled) -> None:
         """Everything that the text says counts as typed."""
         for word, value in one.values.items():

@@ -134,8 +134,7 @@ class Shapes(PanelModel):
         self.shop = shop
         if self.form is not None and self.form.instead is None:
             form = self.form
-            form.setting = setting_at(self.lines, self.at, shop, self.new)
-            form.work()
+            form.use_setting(setting_at(self.lines, self.at, shop, self.new))
             self._preview()
 
     def _no_shop(self, why: str) -> None:

@@ -43,6 +43,8 @@ def test_a_process_that_hangs_is_canceled(
     writer.key(key)
     writer.sees(lambda: writer.editor.prompt() == wording("shapes.reading-canceled"))
     writer.sees(lambda: not drawing.planner.reading)  # its process has ended
+    model._have_shop(model.shop)  # tool data that were read only now do not begin it again
+    assert writer.editor.prompt() == wording("shapes.reading-canceled")
     monkeypatch.undo()
     dxf(path, chain(*STEP))
     assert labels(writer)[6] == "READ"
