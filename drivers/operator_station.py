@@ -8,6 +8,7 @@ from __future__ import annotations
 import dataclasses
 import random
 import threading
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager
 from typing import Protocol
@@ -292,15 +293,15 @@ def _hand(name: str) -> Callable[..., None]:
     return use
 
 
-class PostedHands:
+class PostedHands(ABC):
     """Hands at a simulated station of another process; ``app.desk.station_hands.StationPanel`` explains them.
 
     A subclass has ``post``, which sends what a hand does to that process.
     """
 
+    @abstractmethod
     def post(self, name: str, *values: object) -> None:
         """Have the method of this name used at the station. Never waits."""
-        raise NotImplementedError
 
     press_left, release_left = _hand("press_left"), _hand("release_left")
     press_right, release_right = _hand("press_right"), _hand("release_right")

@@ -9,8 +9,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from app.compose.control.control_begin import begin_control
-from app.compose.control.control_client import ControlClient
-from app.compose.control.control_events import ControlEvents
+from app.compose.control.control_client import ControlClient, ControlEvents
 from app.compose.control.control_start import StartedControl
 from app.compose.desk_assembly import DeskEvents, desk_and_parts, desk_of
 from app.compose.desk_services import SUPERVISED, report_ended_thread, start_services

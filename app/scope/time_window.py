@@ -1,4 +1,4 @@
-"""Which seconds the scope shows: its window with two cursors, and the trigger that freezes the curves."""
+"""The time window of the scope with two cursors, and the trigger that stops the curves."""
 
 from __future__ import annotations
 

@@ -74,7 +74,7 @@ class Recorded:
 
     @property
     def ring_bytes(self) -> int:
-        """Memory that the ring needs."""
+        """Return how many bytes of memory the ring needs."""
         samples, ticks = self.rooms
         return bytes_of(samples, self.sample_width) + bytes_of(ticks, self.tick_width)
 

@@ -73,7 +73,7 @@ class FrequencyKeys:
 
 @key_table
 class CurrentKeys:
-    """The output current in a register."""
+    """The register that contains the output current."""
 
     register: int = file_key(_ADDRESS, meaning="Address of the register.")
     counts_per_a: float = file_key(_COUNTS, meaning="Register value for 1 A.")

@@ -12,7 +12,7 @@ from typing import TypeVar
 
 from app.compose.control.control_messages import Alive, Hand, Happened, Heard, Hello, Post, Shown
 from app.compose.control.control_server import ControlServer
-from app.compose.control.shared_memory import SharedMemory
+from app.compose.control.passed_files import SharedMemory, receive_file
 from app.compose.machine.machine_files import load_machine
 from app.compose.machine.machine_setup import control_limits
 from core.executor.commands import Clearance, Command, CycleStart, EnableDrives, GiveClearance, LoadJob
@@ -71,7 +71,7 @@ class Screen:
         assert self.end.poll(PATIENCE)
         hello = self.end.recv()
         assert isinstance(hello, Hello), hello
-        self.memory = SharedMemory.received_from(self.end)
+        self.memory = SharedMemory(receive_file(self.end))
         assert self.end.poll(PATIENCE)  # the first snapshot: it is connected
         return hello
 

@@ -16,8 +16,7 @@ from pathlib import Path
 import pytest
 
 from app.compose.control import control_client
-from app.compose.control.control_client import ControlClient, find_control
-from app.compose.control.control_events import ControlEvents
+from app.compose.control.control_client import ControlClient, ControlEvents, find_control
 from app.compose.control.control_messages import (
     BUSY,
     VERSION,
@@ -36,7 +35,7 @@ from app.compose.control.control_messages import (
     is_own_user,
 )
 from app.compose.control.control_start import StartedControl, socket_path, start_control
-from app.compose.control.shared_memory import SharedMemory
+from app.compose.control.passed_files import SharedMemory, send_file
 from core.executor.commands import GiveProof, LoadJob, SetSwitch
 from core.executor.job import Proof
 from core.executor.snapshot import Event, InterruptedJob, Snapshot, State
@@ -74,7 +73,7 @@ class Peer:
             self.version, self.machine, 0.0, (), (), RECORDED, "", True, False, self.snapshot, noted
         )
         self.end.send(hello)
-        self.memory.send_to(self.end)
+        send_file(self.end, self.memory.file)
 
     def next(self, *kinds: type) -> object:
         """The next message of one of these kinds."""

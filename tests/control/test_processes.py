@@ -16,8 +16,7 @@ from pathlib import Path
 
 import pytest
 
-from app.compose.control.control_client import ControlClient, find_control
-from app.compose.control.control_events import ControlEvents
+from app.compose.control.control_client import ControlClient, ControlEvents, find_control
 from app.compose.control.control_process import ScreenListener
 from app.compose.control.control_start import socket_path, start_control
 from app.compose.control.left_note import NAME

@@ -10,7 +10,7 @@ from multiprocessing.connection import Pipe
 import numpy as np
 import pytest
 
-from app.compose.control.shared_memory import SharedMemory
+from app.compose.control.passed_files import SharedMemory, receive_file, send_file
 from core.records.record_ring import Recorded, Ring, Rows, bytes_of
 
 RECORDED = Recorded({"X": False, "Z": False}, lasts=1.0)
@@ -53,8 +53,8 @@ def test_a_ring_that_another_process_writes_never_shows_half_a_row() -> None:
 def test_a_ring_in_shared_memory_shows_what_the_other_end_writes() -> None:
     ours, theirs = Pipe()
     memory = SharedMemory.of_size(RECORDED.ring_bytes)
-    memory.send_to(theirs)
-    there, here = Ring.of(RECORDED, memory.view), Ring.of(RECORDED, SharedMemory.received_from(ours).view)
+    send_file(theirs, memory.file)
+    there, here = Ring.of(RECORDED, memory.view), Ring.of(RECORDED, SharedMemory(receive_file(ours)).view)
     there.samples.write(np.full((1, RECORDED.sample_width), 5.0))
     assert here.samples.last == 5.0
     ours.close()
@@ -65,5 +65,5 @@ def test_memory_that_does_not_come_is_the_end_of_the_connection() -> None:
     ours, theirs = Pipe()
     theirs.close()
     with pytest.raises(EOFError):
-        SharedMemory.received_from(ours)
+        SharedMemory(receive_file(ours))
     ours.close()

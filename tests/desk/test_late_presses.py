@@ -13,6 +13,7 @@ from app.desk.posted_values import ARRIVES, PostedValues
 from app.desk.station_hands import StationHands, StationPanel
 from core.executor import commands
 from core.executor.commands import Command
+from core.executor.executor import STARTS as STARTS_OF_CONTROL
 from core.executor.hand_motion.drive_test import DriveTestPath
 from core.executor.snapshot import Snapshot, State
 
@@ -25,6 +26,7 @@ def every_command() -> set[type[Command]]:
 def test_every_command_is_either_one_that_starts_or_one_that_does_not() -> None:
     assert STARTS.keys() | HARMLESS == every_command()
     assert not STARTS.keys() & HARMLESS
+    assert set(STARTS_OF_CONTROL) <= STARTS.keys()
 
 
 def test_every_name_is_another() -> None:

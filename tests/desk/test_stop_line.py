@@ -9,7 +9,7 @@ from multiprocessing.connection import Connection
 
 import pytest
 
-from app.compose.control.stop_line import obey_line, send_line
+from app.compose.control.passed_files import obey_line, receive_file, send_file
 from app.desk.stop_keys.stop_records import Stop, StopKind
 
 LIMIT = 20.0  # s
@@ -27,8 +27,9 @@ def test_what_is_sent_on_a_line_is_obeyed_in_its_order(ends: tuple[Connection, C
     screen, control = ends
     obeyed: queue.Queue[Stop] = queue.Queue()
     line, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-    send_line(screen, theirs)
-    obey_line(control, obeyed.put)
+    with theirs:
+        send_file(screen, theirs.fileno())
+    obey_line(receive_file(control), obeyed.put)
     stops = [Stop(StopKind.HOLD, 1), Stop(StopKind.ESTOP, 2), Stop(StopKind.ESC, 3)]
     with line:
         for stop in stops:
@@ -40,8 +41,9 @@ def test_a_record_of_another_version_is_skipped(ends: tuple[Connection, Connecti
     screen, control = ends
     obeyed: queue.Queue[Stop] = queue.Queue()
     line, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-    send_line(screen, theirs)
-    obey_line(control, obeyed.put)
+    with theirs:
+        send_file(screen, theirs.fileno())
+    obey_line(receive_file(control), obeyed.put)
     with line:
         line.send(b"what is this")
         line.send(Stop(StopKind.HOLD, 4).packed())
@@ -52,4 +54,4 @@ def test_a_message_without_a_line_is_rejected(ends: tuple[Connection, Connection
     screen, control = ends
     screen.close()
     with pytest.raises(EOFError):
-        obey_line(control, lambda _stop: None)
+        receive_file(control)

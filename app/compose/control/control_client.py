@@ -10,12 +10,11 @@ import threading
 import time
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from multiprocessing.connection import Connection
 from pathlib import Path
 from socket import AF_UNIX, SOCK_SEQPACKET, socket, socketpair
 
-from app.compose.control.control_events import ControlEvents
 from app.compose.control.control_messages import (
     BUSY,
     VERSION,
@@ -36,12 +35,11 @@ from app.compose.control.control_messages import (
     is_own_user,
 )
 from app.compose.control.control_start import StartedControl
-from app.compose.control.shared_memory import SharedMemory
-from app.compose.control.stop_line import send_line
+from app.compose.control.passed_files import SharedMemory, receive_file, send_file
 from app.desk.data_folder import RECORDS
 from core.executor.commands import Command, GiveProof, LoadJob
 from core.executor.raised_alarm import Attempt, ReportedAttempt, make_alarm
-from core.executor.snapshot import CYCLE, Event, Snapshot, State
+from core.executor.snapshot import CYCLE, Event, InterruptedJob, Snapshot, State
 from core.machine.machine_model import Machine
 from core.message import Message
 from core.ports import DriverError
@@ -72,6 +70,16 @@ _SAVED_IN = 5.0  # s for the record of an alarm
 CLOSES_IN = 20.0  # s: drives that come on are waited for, then the machine is halted
 
 
+@dataclass(slots=True)
+class ControlEvents:
+    """What is called on the client's thread when something comes from the control."""
+
+    event: Callable[[Event], None]
+    note: Callable[[InterruptedJob | None], None]
+    thread_ended: Callable[[str], None]
+    stirs: Callable[[], None] = lambda: None
+
+
 class ControlClient:
     """The process of the control. ``snapshot`` is the newest; ``post`` never waits."""
 
@@ -80,7 +88,7 @@ class ControlClient:
         hello = _hello(connection, STARTS_IN if process is not None else ANSWERS_IN)
         self.hello = hello
         self.attached = process is None  # to a control that another screen had started
-        memory = SharedMemory.received_from(connection)
+        memory = SharedMemory(receive_file(connection))
         ring = Ring.of(hello.recorded, memory.view)
         self.records = ControlRecords(ring, folder / RECORDS, hello.trouble)
         self.clock = RealClock(hello.zero)
@@ -183,8 +191,9 @@ class ControlClient:
 
     def _send_one(self, message: object) -> None:
         if isinstance(message, socket):
-            self._connection.send(StopLine())
-            send_line(self._connection, message)
+            with message:
+                self._connection.send(StopLine())
+                send_file(self._connection, message.fileno())
         else:
             self._connection.send(message)
 

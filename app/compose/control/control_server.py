@@ -41,9 +41,8 @@ from app.compose.control.control_messages import (
     ThreadEnded,
 )
 from app.compose.control.left_note import remove_note, save_events, save_note
+from app.compose.control.passed_files import SharedMemory, obey_line, receive_file, send_file
 from app.compose.control.rights import Right
-from app.compose.control.shared_memory import SharedMemory
-from app.compose.control.stop_line import obey_line
 from app.compose.extra import extras
 from app.desk.stop_keys.stop_records import Stop, StopKind
 from core.closing import ClosingStep, close_in_order
@@ -299,7 +298,7 @@ class ControlServer:
         )
         with Attempt() as talk:
             connection.send(self._hello())
-            self._memory.send_to(connection)
+            send_file(connection, self._memory.file)
             self._quiet, self._met, self._screen = 0, False, connection
             remove_note(self._folder)
             self._saved = _UNSAVED  # should it go before it has kept what was noted
@@ -353,7 +352,7 @@ class ControlServer:
             case SetInput(name, on):
                 self._set_input(name, on)
             case StopLine() if self._screen is not None:
-                obey_line(self._screen, self._stop)
+                obey_line(receive_file(self._screen), self._stop)
             case Heard(number):
                 self.outbox.heard(number)
             case Alive():

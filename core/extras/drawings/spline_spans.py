@@ -81,7 +81,7 @@ def curve_of(spans: Spans, number: int) -> Curve:
     scale = (len(points) - 1) / length
 
     def pair(u: float) -> list[list[float]]:
-        """The two points between which the curve runs at ``u``: it touches the line through them."""
+        """Return the last two weighted points of De Casteljau's construction at ``u``."""
         found = points
         while len(found) > 2:
             found = [[a + (b - a) * u for a, b in zip(p, q, strict=True)] for p, q in pairwise(found)]

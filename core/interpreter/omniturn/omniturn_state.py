@@ -192,7 +192,7 @@ _KEPT = tuple(name for name in Checkpoint._fields if name not in _NOT_OF_THE_STA
 
 
 def checkpoint_of(state: State) -> Checkpoint:
-    """All that the line that comes next inherits, to go on from there in another pass."""
+    """Return the state in which the next line begins; another pass can continue from it."""
     return Checkpoint(*(getattr(state, name) for name in _KEPT))
 
 

@@ -86,7 +86,7 @@ class Refused(NamedTuple):
     instead: str
 
     def error(self, line: int, column: int) -> ProgramError:
-        """The error to raise where one of them stands."""
+        """Return the error to raise for one of these codes."""
         return unsupported(line, column, self.name, self.instead)
 
 

@@ -31,7 +31,7 @@ class Parts(NamedTuple):
 
 
 def checkpoint_of(parts: Parts, shared: tuple[object, ...]) -> Checkpoint:
-    """All that the line that comes next inherits, to go on from there in another pass."""
+    """Return the state in which the next line begins; another pass can continue from it."""
     state = parts.state
     x, _, z = state.point
     return Checkpoint(

@@ -155,7 +155,7 @@ class _Reader:
         return own.move(Kind.FEED, line.line, "", start, 0.0)
 
     def _shift(self, block: Block) -> Point:
-        """From the frame at this place of the contour to that of the cycle's line."""
+        """Return the shift in X (radius) and Z, mm, from the frame of this block to that of the cycle."""
         return block.offset_x - self._state.offset_x, block.offset_z - self._state.offset_z
 
 

@@ -1,0 +1,61 @@
+"""Shared memory, and the line of the stop keys: file descriptors that pass through a connection."""
+
+from __future__ import annotations
+
+import mmap
+import os
+import threading
+from collections.abc import Callable
+from contextlib import suppress
+from multiprocessing.connection import Connection
+from socket import AF_UNIX, SOCK_SEQPACKET, SOCK_STREAM, fromfd, recv_fds, send_fds, socket
+
+from app.desk.stop_keys.stop_records import LONGEST, Stop
+
+_MARK = b"f"  # a descriptor needs a byte to go with
+
+
+def send_file(connection: Connection, file: int) -> None:
+    """Give a file descriptor to the process at the other end. Raises OSError."""
+    with fromfd(connection.fileno(), AF_UNIX, SOCK_STREAM) as sock:
+        send_fds(sock, [_MARK], [file])
+
+
+def receive_file(connection: Connection) -> int:
+    """Return the file descriptor that the process at the other end gives. Raises OSError and EOFError."""
+    with fromfd(connection.fileno(), AF_UNIX, SOCK_STREAM) as sock:
+        _, files, _, _ = recv_fds(sock, len(_MARK), 1)
+    if not files:
+        raise EOFError
+    return files[0]
+
+
+class SharedMemory:
+    """Memory without a file. It ends with the last process that has it. ``view`` is its bytes."""
+
+    def __init__(self, file: int) -> None:
+        self.file = file
+        self.view = memoryview(mmap.mmap(file, 0))
+
+    @classmethod
+    def of_size(cls, size: int) -> SharedMemory:
+        """Return new memory of so many bytes, all of them zero. Raises OSError."""
+        file = os.memfd_create("turndesk-scope")
+        os.ftruncate(file, size)
+        return cls(file)
+
+
+def obey_line(line: int, stop: Callable[[Stop], None]) -> None:
+    """Call ``stop`` on a thread for each record of a stop key, until the line with this descriptor ends.
+
+    The thread obeys the keys whatever the screen does meanwhile.
+    """
+    sock = socket(AF_UNIX, SOCK_SEQPACKET, fileno=line)
+    threading.Thread(target=_obey, args=(sock, stop), name="stop-keys", daemon=True).start()
+
+
+def _obey(line: socket, stop: Callable[[Stop], None]) -> None:
+    with line, suppress(OSError):
+        while record := line.recv(LONGEST):
+            with suppress(ValueError):  # a record of another version
+                stop(Stop.unpacked(record))
