@@ -12,7 +12,7 @@ STEPS = (0.0, 0.5, 1.0, 2.0)  # s by which the queue is deeper
 LATE = 0.1  # s: a tick that comes later than this is late
 CALM = 30.0  # s without a late tick after which one step is given back
 SHOWN = 0.1  # s: the steps in which a later reaction is shown
-MOST = 2.0  # s: a later reaction than this is an alarm of the watchdog
+AHEAD = 0.25  # s queued beyond the look-ahead, so that extending is not needed every tick
 
 
 class Lateness:
@@ -31,8 +31,13 @@ class Lateness:
 
     @property
     def hold_later(self) -> float:
-        """Seconds by which a hold may react later than it does on a computer that is not busy."""
-        return min(math.ceil(self._worst / SHOWN - 1e-9) * SHOWN, MOST) if self._worst >= LATE else 0.0
+        """Seconds by which a hold may react later than it does on a computer that is not busy.
+
+        They are never more than the depth of the queue: at its end the axes stop by themselves.
+        """
+        if self._worst < LATE:
+            return 0.0
+        return math.ceil(min(self._worst, self.lookahead + AHEAD) / SHOWN - 1e-9) * SHOWN
 
     def look(self, late: float, now: float) -> bool:
         """Note by how many seconds a tick came late; returns whether ``hold_later`` has grown."""

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from core.executor.lateness import Lateness
+from core.executor.lateness import AHEAD, Lateness
 from core.interpreter.shared.elementary_blocks import Block
 from core.motion.axis_limits import MotionLimits
 from core.motion.motion_path import Path, PathBuilder
@@ -21,7 +21,6 @@ from core.motion.motion_plan import plan
 from core.motion.motion_profile import Profile
 from core.ports import AxisSink, DriverError, Segments
 
-_AHEAD = 0.25  # s queued beyond the look-ahead, so that extending is not needed every tick
 _SETTLED = 0.4  # s before a plan's end within which its braking may differ from the law of a longer path
 _TRIES = 3
 _PATIENCE = 0.02  # s added to the lead when a plan came too late
@@ -275,8 +274,8 @@ class PlanQueue:
 
     def _queue(self, t: float, origin: float, profile: Profile) -> None:
         """Splice the plan from ``t`` on, as far as the look-ahead, and its tail."""
-        ahead = self._axes.now() + self._lateness.lookahead + _AHEAD
-        end = min(origin + profile.duration, max(ahead, t + _AHEAD))
+        ahead = self._axes.now() + self._lateness.lookahead + AHEAD
+        end = min(origin + profile.duration, max(ahead, t + AHEAD))
         parts = [profile.segments(t - origin, end - origin, origin)]
         tracks = [Track(t, origin, profile)]
         if end < origin + profile.duration - 1e-9:
