@@ -12,7 +12,7 @@ os.environ["QT_QPA_PLATFORM"] = "offscreen"
 
 import pytest
 import shiboken6
-from PySide6.QtCore import QCoreApplication, QEvent, QThread, QTimer
+from PySide6.QtCore import QCoreApplication, QEvent, Qt, QThread, QTimer
 from PySide6.QtWidgets import QApplication, QWidget
 from pytestqt.qtbot import QtBot
 
@@ -32,12 +32,14 @@ STALL = keyboard.STALL
 
 
 def left_over(*, collect: bool) -> list[str]:
-    """Windows, running timers and threads that nobody has put away; without ``collect`` also garbage."""
+    """Return the windows, timers, threads and mouse buttons left over; without ``collect`` also garbage."""
     QCoreApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)
     if collect:
         gc.collect()
     names = [thread.name for thread in threading.enumerate()]
     found = [f"thread {name}" for name in names if name.startswith(("loading", "editing"))]
+    if QApplication.mouseButtons() is not Qt.MouseButton.NoButton:
+        found.append("a mouse button held down")
     for thing in shiboken6.getAllValidWrappers():
         if isinstance(thing, QTimer) and thing.isActive():
             found.append(f"timer of {thing.parent()}")

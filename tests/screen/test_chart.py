@@ -84,7 +84,7 @@ def test_wheel_and_fingers_go_to_what_is_behind(parent: QWidget) -> None:
     parent.show()
     before = plot.vb.viewRange()
     assert parent.childAt(200, 200) is None
-    QTest.mousePress(parent, Qt.MouseButton.RightButton, pos=parent.rect().center())
+    QTest.mouseClick(parent, Qt.MouseButton.RightButton, pos=parent.rect().center())
     assert plot.vb.viewRange() == before
     assert chart.focusPolicy() is Qt.FocusPolicy.NoFocus
 

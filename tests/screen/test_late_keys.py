@@ -51,13 +51,17 @@ class Stall:
             self.press(Key(ord(letter.upper())), ms + 10 * number, letter)
 
     def touch_f2(self, ms: int) -> None:
-        """The mouse goes down on the place of F2, as it was drawn."""
+        """Click F2 where it was drawn."""
         window, keys = self.hands.window, self.hands.frame.keys
         at = QPointF(keys.mapTo(window, keys.spots()[1].box.center().toPoint()))
         left, none = Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier
-        event = QMouseEvent(QEvent.Type.MouseButtonPress, at, window.mapToGlobal(at), left, left, none)
-        event.setTimestamp(round(1000 * self.begun) + ms)
-        QCoreApplication.sendEvent(window_of(self.hands), event)
+        for kind, buttons in (
+            (QEvent.Type.MouseButtonPress, left),
+            (QEvent.Type.MouseButtonRelease, Qt.MouseButton.NoButton),
+        ):
+            event = QMouseEvent(kind, at, window.mapToGlobal(at), left, buttons, none)
+            event.setTimestamp(round(1000 * self.begun) + ms)
+            QCoreApplication.sendEvent(window_of(self.hands), event)
 
     def frames(self, count: int = FRAMES, seconds: float = 0.016) -> None:
         for _ in range(count):
@@ -122,6 +126,9 @@ def test_a_shift_that_was_down_then_counts(stall: Stall) -> None:
 
         def keys(self) -> frozenset[int]:
             return frozenset()  # all were let go by now
+
+        def buttons(self) -> bool:
+            return False
 
     keyboard = stall.hands.window.keyboard
     keyboard._server = Server()  # type: ignore[assignment]
