@@ -1,7 +1,7 @@
-"""Closing in steps that do not depend on each other: a step that raises or hangs keeps no other from running.
+"""Independent closing steps: a step that fails or hangs does not prevent the other steps.
 
-Each step runs on a daemon thread of its own and is waited for within a limit. A step that takes longer is
-left running and ends with the process.
+Each step runs in its own daemon thread for a limited time. A step that takes longer continues until the
+process ends.
 """
 
 from __future__ import annotations
@@ -12,19 +12,19 @@ from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
 _log = logging.getLogger(__name__)
-LIMIT = 3.0  # s for a step that has no limit of its own
+LIMIT = 3.0  # s, default limit of a step
 
 Wait = Callable[[str, threading.Event, float], bool]
 """Wait for the end of the step of this name for so many seconds at most; returns whether it has ended."""
 
 
 def wait_for(_name: str, ended: threading.Event, seconds: float) -> bool:
-    """Wait on the real clock."""
+    """Wait for the end of a step in real time; return whether the step has ended."""
     return ended.wait(seconds)
 
 
 class ClosingStep(NamedTuple):
-    """One thing to close: ``name`` for the log, and how many seconds it may take."""
+    """A function that closes one thing, with its name for the log and its time limit in seconds."""
 
     name: str
     run: Callable[[], object]
@@ -32,15 +32,18 @@ class ClosingStep(NamedTuple):
 
 
 def close_in_order(steps: Iterable[ClosingStep], wait: Wait = wait_for) -> list[str]:
-    """Run the steps one after the other. Returns the names of those that failed or did not end."""
+    """Run the steps one after the other; return the names of the steps that failed or did not end."""
     return [step.name for step in steps if not _Running(step).ends_within(step.limit, wait)]
 
 
 def close_together(steps: Iterable[ClosingStep], wait: Wait = wait_for) -> list[str]:
-    """Begin all steps at once, so that several that hang cost the limit of one. Returns as the other."""
+    """Run all steps at the same time; return the names of the steps that failed or did not end.
+
+    Several steps that hang thus cost the time limit of only one.
+    """
     begun = [_Running(step) for step in steps]
     failed: list[str] = []
-    hung = 0.0  # s that a step has used up already: the limits run side by side
+    hung = 0.0  # s already spent on a step that hangs; the limits of all steps run at the same time
     for each in begun:
         limit = max(each.step.limit - hung, 0.0)
         if not each.ends_within(limit, wait):
@@ -50,7 +53,7 @@ def close_together(steps: Iterable[ClosingStep], wait: Wait = wait_for) -> list[
 
 
 class _Running:
-    """A step that has begun."""
+    """A closing step that has started."""
 
     def __init__(self, step: ClosingStep) -> None:
         self.step = step
@@ -60,11 +63,11 @@ class _Running:
 
     @property
     def ended(self) -> bool:
-        """Whether it has ended, in good order or not."""
+        """Whether the step has ended, successfully or not."""
         return self._done.is_set()
 
     def ends_within(self, seconds: float, wait: Wait) -> bool:
-        """Whether it ends in good order within so many seconds."""
+        """Return whether the step ends successfully within this time."""
         if not wait(self.step.name, self._done, seconds):
             _log.error("closing: %s does not end within %g s", self.step.name, self.step.limit)
             return False

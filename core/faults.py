@@ -1,6 +1,6 @@
-"""What a driver can find wrong, with the code of its alarm; what has tripped, and what is unknown then.
+"""Faults that drivers report, with the codes of their alarms, and trips of a driver host.
 
-Every code here has its entry in the catalogue (``core.alarms``), with number, likely causes and remedy.
+Every code has an entry in the alarm catalog (``core.alarms``) with its number, likely causes and remedy.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ FaultCode = Literal[
     "spindle-encoder",
     "c-coupling",
     "thread-no-encoder",
-    # wires and what hangs on them
+    # wiring and connected devices
     "bus",
     "io-silent",
     "output",
@@ -61,38 +61,40 @@ FaultCode = Literal[
 
 
 class Fault(str):
-    """A fault that stands: a sentence for whoever mends it, and the alarm's code; empty when all is well.
+    """An active fault: a message with the alarm's code. An empty string means no fault.
 
-    It is a string, so that a driver without more to say can answer ``""``, and one that has several joins
-    them by ``or``.
+    Because a fault is a string, a driver without details can return ``""``, and a driver with several faults
+    can join them with ``or``.
     """
 
     __slots__ = ("code",)
     code: FaultCode
 
     def __new__(cls, text: str, code: FaultCode, **values: object) -> Fault:
-        """``text`` says which drive, wire or terminal, and what was seen; ``values`` fill its holes."""
+        """Create a fault.
+
+        ``text`` names the drive, wire or terminal and the symptom; ``values`` fill its fields.
+        """
         made = super().__new__(cls, Message(text, **values) if values else text)
         made.code = code
         return made
 
     def __reduce__(self) -> tuple[type[Fault], tuple[str, FaultCode]]:
-        """A copy keeps its code."""
+        """Return the data for a copy, including the code."""
         return Fault, (str(self), self.code)
 
 
 def code_of(fault: str, otherwise: FaultCode) -> FaultCode:
-    """The code of a fault; ``otherwise`` for a plain sentence."""
+    """Return the code of a fault, or ``otherwise`` for a plain string."""
     return fault.code if isinstance(fault, Fault) else otherwise
 
 
 class DriverError(CodedError):
-    """A driver cannot do what it was asked; the sentence says what, where and what to do.
+    """A driver cannot do a requested operation. The text has the fault, the device and a remedy.
 
-    ``values`` fill the holes of the sentence, like those of a ``Message``. ``code`` is the alarm that it
-    becomes when nobody deals with it. The code of a ``Fault`` that is handed on goes with it. ``reason``
-    tells causes with the same code apart, in lower case and with hyphens; it is empty where the code is
-    enough.
+    ``values`` fill the fields of the text, as in ``Message``. ``code`` is the code of the alarm that results
+    if the error is not handled. If ``text`` is a ``Fault``, its code is used. ``reason`` distinguishes causes
+    with the same code, in lower case with hyphens; it is empty if the code is sufficient.
     """
 
     def __init__(
@@ -104,13 +106,14 @@ class DriverError(CodedError):
 
     @property
     def fault(self) -> Fault:
-        """The same as a fault that stands."""
+        """The error as an active fault."""
         return Fault(str(self), self.code)
 
 
 class TrippedError(DriverError):
-    """What stands between control and machine has switched something off by itself, and does nothing more
-    before the control has taken note of it (``Tripping``).
+    """The driver host has switched something off and rejects commands until the trip is acknowledged.
+
+    See ``Tripping``.
     """
 
     def __init__(self, text: str) -> None:
@@ -118,10 +121,11 @@ class TrippedError(DriverError):
 
 
 class Trip(NamedTuple):
-    """What something between control and machine has switched off, because nobody told it anything.
+    """Functions that the driver host has switched off because it received no messages from the control.
 
-    ``away``: s for which it heard nothing. ``spindle``: it was to turn. ``outputs``: those that were on.
-    ``found``: on the way back, where it was the machine that was not heard: it was on all the while.
+    ``away`` is the time without messages, in seconds. ``spindle`` means that the spindle was commanded to
+    turn. ``outputs`` are the outputs that were on. ``found`` means that the machine was out of contact
+    instead, and that these functions remained on.
     """
 
     number: int
@@ -132,21 +136,23 @@ class Trip(NamedTuple):
 
 
 class Tripping(Protocol):
-    """A driver host that stops spindle and outputs when its control is silent. From then on it takes no
-    setpoint and switches nothing on, with TrippedError, until the control has acknowledged what it did.
+    """A driver host that stops the spindle and the outputs when the control is silent.
+
+    It then raises TrippedError for setpoints and for commands that switch something on, until the control
+    acknowledges the trip.
     """
 
     def tripped(self) -> Trip | None:
-        """What it has switched off and nobody has acknowledged; None: nothing."""
+        """Return the trip that is not acknowledged yet, or None."""
         ...
 
     def acknowledge(self, trip: Trip) -> None:
-        """The control knows of this very trip; a newer one stays. Raises DriverError."""
+        """Acknowledge this trip; a newer trip remains active. Raises DriverError."""
         ...
 
 
 class Unknown(StrEnum):
-    """Of what nothing is heard any more: its wire is lost, or is silent."""
+    """Parts of the machine whose state is unknown because their connection is lost or silent."""
 
     SLIDES = "slides"
     SPINDLE = "spindle"

@@ -1,9 +1,8 @@
-"""An exclusive lock on an open file, and unfinished files, which are locked until they get their name.
+"""Exclusive locks on open files, and temporary files that are locked until they receive their final name.
 
-A kill, or the mains, ends a process between the first byte and the name. What it wrote so far is nobody's:
-the next one that writes in that folder takes it away. The kernel gives the lock of a killed process back.
-
-Windows renames no file that somebody has open, so nothing is locked there, and what a kill left stays.
+If a process is killed while it writes such a file, the next writer in the folder removes the file, because
+the kernel has released its lock. Windows cannot rename open files, so temporary files are not locked there
+and remain after a crash.
 """
 
 from __future__ import annotations
@@ -18,15 +17,15 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 _RECORD = "hhqqi4x"  # type, whence, start, length, process
-_FAR = 1 << 30  # where Windows locks a byte: none that is read or written
+_FAR = 1 << 30  # position of the byte that Windows locks, outside the data that is read or written
 _ENDING = ".unfinished"
-_BESIDE = ("-journal", "-wal", "-shm")  # SQLite's, of a copy of a store
+_BESIDE = ("-journal", "-wal", "-shm")  # files that SQLite creates for a copy of a store
 
 
 def lock(file: int) -> None:
-    """Take it at once, for as long as the file is open. Raises OSError while somebody else has it.
+    """Lock the file without waiting, for as long as it is open.
 
-    A system that has neither lock goes without.
+    Raises OSError if another process has locked the file. Systems without locks are ignored.
     """
     if sys.platform == "win32":
         import msvcrt  # noqa: PLC0415
@@ -43,7 +42,10 @@ def lock(file: int) -> None:
 
 
 def mark_locked(file: int) -> None:
-    """Let ``is_locked`` see the lock of ``file``; never for a file of SQLite, which locks the same byte."""
+    """Make the lock of ``file`` visible to ``is_locked``.
+
+    Do not call it for a SQLite file, because SQLite locks the same byte.
+    """
     if sys.platform == "win32":
         return
     try:
@@ -51,15 +53,15 @@ def mark_locked(file: int) -> None:
     except ImportError:
         return
     if hasattr(fcntl, "F_OFD_SETLK"):
-        with suppress(OSError):  # a network drive may not have it
+        with suppress(OSError):  # a network drive may not support record locks
             fcntl.fcntl(file, fcntl.F_OFD_SETLK, _record(fcntl.F_WRLCK))
 
 
 def is_locked(file: int) -> bool:
-    """Return whether another open file holds the lock of ``file``; do not take it if the system can tell.
+    """Return whether another open file has locked ``file``, without locking it if possible.
 
-    Linux reports a record lock that belongs to the open file; flock has no such query. Elsewhere the lock is
-    taken for an instant: who wants it at that instant tries again.
+    Linux reports record locks of open files, but has no query for ``flock``. On other systems the file is
+    locked for an instant, so a process that tries to lock it at that instant must try again.
     """
     found = _asked(file)
     if found is not None:
@@ -72,7 +74,7 @@ def is_locked(file: int) -> bool:
 
 
 def _asked(file: int) -> bool | None:
-    """The answer of the system; None where it has none."""
+    """Return the system's information about the lock; None if the system has none."""
     if sys.platform == "win32":
         return None
     try:
@@ -89,13 +91,16 @@ def _asked(file: int) -> bool | None:
 
 
 def _record(kind: int) -> bytes:
-    """A record lock on one byte far from what is written, as the system's ``struct flock``."""
+    """Return the ``struct flock`` of a record lock on one byte outside the data."""
     return struct.pack(_RECORD, kind, os.SEEK_SET, _FAR, 1, 0)
 
 
 @contextmanager
 def unfinished_file(target: Path) -> Iterator[Path]:
-    """An empty file beside ``target``, to be written and renamed; gone afterwards. Raises OSError."""
+    """Create an empty temporary file next to ``target``, to be written and renamed; delete it afterwards.
+
+    Raises OSError if the file cannot be created.
+    """
     forget_killed(target.parent)
     handle, name = tempfile.mkstemp(prefix=f".{target.name}.", suffix=_ENDING, dir=target.parent)
     if sys.platform == "win32":
@@ -110,9 +115,9 @@ def unfinished_file(target: Path) -> Iterator[Path]:
 
 @contextmanager
 def unfinished_folder(target: Path) -> Iterator[Path]:
-    """A folder beside ``target``, for what gets its name when it is whole; gone afterwards.
+    """Create a temporary folder next to ``target``, to be filled and renamed; delete it afterwards.
 
-    Raises OSError.
+    Raises OSError if the folder cannot be created.
     """
     forget_killed(target.parent)
     folder = tempfile.mkdtemp(prefix=f".{target.name}.", suffix=_ENDING, dir=target.parent)
@@ -124,7 +129,7 @@ def unfinished_folder(target: Path) -> Iterator[Path]:
 
 
 def forget_killed(folder: Path) -> None:
-    """Take away what writers that were killed have left in a folder; what is being written stays."""
+    """Remove the temporary files of killed writers from a folder. Files that are being written remain."""
     if sys.platform == "win32":
         return
     with suppress(OSError):
@@ -138,7 +143,7 @@ def forget_killed(folder: Path) -> None:
 
 
 def _opened(path: Path) -> int:
-    """For its lock; below nought where a system opens no folders."""
+    """Return a handle for locking the path, or -1 if the system cannot open it."""
     try:
         return os.open(path, os.O_RDONLY)
     except OSError:
@@ -157,7 +162,7 @@ def _locked(handle: int) -> Iterator[None]:
 
 
 def _is_held(path: Path) -> bool:
-    """Whether somebody writes it; also where nobody can tell."""
+    """Return whether another process is writing the file; True if this is unknown."""
     handle = _opened(path)
     if handle < 0:
         return True

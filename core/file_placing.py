@@ -1,4 +1,4 @@
-"""Files that are there whole or not at all, whatever cuts the writing off, and private files."""
+"""Atomic replacement of files and folders, syncing to the disk, and access rights of private files."""
 
 from __future__ import annotations
 
@@ -9,15 +9,15 @@ import sys
 from contextlib import suppress
 from pathlib import Path
 
-NEW_FILE = 0o600  # of a file that is about to be made
+NEW_FILE = 0o600  # mode of new files
 _OWNER = 0o700
 
 
 def put_in_place(finished: Path, path: Path) -> None:
-    """``finished`` gets the name ``path`` in one step that survives a power cut.
+    """Rename ``finished`` to ``path`` in one step that survives a power failure.
 
-    Its bytes are on the disk before it has the name, and the name before this is back. Raises OSError, also
-    where the name is that of a device or a pipe: a file would take its place.
+    The data is on the disk before the rename, and the new name is on the disk afterwards. Raises OSError,
+    also if ``path`` is a device or a pipe.
     """
     if path.exists() and not path.is_file() and not path.is_dir():
         raise OSError(errno.EINVAL, "this path is a device or a pipe, not a file", str(path))
@@ -27,9 +27,10 @@ def put_in_place(finished: Path, path: Path) -> None:
 
 
 def write_in_place(path: Path, data: bytes) -> None:
-    """A file with these bytes, in a folder that is made where it is missing. Raises OSError.
+    """Write ``data`` to a file in one step; create its folder if necessary.
 
-    At every moment the old one or the new one has the name; what could not be written leaves nothing.
+    At any time ``path`` is either the old file or the new file. A failed write leaves no file. Raises
+    OSError.
     """
     make_folder(path.parent)
     unfinished = path.with_name(f".{path.name}.new")
@@ -43,7 +44,7 @@ def write_in_place(path: Path, data: bytes) -> None:
 
 
 def folder_in_place(finished: Path, folder: Path) -> None:
-    """The same for a folder with all that is in it; ``folder`` is not there, or empty. Raises OSError."""
+    """Rename a complete folder to ``folder``, which must be missing or empty, and sync it. Raises OSError."""
     for inside in (*finished.rglob("*"), finished):
         if inside.is_dir():
             folder_to_disk(inside)
@@ -54,7 +55,7 @@ def folder_in_place(finished: Path, folder: Path) -> None:
 
 
 def make_folder(folder: Path) -> None:
-    """The folder, and those above it, each on the disk under its name. Raises OSError."""
+    """Create a folder and its parents, and sync each new name to the disk. Raises OSError."""
     if folder.is_dir():
         return
     make_folder(folder.parent)
@@ -63,9 +64,9 @@ def make_folder(folder: Path) -> None:
 
 
 def folder_to_disk(folder: Path) -> None:
-    """The names in a folder are on the disk. Raises OSError."""
+    """Sync the names in a folder to the disk. Raises OSError."""
     if sys.platform == "win32":
-        return  # Windows opens no folders; its own journal keeps the names
+        return  # Windows cannot open folders, but journals their names
     handle = os.open(folder, os.O_RDONLY)
     try:
         os.fsync(handle)
@@ -74,22 +75,22 @@ def folder_to_disk(folder: Path) -> None:
 
 
 def all_to_disk() -> None:
-    """Everything that was written anywhere, where the system can be asked for that; Windows cannot."""
+    """Sync all written files to the disk, except on Windows, which does not support it."""
     if hasattr(os, "sync"):
         os.sync()
 
 
 def bytes_to_disk(path: Path) -> None:
-    """What is in a file is on the disk. Raises OSError."""
-    # Windows brings to the disk only what is open for writing; elsewhere a file may be read-only.
+    """Sync the contents of a file to the disk. Raises OSError."""
+    # Windows syncs only files that are open for writing. On other systems the file may be read-only.
     with path.open("r+b" if sys.platform == "win32" else "rb") as file:
         os.fsync(file.fileno())
 
 
 def restrict(path: Path) -> None:
-    """Take the rights of all other users away from a file or a folder.
+    """Remove the access rights of all other users from a file or folder.
 
-    A file of another owner stays as it is, and so does a folder like /tmp, in which every user may write.
+    A file of another owner remains unchanged, and so does a folder like /tmp, to which all users may write.
     """
     with suppress(OSError):
         mode = stat.S_IMODE(path.stat().st_mode)
@@ -98,7 +99,7 @@ def restrict(path: Path) -> None:
 
 
 def restrict_folder(folder: Path) -> None:
-    """Restrict a folder and the files directly in it. Do nothing if the folder does not exist."""
+    """Restrict a folder and the files directly in it. A missing folder is ignored."""
     if not folder.is_dir():
         return
     restrict(folder)

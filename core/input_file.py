@@ -1,7 +1,7 @@
-"""The door for files from outside: regular files of a stated size, one error for any failure; TOML.
+"""Reading of input files: regular files of limited size, uniform errors, and TOML.
 
-A reader takes its bytes from ``input_bytes``, which raises nothing but OSError, and parses them within
-``failures_as``, which turns whatever the parser raises into the reader's own error.
+A reader calls ``input_bytes``, which raises only OSError, and parses the data within ``failures_as``, which
+converts all exceptions of the parser into the reader's own error.
 """
 
 from __future__ import annotations
@@ -17,28 +17,29 @@ from pathlib import Path
 from core.message import CodedError, Message
 
 MB = 1024 * 1024
-# A pipe without a writer would keep whoever opens it; a terminal is not to become the one of this process.
+# Opening a pipe without a writer must not block. A terminal must not become the process's controlling
+# terminal.
 _FLAGS = getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_NOCTTY", 0)
 
 
 class NotAFileError(OSError):
-    """The name is that of a folder, a device, a pipe or a socket."""
+    """The path is a folder, a device, a pipe or a socket."""
 
 
 class TooLargeError(OSError):
-    """The file has more bytes than any of its kind."""
+    """The file is larger than the limit for its kind."""
 
 
 def open_input(path: Path, most: int | None = None) -> BufferedReader:
-    """Open a regular file of at most ``most`` bytes without waiting for it. Raises OSError alone.
+    """Open a regular file of at most ``most`` bytes without blocking. Raises only OSError.
 
-    Without ``most`` the file may have any size: the caller reads a part of it.
+    None as ``most`` permits any size, for callers that read only part of the file.
     """
     try:
         file = open(path, "rb", opener=lambda name, flags: os.open(name, flags | _FLAGS))  # noqa: SIM115
     except IsADirectoryError as error:
         raise NotAFileError(errno.EINVAL, "this path is a folder, not a file", str(path)) from error
-    except ValueError as error:  # a zero byte in the name
+    except ValueError as error:  # the name contains a zero byte
         raise OSError(errno.EINVAL, "a file cannot have this name", str(path)) from error
     try:
         _check(path, os.fstat(file.fileno()), most)
@@ -56,16 +57,17 @@ def _check(path: Path, status: os.stat_result, most: int | None) -> None:
 
 
 def input_bytes(path: Path, most: int) -> bytes:
-    """Return what a regular file of at most ``most`` bytes holds. Raises OSError alone."""
+    """Return the contents of a regular file of at most ``most`` bytes. Raises only OSError."""
     with open_input(path, most) as file:
         data = file.read(most + 1)
-    if len(data) > most:  # another process is still writing it, or its file system does not know its size
+    # another process is still writing the file, or its file system does not report its size
+    if len(data) > most:
         raise _too_large(path, most)
     return data
 
 
 def input_text(path: Path, most: int, encoding: str = "utf-8") -> str:
-    """Return the text of such a file with ``\\n`` as its line ends. Raises OSError, UnicodeDecodeError."""
+    r"""Return the text of a regular file with ``\n`` as line ends. Raises OSError or UnicodeDecodeError."""
     return input_bytes(path, most).decode(encoding).replace("\r\n", "\n")
 
 
@@ -77,7 +79,7 @@ def _too_large(path: Path, most: int) -> TooLargeError:
 
 @contextmanager
 def failures_as(refusal: Callable[[Exception], Exception]) -> Iterator[None]:
-    """Raise ``refusal(error)`` instead of any error of a parser; errors with a code are sentences already."""
+    """Convert every exception of a parser into ``refusal(error)``, except exceptions of type CodedError."""
     try:
         yield
     except CodedError:
@@ -87,7 +89,10 @@ def failures_as(refusal: Callable[[Exception], Exception]) -> Iterator[None]:
 
 
 def toml_tables(text: str) -> dict[str, object]:
-    """Return the tables of a TOML text. Raises ValueError alone, with the cause and, if known, the place."""
+    """Return the tables of a TOML text.
+
+    Raises only ValueError, with the cause and, if known, the location.
+    """
     import tomllib  # noqa: PLC0415  few of those who open files read TOML
 
     try:
@@ -96,5 +101,5 @@ def toml_tables(text: str) -> dict[str, object]:
         raise
     except RecursionError as error:
         raise ValueError("brackets are nested too deeply; remove the inner ones") from error
-    except ValueError as error:  # Python's own words for an integer that it does not convert
+    except ValueError as error:  # Python rejects integers with too many digits
         raise ValueError("a whole number has too many digits; shorten it") from error

@@ -1,4 +1,4 @@
-"""Keys of machine-readable output, as their builders declare them for the reference and its tests."""
+"""Declarations of the keys in machine-readable output, for the reference page and its tests."""
 
 from __future__ import annotations
 
@@ -11,9 +11,11 @@ _TYPES = {str: "string", int: "integer", float: "number", bool: "boolean", NoneT
 
 
 class Key(NamedTuple):
-    """One key. ``name`` is its path: ``.`` leads into an object, ``[]`` into a list, ``*`` is any key.
+    """A key of a JSON output.
 
-    ``type`` is one or more of string, number, integer, boolean, object, list and null, with "or" between.
+    ``name`` is the path of the key: ``.`` leads into an object, ``[]`` into a list, and ``*`` matches any
+    key. ``type`` is string, number, integer, boolean, object, list or null, or several of them joined by
+    "or".
     """
 
     name: str
@@ -23,7 +25,7 @@ class Key(NamedTuple):
 
 
 class Output(NamedTuple):
-    """What one command prints with ``--json``."""
+    """The output of one command with ``--json``."""
 
     command: str
     purpose: str
@@ -31,15 +33,15 @@ class Output(NamedTuple):
 
 
 def keys(text: str) -> tuple[Key, ...]:
-    """Return the keys of a table of text: ``name | type | unit | meaning``.
+    """Return the keys declared by a table of text with lines ``name | type | unit | meaning``.
 
-    Each key has one line; an indented line continues the line above.
+    An indented line continues the line above.
     """
     return tuple(Key(*_cells(line, 4)) for line in _lines(text))
 
 
 def row_keys(path: str, row: type[tuple[object, ...]] | type[object], text: str) -> tuple[Key, ...]:
-    """Return the keys of a row type below ``path``; ``text`` has ``name | unit | meaning`` of each field.
+    """Return the keys of a row type below ``path``; ``text`` has lines ``name | unit | meaning``.
 
     Raises ValueError if ``text`` does not have exactly the fields of the type, in their order.
     """
@@ -51,12 +53,12 @@ def row_keys(path: str, row: type[tuple[object, ...]] | type[object], text: str)
 
 
 def below(path: str, declared: Collection[Key]) -> tuple[Key, ...]:
-    """Return keys as they are named below a path."""
+    """Return keys with a path put in front of their names."""
     return tuple(key._replace(name=f"{path}{key.name}") for key in declared)
 
 
 def json_type(hint: object) -> str:
-    """Return the JSON type of an annotation."""
+    """Return the JSON type for a type annotation."""
     if get_origin(hint) is UnionType:
         return " or ".join(json_type(each) for each in get_args(hint))
     if hint in _TYPES and isinstance(hint, type):
@@ -69,7 +71,7 @@ def json_type(hint: object) -> str:
 
 
 def found_in(value: object, declared: Collection[Key]) -> Iterator[tuple[str, object]]:
-    """Yield the path and the value of every key in a JSON value, named as the declarations name it."""
+    """Yield the declared path and the value of every key in a JSON value."""
     yield from _walk(value, "", _known(declared))
 
 
@@ -108,7 +110,7 @@ def _joined(path: str, name: str) -> str:
 
 
 def _known(declared: Collection[Key]) -> frozenset[str]:
-    """Return every declared path and the paths of the objects above it."""
+    """Return every declared path and the paths of the objects that contain it."""
     known = set[str]()
     for key in declared:
         parts = key.name.split(".")
@@ -117,7 +119,7 @@ def _known(declared: Collection[Key]) -> frozenset[str]:
 
 
 def _lines(text: str) -> list[str]:
-    """Return the lines of a table; an indented line continues the line above."""
+    """Return the lines of a table; an indented line is joined to the line above."""
     lines: list[str] = []
     for line in filter(str.strip, text.splitlines()):
         if line.startswith(" "):

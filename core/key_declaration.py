@@ -1,4 +1,4 @@
-"""How a key of the machine file is declared: once, on the attribute that holds its value."""
+"""Declaration of machine-file keys on the attributes that hold their values."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from enum import Enum, StrEnum
 from functools import cache
 from typing import Any, NamedTuple, TypeVar, dataclass_transform
 
-# --- Units of a machine file. The file writes its own; the model has mm, seconds, degrees, rpm.
+# --- Units of a machine file. The file has its own units; the model has mm, seconds, degrees and rpm.
 
 
 INCH = 25.4
 
 
 class Unit(StrEnum):
-    """What a number of the file means; the word is what a finding shows, ``len`` is the file's in or mm."""
+    """Unit of a number in the machine file, as shown in findings; ``len`` means in or mm."""
 
     PLAIN = ""
     LENGTH = "len"
@@ -34,7 +34,7 @@ class Unit(StrEnum):
     KILOWATTS = "kW"
 
 
-# A division where there is one, so that 300 in/min gives the very number that an F300 word gives.
+# Divisors instead of factors, so that 300 in/min gives exactly the same number as the word F300.
 _DIVISOR = {
     Unit.FEED: 60.0,
     Unit.DEGREES_PER_MINUTE: 60.0,
@@ -46,36 +46,36 @@ LENGTHS = frozenset((Unit.LENGTH, Unit.FEED, Unit.ACCEL))
 
 
 def to_model(value: float, unit: Unit, inch: bool) -> float:
-    """A number of the file in the model's unit."""
+    """Return a number of the machine file in the unit of the model."""
     length = value * INCH if inch and unit in LENGTHS else value
     return length * _MULTIPLIER.get(unit, 1.0) / _DIVISOR.get(unit, 1.0)
 
 
 def to_file(value: float, unit: Unit, inch: bool) -> float:
-    """A number of the model in the file's unit."""
+    """Return a number of the model in the unit of the machine file."""
     number = value * _DIVISOR.get(unit, 1.0) / _MULTIPLIER.get(unit, 1.0)
     return number / INCH if inch and unit in LENGTHS else number
 
 
 def word(unit: Unit, inch: bool) -> str:
-    """The unit as the file's owner would write it, with a space before it."""
+    """Return the unit as text with a space in front, with in or mm for lengths; empty for plain numbers."""
     text = unit.value.replace("len", "in" if inch else "mm")
     return f" {text}" if text else ""
 
 
 def shown(value: float, unit: Unit, inch: bool) -> str:
-    """A number of the model in the file's unit, for a sentence."""
+    """Return a number of the model as text with the unit of the machine file."""
     return f"{to_file(value, unit, inch):.6g}{word(unit, inch)}"
 
 
 Pair = tuple[float, float]
 Triple = tuple[float, float, float]
 Value = float | bool | str | Pair | Triple | tuple[float, ...]
-Words = str  # a list of words, kept as one text with spaces between them
+Words = str  # a list of words, stored as one text separated by spaces
 
 
 class Kind(Enum):
-    """The shapes a value may have; the text says it in a finding."""
+    """Kinds of values, with their descriptions in findings."""
 
     NUMBER = "a number"
     WHOLE = "a whole number"
@@ -85,15 +85,16 @@ class Kind(Enum):
     TRIPLE = "three numbers, [x, y, z]"
     NUMBERS = "one to four numbers, [first, second]"
     CHOICE = "one of"
-    WORDS = 'a list of words, such as ["one", "another"]'  # kept as one text, with blanks between them
+    WORDS = 'a list of words, such as ["one", "another"]'  # stored as one text separated by spaces
 
 
 @dataclass(frozen=True, slots=True)
 class Field:
-    """One key: kind, unit, range in the model's unit, and the default; None: the key is required.
+    """A key of the machine file: its kind, unit, range in the model's unit, and default.
 
-    ``attribute`` holds its value. ``derived``: the default follows from other values of the file
-    (``machine_defaults.py``). ``meaning`` is what the reference of the machine file says about the key.
+    The key is required if ``default`` is None. ``attribute`` is the attribute that holds the value.
+    ``derived`` means that the default depends on other values of the file (``machine_defaults.py``).
+    ``meaning`` is the text of the reference page.
     """
 
     key: str
@@ -108,11 +109,11 @@ class Field:
     meaning: str
 
 
-# --- Declarations: the schema of a table follows from its class, and so does the object with its values.
+# --- Declarations. A class declares the schema of a table, and its instances hold the values.
 
 
 class Range(NamedTuple):
-    """The lowest and the highest value of a number, in the model's unit, and the unit in the file."""
+    """Minimum and maximum of a number in the model's unit, and its unit in the file."""
 
     low: float = 0.0
     high: float = 0.0
@@ -120,7 +121,7 @@ class Range(NamedTuple):
 
 
 class _Key(NamedTuple):
-    """A key before its class exists; without ``name`` it is named as its attribute."""
+    """A declared key before its class exists; an empty ``name`` means the name of the attribute."""
 
     range: Range
     meaning: str
@@ -141,10 +142,10 @@ def file_key(
     derived: bool = False,
     secret: bool = False,
 ) -> Any:
-    """Declare a key on an attribute of a class, whose annotation is the kind of the value.
+    """Declare a key on an attribute of a class. The annotation of the attribute is the kind of the value.
 
-    ``name`` is the key in the file if it is not the name of the attribute. A ``secret`` value is not printed.
-    The other arguments are those of ``Field``.
+    ``name`` is the key in the file if it differs from the attribute's name. A ``secret`` value is not
+    printed. The other arguments are described in ``Field``.
     """
     return _Key(range, meaning, name, default, choices, derived, secret)
 
@@ -160,12 +161,13 @@ _KINDS = {
     "Words": Kind.WORDS,
 }
 _Table = TypeVar("_Table")
-_declared: dict[type, Mapping[str, object]] = {}  # of each key_table, whose class has defaults instead
+# the keys declared by each class with ``key_table``, which replaces them by defaults
+_declared: dict[type, Mapping[str, object]] = {}
 
 
 @dataclass_transform(frozen_default=True, field_specifiers=(file_key, field))
 def key_table(table: type[_Table]) -> type[_Table]:
-    """Make a frozen dataclass with slots of a class that declares keys."""
+    """Convert a class that declares keys into a frozen dataclass with slots."""
     declared = dict(vars(table))
     for name, each in declared.items():
         if not isinstance(each, _Key):
@@ -179,11 +181,11 @@ def key_table(table: type[_Table]) -> type[_Table]:
     return made
 
 
-Schema = type | tuple[Field, ...]  # a class that declares keys, or the keys
+Schema = type | tuple[Field, ...]  # a class that declares keys, or the keys themselves
 
 
 def keys_of(table: Schema) -> tuple[Field, ...]:
-    """Return the keys that a class declares, in their order."""
+    """Return the keys that a class declares, in order."""
     return table if isinstance(table, tuple) else _keys_of_class(table)
 
 

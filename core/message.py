@@ -1,4 +1,4 @@
-"""Text for people as a template with named values, errors with codes, and the nearest known word."""
+"""Texts for users as templates with named values, errors with codes, and search for similar words."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ CASES: dict[str, Callable[[str], str]] = {
 
 
 class Message(str):
-    """An English text that keeps its template and its values.
+    """A text in English that retains its template and its values, for translation.
 
-    It is an ordinary ``str`` for code that only reads it. ``template`` is the English text with holes as
-    ``str.format`` takes them, without format specifications. ``values`` are the values of the holes by name;
-    a value may be a ``Message``. ``case`` is how capitals were changed, one of ``CASES`` or empty.
+    For code that only reads it, a message is an ordinary ``str``. ``template`` has fields as for
+    ``str.format``, without format specifications. ``values`` are the values of the fields by name; a value
+    may be a ``Message``. ``case`` is the change of capitals, one of ``CASES`` or empty.
     """
 
     __slots__ = ("case", "template", "values")
@@ -30,7 +30,7 @@ class Message(str):
     case: str
 
     def __new__(cls, template: str, /, **values: object) -> Self:
-        """Put the values into the template; a value that is no text and no number becomes ``str(value)``."""
+        """Fill the template with the values. A value that is not text or a number becomes ``str(value)``."""
         named = ((name, values[name]) for name in _names_of(template))
         known = {name: each if isinstance(each, Value) else str(each) for name, each in named}
         made = super().__new__(cls, template.format(**known))
@@ -38,11 +38,11 @@ class Message(str):
         return made
 
     def __str__(self) -> str:
-        """Return the message itself: the text of an exception keeps its template and its values."""
+        """Return the message itself, so that the text of an exception retains template and values."""
         return self
 
     def __reduce__(self) -> tuple[object, ...]:
-        """Return how another process makes the same message."""
+        """Return the data with which another process recreates the message."""
         return make_message, (self.template, self.values, self.case)
 
     def upper(self) -> Message:
@@ -50,15 +50,15 @@ class Message(str):
         return self._in_case("upper")
 
     def lower(self) -> Message:
-        """Return the message in small letters, with the same template and values."""
+        """Return the message in lower case, with the same template and values."""
         return self._in_case("lower")
 
     def capitalize(self) -> Message:
-        """Return the message with a capital first and small letters after it."""
+        """Return the message with a capital first letter and all other letters in lower case."""
         return self._in_case("capitalize")
 
     def as_sentence(self) -> Message:
-        """Return the message with a capital first; the other letters stay."""
+        """Return the message with a capital first letter; the other letters remain unchanged."""
         return self._in_case("sentence")
 
     def _in_case(self, case: str) -> Message:
@@ -68,9 +68,9 @@ class Message(str):
 
 
 def worded(text: str, values: Mapping[str, object]) -> str:
-    """Put values into a text, floats with six digits at most.
+    """Fill a text with values, formatting floats with at most six digits.
 
-    A message has its values already; without values a text stays as it is.
+    A ``Message``, or a text without values, is returned unchanged.
     """
     if not values or isinstance(text, Message):
         return text
@@ -85,22 +85,22 @@ def _names_of(template: str) -> tuple[str, ...]:
 
 
 def make_message(template: str, values: dict[str, Value], case: str = "") -> Message:
-    """Return the message of a template, its values and its case; raises KeyError if a value is missing."""
+    """Return the message with this template, these values and case. Raises KeyError if a value is missing."""
     made = Message(template, **values)
     return made._in_case(case) if case else made
 
 
 def join_messages(separator: str, parts: Iterable[str]) -> Message:
-    """Return the parts with a separator between them; each part is translated separately."""
+    """Return the parts joined by a separator; each part is translated separately."""
     values = {f"part{number}": part for number, part in enumerate(parts)}
     between = separator.replace("{", "{{").replace("}", "}}")
     return Message(between.join(f"{{{name}}}" for name in values), **values)
 
 
 def named_values(text: str) -> dict[str, Value]:
-    """Return the values of a message by name, with those of the messages among its values; else empty.
+    """Return the values of a message and of the messages inside it, by name; {} for a plain text.
 
-    Of two values of the same name, the outer one is returned.
+    If two values have the same name, the outer value is returned.
     """
     if not isinstance(text, Message):
         return {}
@@ -114,14 +114,14 @@ def _plain(value: Value) -> Value:
 
 
 def pack_message(text: str) -> str:
-    """Return template, values and case of a message as JSON, to be stored; empty for any other text."""
+    """Return template, values and case of a message as JSON for storage; empty for a plain text."""
     import json  # noqa: PLC0415  only what is stored is packed
 
     return json.dumps(_packed(text), ensure_ascii=False) if isinstance(text, Message) else ""
 
 
 def unpack_message(packed: str, text: str) -> str:
-    """Return the message that was packed; ``text`` if there is none or if it is not the same text."""
+    """Return the message packed as JSON, or ``text`` if ``packed`` is empty, invalid or a different text."""
     if not packed:
         return text
     import json  # noqa: PLC0415  only what is stored is packed
@@ -151,10 +151,9 @@ def _unpacked(stored: object) -> Any:
 
 
 class CodedError(Exception):
-    """An error with a text for the reader and a code for programs and tests.
+    """An error with a text for users and a code for programs and tests.
 
-    ``code`` names the fault in kebab case, such as ``disk-full``. It is empty where nothing needs to
-    distinguish the faults.
+    ``code`` identifies the fault in kebab case, such as ``disk-full``. It is empty if no code is needed.
     """
 
     def __init__(self, text: str = "", code: str = "") -> None:
@@ -163,12 +162,12 @@ class CodedError(Exception):
 
 
 def error_code(error: BaseException) -> str:
-    """Return the code of an error that another error replaces, or an empty code where it has none."""
+    """Return the code of an error, for an error that replaces it; empty if the error has no code."""
     return error.code if isinstance(error, CodedError) else ""
 
 
 def nearest(word: str, known: Iterable[str]) -> str:
-    """The known word that is most like ``word``, empty where none is."""
+    """Return the known word most similar to ``word``; empty if none is similar."""
     from difflib import get_close_matches  # noqa: PLC0415  only who has mistyped waits for it
 
     return next(iter(get_close_matches(word, list(known), n=1)), "")

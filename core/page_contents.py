@@ -1,4 +1,4 @@
-"""Table of contents of a generated page, with the anchors that GitHub gives to headings."""
+"""Table of contents of a generated page, with the anchors that GitHub assigns to headings."""
 
 from __future__ import annotations
 

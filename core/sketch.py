@@ -1,4 +1,4 @@
-"""The sketch of a shape: outlines and dimensions, of which each is a field. Z to the right, radius up."""
+"""Sketch of a shape: outlines and dimensions, with Z to the right and the radius upward."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ Point = tuple[float, float]
 
 @dataclass(frozen=True, slots=True)
 class Outline:
-    """A polyline; ``ink``: part, cut (what this shape makes), tool or axis."""
+    """A polyline; ``ink`` is part, cut (the result of the shape), tool or axis."""
 
     points: tuple[Point, ...]
     ink: str = "part"
@@ -19,9 +19,9 @@ class Outline:
 
 @dataclass(frozen=True, slots=True)
 class Dim:
-    """A dimension from ``a`` to ``b``, drawn ``away`` from them; with ``a`` alone its figure stands there.
+    """A dimension from ``a`` to ``b``, drawn at the distance ``away``; without ``b``, a number at ``a``.
 
-    ``word`` is that of its field, ``before`` a sign before the figure.
+    ``word`` is the label of its field. ``before`` is a sign in front of the number.
     """
 
     word: str
@@ -33,14 +33,14 @@ class Dim:
 
 @dataclass(frozen=True, slots=True)
 class Sketch:
-    """What is drawn, in units of its own; the axis is at radius 0. ``wide``: along Z and radius alike."""
+    """Outlines and dimensions in any unit; the spindle axis is at radius 0."""
 
     outlines: tuple[Outline, ...] = ()
     dims: tuple[Dim, ...] = field(default=())
 
 
 def sketch(*outlines: Outline, dims: Iterable[Dim] = ()) -> Sketch:
-    """With the axis drawn."""
+    """Return a sketch of these outlines and dimensions, with the spindle axis added."""
     ends = [p[0] for each in outlines for p in each.points]
     low, high = min(ends, default=0.0), max(ends, default=1.0)
     room = 0.05 * (high - low or 1.0)
@@ -49,22 +49,22 @@ def sketch(*outlines: Outline, dims: Iterable[Dim] = ()) -> Sketch:
 
 
 def part(*points: Point) -> Outline:
-    """The part, closed along the axis."""
+    """Return the outline of the part, closed along the axis."""
     return Outline(points, "part", closed=True)
 
 
 def cut(*points: Point) -> Outline:
-    """What this shape cuts."""
+    """Return the outline that the shape cuts."""
     return Outline(points, "cut")
 
 
 def tool(*points: Point) -> Outline:
-    """The tool."""
+    """Return the closed outline of the tool."""
     return Outline(points, "tool", closed=True)
 
 
 def turned(profile: Sequence[Point], bar: float) -> tuple[Outline, ...]:
-    """A profile from the face on, up to the bar behind it."""
+    """Return the outlines of a turned profile: the part including the bar after the profile, and the cut."""
     back = min(z for z, _ in profile)
     deep = 0.3 * max(abs(back), bar / 2.0, 0.1)
     face = profile[0][0]

@@ -1,4 +1,4 @@
-"""How a table of the machine file is declared, and the one reader that checks any of them."""
+"""Declaration of the tables of a machine file, and the reader that checks them."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from core.message import CodedError, Message, nearest
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
-# --- What is wrong with a machine file: all of it at once, each with path, value and what was expected.
+# --- Findings in a machine file, all reported together, each with path, value and expected value.
 
 
 class Finding(NamedTuple):
-    """One thing that is wrong: the key's path, the value as the file has it, what would be right.
+    """An error in a machine file: path of the key, value in the file, and expected value.
 
-    ``code`` names the fault for tests, as in ``CodedError``.
+    ``code`` identifies the error for tests, as in ``CodedError``.
     """
 
     path: str
@@ -30,13 +30,13 @@ class Finding(NamedTuple):
 
     def __str__(self) -> str:
         where = f"{self.path} = {self.value}" if self.value else self.path
-        return " ".join(f"{where}: {self.expected}".splitlines())  # a key of TOML may hold a line end
+        return " ".join(f"{where}: {self.expected}".splitlines())  # a TOML key may contain a line break
 
 
 class MachineFileError(CodedError):
-    """A machine file cannot be used. ``errors`` holds every finding, ``source`` the file's name.
+    """A machine file cannot be used. ``errors`` has all findings, and ``source`` the name of the file.
 
-    ``code`` holds the codes of the findings, in their order.
+    ``code`` has the codes of the findings in order.
     """
 
     def __init__(self, errors: Sequence[Finding], source: str) -> None:
@@ -55,9 +55,9 @@ _NUMERIC = frozenset((Kind.NUMBER, Kind.WHOLE, Kind.PAIR, Kind.TRIPLE, Kind.NUMB
 
 @dataclass(frozen=True, slots=True)
 class TableReference:
-    """A table as the reference of the machine file shows it.
+    """Description of a table for the reference page of the machine file.
 
-    ``heading`` is the table's name in the file, with … in the place of a name that the owner chooses.
+    ``heading`` is the table's name in the file, with … in place of a name that the owner chooses.
     """
 
     heading: str
@@ -66,19 +66,22 @@ class TableReference:
 
 
 class Values:
-    """Values by path in the model's units; lengths are known only once the file's unit is."""
+    """Values of a machine file by path, in the model's units.
+
+    Lengths can be read only when the unit of the file is known.
+    """
 
     def __init__(self, inch: bool | None) -> None:
         self.inch = inch
         self.found: dict[str, Value] = {}
-        self.wrong: set[str] = set()  # refused or missing: it draws no second finding elsewhere
-        self.left_out: dict[str, Field] = {}  # derived values that the file does not say
+        self.wrong: set[str] = set()  # invalid or missing values, which cause no further findings
+        self.left_out: dict[str, Field] = {}  # derived values that are not in the file
 
     def has(self, *paths: str) -> bool:
         return all(path in self.found for path in paths)
 
     def stated(self, path: str) -> bool:
-        """Whether the file says it, rightly or wrongly."""
+        """Return whether the file contains the value, valid or invalid."""
         return path in self.found or path in self.wrong
 
     def number(self, path: str) -> float:
@@ -94,7 +97,7 @@ class Values:
         return str(self.found[path])
 
     def says(self, path: str, text: str) -> bool:
-        """Whether the file rightly says this word there."""
+        """Return whether the file has this valid text at the path."""
         return self.has(path) and self.text(path) == text
 
     def whole(self, path: str) -> int:
@@ -115,9 +118,9 @@ class Values:
     def model(
         self, kind: type[_Model], path: str, keys: Mapping[str, str] = {}, /, **given: object
     ) -> _Model:
-        """A table as a dataclass, once nothing is wrong with it.
+        """Return a table as a dataclass, if it has no errors.
 
-        A field has the value of its key, or of the key that ``keys`` names for it, or is ``given``.
+        A field gets the value of its key, of the key that ``keys`` specifies for it, or from ``given``.
         """
         keys = keys or {each.attribute: each.key for each in keys_of(kind)}
         names = [field.name for field in fields_of(kind) if field.name not in given]
@@ -125,8 +128,8 @@ class Values:
         return kind(**said, **given)
 
 
-# Keys whose values hold passwords or tokens: also addresses, which have them in front of @, in the path or
-# behind the question mark. A removed key is still in older files, which are compared with newer ones.
+# Keys whose values contain passwords or tokens. Addresses may contain them before @, in the path or after the
+# question mark. A removed key may still occur in older files, which are compared with newer ones.
 _SECRETS = frozenset(
     {
         "announce.hook",
@@ -139,7 +142,7 @@ _SECRETS = frozenset(
     }
 )
 HIDDEN = "***"
-# Keys of earlier versions, with what to use in their place.
+# Keys of earlier versions, with their replacements.
 _REMOVED = {
     "sharing.git": (
         "sharing by git was removed; use a folder (key folder) or a PostgreSQL database (key postgresql)"
@@ -148,7 +151,7 @@ _REMOVED = {
 
 
 def written(value: object) -> str:
-    """A value the way TOML writes it, short enough for a sentence."""
+    """Return a value in TOML syntax, shortened for a message."""
     if isinstance(value, bool):
         return "true" if value else "false"
     text = f'"{value}"' if isinstance(value, str) else str(value)
@@ -156,7 +159,7 @@ def written(value: object) -> str:
 
 
 def written_openly(path: str, value: object) -> str:
-    """A value as TOML writes it, hidden if it holds a password or a token."""
+    """Return a value in TOML syntax, masked if it contains a password or token."""
     return HIDDEN if path in _SECRETS else written(value)
 
 
@@ -165,7 +168,7 @@ def joined(path: str, key: str) -> str:
 
 
 def unknown_keys(table: Mapping[str, object], known: list[str], path: str) -> list[Finding]:
-    """A finding for every key nobody reads, with the nearest one that is read, or what replaces it."""
+    """Return a finding for every unknown key, with the most similar known key or its replacement."""
     found = []
     for key in table:
         place = joined(path, key)
@@ -185,9 +188,9 @@ def unknown_keys(table: Mapping[str, object], known: list[str], path: str) -> li
 def read_table(
     table: object, keys: Schema, path: str, values: Values, children: tuple[str, ...] = ()
 ) -> list[Finding]:
-    """Puts every good value of ``table`` into ``values`` under ``path``; returns what is wrong.
+    """Store all valid values of ``table`` in ``values`` under ``path``; return the findings.
 
-    ``children`` are tables inside that somebody else reads.
+    ``children`` are inner tables that are read elsewhere.
     """
     if not isinstance(table, dict):
         return [
@@ -225,7 +228,7 @@ def _default(field: Field, place: str, values: Values) -> list[Finding]:
 
 
 def missing(place: str, field: Field, inch: bool | None) -> Finding:
-    """The finding about a value that the file has to say and does not."""
+    """Return the finding for a required value that is missing."""
     return Finding(
         place,
         "",
@@ -260,18 +263,18 @@ def _is_words(raw: object) -> bool:
 
 
 def _parts(raw: object) -> list[float]:
-    """The numbers in a value: none, one or two. A whole number too large for a float counts as endless."""
+    """Return the numbers in a value. Whole numbers too large for a float become infinite."""
     numbers = [part for part in (raw if isinstance(raw, list) else [raw]) if _number(part)]
     return [float(part) if abs(part) < _HUGE else inf for part in numbers]
 
 
 def _problem(raw: object, field: Field, inch: bool | None) -> str:
-    """What was expected instead of ``raw``, or nothing. NaN fails every range."""
+    """Return the expected value if ``raw`` is invalid, otherwise an empty text. NaN is always invalid."""
     if not _shape_is_right(raw, field):
         return _expected(field, inch)
     if field.kind not in _NUMERIC or (inch is None and field.unit in LENGTHS):
         return ""
-    # A bound written in inches is no binary number.
+    # A bound in inches is not an exact binary number.
     low, high = field.low - 1e-9 * abs(field.low), field.high + 1e-9 * abs(field.high)
     parts = _parts(raw)
     inside = all(low <= to_model(part, field.unit, bool(inch)) <= high for part in parts)
@@ -306,7 +309,7 @@ def _expected(field: Field, inch: bool | None) -> str:
 
 
 def raw_at(data: object, path: str) -> object:
-    """What stands in a parsed file at a path; None: nothing."""
+    """Return the value at a path of a parsed file, or None."""
     for key in path.split("."):
         data = data.get(key) if isinstance(data, dict) else None
     return data
@@ -317,28 +320,28 @@ def raw_at(data: object, path: str) -> object:
 
 @dataclass(frozen=True, slots=True)
 class FileReading:
-    """A machine file of which the tables are read: what a driver may look at for its own rules and values."""
+    """A machine file while its tables are read, for the rules and values of drivers."""
 
     data: Mapping[str, object]
     values: Values
-    axes: tuple[str, ...]  # of the machine
-    terminals: Mapping[str, str]  # of its inputs and outputs, by path: io.in.start → where it is wired
-    tables: tuple[str, ...]  # paths of the tables of drivers that are there
-    elsewhere: Mapping[str, str]  # inputs at a device that no backend knows, such as a pendant, by path
-    prefixes: tuple[str, ...]  # that begin the addresses at such devices
+    axes: tuple[str, ...]  # axes of the machine
+    terminals: Mapping[str, str]  # terminals of inputs and outputs, by path such as io.in.start
+    tables: tuple[str, ...]  # paths of the driver tables in the file
+    elsewhere: Mapping[str, str]  # inputs on a device outside the backend, such as a pendant, by path
+    prefixes: tuple[str, ...]  # prefixes of the addresses on such devices
 
     def raw(self, path: str) -> object:
-        """What stands in the file at a path, read or not; None: nothing."""
+        """Return the unprocessed value at a path of the file, or None."""
         return raw_at(self.data, path)
 
     def pots(self) -> dict[str, str]:
-        """The terminals of its pots and wheels that are wired, by path."""
+        """Return the terminals of the wired pots and handwheels, by path."""
         paths = (f"io.analog.{name}.at" for name in self.names("io.analog"))
         said = {path: self.values.text(path) for path in paths if self.values.has(path)}
         return {path.removesuffix(".at"): at for path, at in said.items() if not at.startswith(self.prefixes)}
 
     def names(self, path: str) -> list[str]:
-        """The keys of a table whose names are of the owner's choice."""
+        """Return the keys of a table whose names the owner chooses."""
         table = self.raw(path)
         return list(table) if isinstance(table, dict) else []
 
@@ -353,13 +356,13 @@ def _no_others(_file: FileReading) -> Mapping[str, object]:
 
 @dataclass(frozen=True, slots=True)
 class DriverTable:
-    """A table of the machine file that belongs to a driver: its keys, its rules, and what it becomes.
+    """A table of the machine file that belongs to a driver, with its keys, rules and dataclass.
 
-    ``children`` are tables inside it, read by ``read_children``, which returns what is wrong with them.
-    ``others`` returns what the table's object has in addition to its keys, once nothing is wrong.
-    ``rules`` looks at every file, also one without this table.
-    ``always``: a file without it has its defaults. ``port`` is the key that names a serial port.
-    ``purpose`` is what the reference says about the table, ``parts`` the tables inside it.
+    ``children`` are inner tables that ``read_children`` reads; it returns their findings. ``others`` returns
+    the attributes of the dataclass that are not keys, if there are no findings. ``rules`` checks every file,
+    even a file without this table. ``always`` means that a missing table gets its defaults. ``port`` is the
+    key with a serial port. ``purpose`` is the text of the reference page, and ``parts`` are the tables
+    inside.
     """
 
     path: str
@@ -375,19 +378,19 @@ class DriverTable:
     parts: tuple[TableReference, ...] = ()
 
     def model(self, file: FileReading) -> object:
-        """The object that holds the values of the table."""
+        """Return the object with the values of the table."""
         return file.values.model(self.keys, self.path, **self.others(file))
 
 
 @dataclass(frozen=True, slots=True)
 class Driver:
-    """A driver in the machine file; without ``backend`` it stands beside one.
+    """A driver as described in the machine file; ``backend`` is empty for a driver in addition to a backend.
 
-    ``backend`` and ``spindle`` are its words in machine.backend and spindle.driver, ``orients``: that spindle
-    can be stopped at an angle. ``count_rate`` the counts
-    per second that it takes on an axis. ``terminal`` makes two ways to write one terminal equal, None for
-    what is no address of this driver; ``inputs`` are the addresses that an input may have, in their order.
-    ``prefix`` begins the addresses at a device of its own, which no backend knows.
+    ``backend`` and ``spindle`` are its names in machine.backend and spindle.driver. ``orients`` means that
+    its spindle can stop at an angle. ``count_rate`` is the highest rate in counts per second that it accepts
+    for an axis. ``terminal`` returns equal values for equivalent addresses, and None for an address of
+    another driver. ``inputs`` yields the possible addresses of inputs in order. ``prefix`` begins the
+    addresses on the driver's own device outside the backend.
     """
 
     tables: tuple[DriverTable, ...]
@@ -401,14 +404,14 @@ class Driver:
 
 
 def expected_table(path: str, raw: object) -> Finding:
-    """The finding about something that is no table."""
+    """Return the finding for a value that should be a table."""
     return Finding(
         path, written(raw), Message("this entry must be a table, [{path}]", path=path), "not-a-table"
     )
 
 
 def read_named(raw: object, keys: Schema, path: str, values: Values) -> list[Finding]:
-    """As ``read_table`` for every table inside one whose names are of the owner's choice."""
+    """Read every inner table of a table whose names the owner chooses, as ``read_table`` does."""
     if not isinstance(raw, dict):
         return [expected_table(path, raw)]
     return [
@@ -419,7 +422,10 @@ def read_named(raw: object, keys: Schema, path: str, values: Values) -> list[Fin
 def read_axes_and_spindle(
     file: FileReading, axes: tuple[str, type], spindle: tuple[str, type]
 ) -> Iterator[Finding]:
-    """A driver's tables by axis and for the spindle, each by its path and class; either may be left out."""
+    """Read a driver's tables for the axes and for the spindle; yield the findings.
+
+    Each table is given by its path and class. Both tables may be missing from the file.
+    """
     (path, kind), (spindle_path, spindle_kind) = axes, spindle
     named, turns = file.raw(path), file.raw(spindle_path)
     if isinstance(named, dict):

@@ -1,6 +1,6 @@
-"""Cutting edges D1 to D9 of a tool T: their numbers in the one table of tool offsets, and tip quadrants.
+"""Cutting edges D1 to D9 of a tool T, their row numbers in the tool table, and tip quadrants.
 
-D1 is the row of the tool itself, so that a tool with one edge is what it is in every language.
+D1 is the row of the tool itself, so a tool with one cutting edge needs only this row.
 """
 
 from __future__ import annotations
@@ -8,7 +8,8 @@ from __future__ import annotations
 _STEP = 100_000
 EDGES = range(1, 10)
 
-# Tip quadrant → (z, x) from the nose centre to the tip, x away from the spindle axis. 0 and 9: the centre.
+# Tip quadrant → (z, x) from the nose center to the tip, with x away from the spindle axis. 0 and 9: the
+# center.
 TIP_DIRECTIONS = {
     0: (0, 0),
     1: (1, 1),
@@ -27,7 +28,7 @@ NAMED_TOOLS = 32_768
 
 
 class NamedTool(int):
-    """The number of such a tool, or of an edge of it, which carries its name as a program writes it."""
+    """Number of a tool, or of its cutting edge, called by a name that is not in the tool table."""
 
     name: str
 
@@ -41,31 +42,31 @@ class NamedTool(int):
 
 
 def _like(key: int, number: int) -> int:
-    """The number, with the name of ``key`` where that is a tool by name."""
+    """Return ``number`` with the tool name of ``key``, if ``key`` has one."""
     return NamedTool(number, key.name) if isinstance(key, NamedTool) else number
 
 
 def edge_key(tool: int, edge: int) -> int:
-    """The number of this edge's row: that of the tool for D1."""
+    """Return the row number of a cutting edge; D1 has the number of the tool."""
     return tool if edge <= 1 else _like(tool, edge * _STEP + tool)
 
 
 def tool_of(key: int) -> int:
-    """T of a row."""
+    """Return the tool number T of a row."""
     return _like(key, key % _STEP)
 
 
 def edge_of(key: int) -> int:
-    """D of a row, 1 to 9."""
+    """Return the cutting edge number D of a row, 1 to 9."""
     return max(key // _STEP, 1)
 
 
 def edge_number(key: int) -> str:
-    """What stands behind the T of a row: 3, ="ROUGHER", and D2 behind where it is not the first edge."""
+    """Return the text after T for a row, such as 3, ="ROUGHER" or, for another cutting edge, 3 D2."""
     number = f'="{key.name}"' if isinstance(key, NamedTool) else f"{tool_of(key)}"
     return number if key < _STEP else f"{number} D{edge_of(key)}"
 
 
 def edge_name(key: int) -> str:
-    """What a row is called: T3, T3 D2, T="ROUGHER"."""
+    """Return the name of a row, such as T3, T3 D2 or T="ROUGHER"."""
     return f"T{edge_number(key)}"

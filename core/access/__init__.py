@@ -1,1 +1,1 @@
-"""Who may change what: levels, what each may change, PINs."""
+"""Access control: levels, the permitted changes of each level, and PINs."""

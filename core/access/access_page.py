@@ -1,4 +1,4 @@
-"""The table of what each level may change: ``python -m core.access.access_page docs/access.md``."""
+"""Generator of the page of access levels: ``python -m core.access.access_page docs/access.md``."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ This page is generated from `core/access/access_table.py` by
 
 
 def page() -> str:
-    """The whole page."""
+    """Return the text of the page."""
     return _HEAD.format(never="\n".join(f"- {each}" for each in NEVER)) + "".join(_lines())
 
 
@@ -48,7 +48,7 @@ def _lines() -> Iterator[str]:
 
 
 def main(argv: list[str]) -> int:
-    """Write the page to the file that is named."""
+    """Write the page to the named file."""
     Path(argv[0]).write_text(page(), encoding="utf-8")
     return 0
 

@@ -1,8 +1,8 @@
-"""What each level may change, in one table. Screen, commands and ``docs/access.md`` read it here alone.
+"""Table of the changes that each access level may make, used by screen, commands and ``docs/access.md``.
 
-It is about what is kept, and about two things that undo by hand what setting up has laid down: a spindle
-limit that is raised, an output that is switched. What brings the machine to rest stands in no level: E-stop,
-feed hold, Reset, ending what runs, drives off; nor does running a program that is proved.
+The table covers stored data, and two manual actions that override the setup: raising the spindle speed limit
+and switching an output. Actions that bring the machine to rest need no level: E-stop, feed hold, Reset,
+ending a function, and drives off. Running a proved program needs no level either.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from enum import Enum, IntEnum
 
 
 class Level(IntEnum):
-    """A level may all that those before it may."""
+    """An access level. Each level includes the permissions of the lower levels."""
 
     OPERATOR = 1
     SETUP = 2
@@ -20,7 +20,7 @@ class Level(IntEnum):
 
 
 class Act(Enum):
-    """What is changed, as the screen names it."""
+    """A protected change, with its name on the screen."""
 
     WEAR = "WEAR AND SECONDARY OFFSETS"
     COUNTS = "PART COUNTS"
@@ -50,7 +50,7 @@ class Act(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Rule:
-    """The level from which on something may be changed; what that is, and by which pages and commands."""
+    """The minimum level for a change, its description, and its pages and commands."""
 
     level: Level
     what: str
@@ -164,5 +164,5 @@ NEVER = (
 
 
 def level_for(act: Act) -> Level:
-    """The level from which on it may be changed."""
+    """Return the minimum level for a change."""
     return RULES[act].level

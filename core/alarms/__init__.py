@@ -1,6 +1,6 @@
-"""The catalogue of alarms: every alarm, hold and stop, with number, what happened, causes and remedy.
+"""The alarm catalog: every alarm, hold and stop with its number, text, causes and remedy.
 
-An alarm is one entry in the file of its subject, and its code; none exists outside the catalogue.
+Each alarm is one entry in the file of its subject, under its code. No alarm exists outside the catalog.
 """
 
 from __future__ import annotations

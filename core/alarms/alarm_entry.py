@@ -1,4 +1,4 @@
-"""An entry of the alarm catalogue, the codes that there are, and what each makes of the machine."""
+"""Entries of the alarm catalog, the alarm codes, and the reactions of the machine."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Literal, NamedTuple
 
 from core.faults import FaultCode
 
-# What the control itself finds; drivers have theirs in ``core.faults``.
+# Codes of the control; those of drivers are in ``core.faults``.
 OwnCode = Literal[
     # axes, spindle, thread
     "in-position",
@@ -36,7 +36,7 @@ OwnCode = Literal[
     "control-silent",
     "feeder-tripped",
     "switched-off",
-    # holds that nobody pressed
+    # holds not requested by the operator
     "station-silent",
     "pot-jumps",
     "pendant",
@@ -50,7 +50,7 @@ OwnCode = Literal[
     "held",
     "spindle-has-stopped",
     "spindle-late",
-    # stops that somebody asked for
+    # stops requested by the operator or the program
     "estop",
     "feed-hold",
     "reset",
@@ -63,7 +63,7 @@ Code = Literal[FaultCode, OwnCode]
 
 
 class Reaction(Enum):
-    """What an alarm makes of the machine; one supervisor carries it out for all drivers."""
+    """The reaction of the machine to an alarm. One supervisor carries it out for all drivers."""
 
     OFF = (
         "the axes brake and their drives lose power, the spindle is switched off, and the "
@@ -78,10 +78,10 @@ class Reaction(Enum):
 
 
 class Entry(NamedTuple):
-    """``text`` is what happened, ``causes`` why, the likeliest first, ``remedy`` what to do now.
+    """An entry of the alarm catalog: ``text``, ``causes`` with the likeliest first, and ``remedy``.
 
-    ``tells``: what comes with the alarm (an axis, a line, a drive's own word) is for the operator too, and
-    stands before the causes. Without it that goes to the log alone.
+    ``tells`` means that the details of the alarm (an axis, a line, the text of a drive) are shown to the
+    operator before the causes. Otherwise they are only logged.
     """
 
     number: int
@@ -93,6 +93,6 @@ class Entry(NamedTuple):
 
 
 Entries = Mapping[Code, Entry]
-# An entry of the catalogue begins with what it makes of the machine.
+# Constructors of catalog entries, one for each reaction.
 off, stop = partial(Entry, reaction=Reaction.OFF), partial(Entry, reaction=Reaction.STOP)
 hold, asked = partial(Entry, reaction=Reaction.HOLD), partial(Entry, reaction=Reaction.ASKED)

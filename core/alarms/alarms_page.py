@@ -1,4 +1,4 @@
-"""The alarm catalogue as a page to read: ``python -m core.alarms.alarms_page docs/alarms.md``."""
+"""Generator of the alarm catalog page: ``python -m core.alarms.alarms_page docs/alarms.md``."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def kind_of(reaction: Reaction) -> str:
 
 
 def document() -> str:
-    """The whole page."""
+    """Return the text of the page."""
     head = _HEAD.format(contents=contents(title for title, _ in SUBJECTS))
     return "\n".join([head, *_legend(), *_subjects()]) + "\n"
 
@@ -66,7 +66,7 @@ def _entry(entry: Entry) -> Iterator[str]:
 
 
 def main(argv: list[str]) -> int:
-    """Write the page to the file that is named."""
+    """Write the page to the named file."""
     Path(argv[0]).write_text(document(), encoding="utf-8")
     return 0
 

@@ -1,4 +1,4 @@
-"""Alarms of the slides: drives, following error, homing, limits."""
+"""Alarms of the axes: drives, following error, homing and limits."""
 
 from __future__ import annotations
 

@@ -1,10 +1,10 @@
-"""Alarms of what the control hangs on: bus, I/O modules, driver host process, controller, LinuxCNC's HAL."""
+"""Alarms of external connections: bus, I/O modules, driver host, controller and LinuxCNC HAL."""
 
 from __future__ import annotations
 
 from core.alarms.alarm_entry import Code, Entries, off, stop
 
-# Behind these nothing can be told to the machine any more: that it cannot be made safe follows from them.
+# After these alarms no command reaches the machine, so a failed safe stop is only a consequence of them.
 CUT_OFF: frozenset[Code] = frozenset(
     (
         *("bus", "feeder-gone", "feeder-silent", "controller-lost"),

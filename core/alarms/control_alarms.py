@@ -1,4 +1,4 @@
-"""Alarms of the control itself and of its programs; stops and holds that somebody asked for."""
+"""Alarms of the control and of programs, and requested stops and holds."""
 
 from __future__ import annotations
 

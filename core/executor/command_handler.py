@@ -1,4 +1,7 @@
-"""What each posted command does, one method a command; nothing is refused in silence."""
+"""Execution of posted commands, with one method for each command.
+
+Every refusal is logged with its reason.
+"""
 
 from __future__ import annotations
 
@@ -16,20 +19,20 @@ from core.executor.snapshot import CYCLE, LINES, Starts, State
 from core.message import Message
 
 LAMP_TEST = 2.0  # s
-_PRESSES = 64  # remembered
+_PRESSES = 64  # number of stop-key presses to remember
 _SWITCHES = ("single_block", "optional_stop", "cycle_repeat", "no_count")
 _AT_REST = frozenset({State.IDLE, State.DISABLED})
 _UNDER_WAY = "a program is running; wait until it ends or press Reset before loading another program"
 
 
 class CommandHandler:
-    """Obeys commands, on the executor's thread; what is refused goes into the log with its reason."""
+    """Executes commands on the executor's thread and logs the reason for each refusal."""
 
     def __init__(self, context: MachineContext, control: MachineControl, station: StationWatch) -> None:
         self._context = context
         self._control = control
         self._station = station
-        self._presses: deque[int] = deque(maxlen=_PRESSES)  # of stop keys that were obeyed
+        self._presses: deque[int] = deque(maxlen=_PRESSES)  # numbers of the stop-key presses that were obeyed
         self._methods: dict[type[commands.Command], Callable[[Any], None]] = {
             commands.CycleStart: self._start,
             commands.FeedHold: self._hold,
@@ -62,7 +65,7 @@ class CommandHandler:
         }
 
     def obey(self, command: commands.Command) -> None:
-        """Carry a command out, or log why not. Raises DriverError."""
+        """Execute a command, or log why it is refused. Raises DriverError if a driver fails."""
         self._methods[type(command)](command)
 
     def _refuse(self, why: str) -> None:
@@ -71,7 +74,7 @@ class CommandHandler:
     # --- start, drives, switches --------------------------------------------------------------------------
 
     def _start(self, _: commands.CycleStart) -> None:
-        """A start without the palms: where a real machine asks for two hands, this is not one."""
+        """Start a cycle without the palm buttons, unless the real machine requires two-hand start."""
         machine = self._context.machine
         if machine.interlocks.two_hand_start and machine.backend != "sim":
             self._control.refuse("press both palm buttons")
@@ -79,7 +82,11 @@ class CommandHandler:
             self._control.start()
 
     def _hold(self, command: commands.FeedHold) -> None:
-        """A press that arrives again, later and from the screen, holds no cycle that was started since."""
+        """Hold the cycle, but ignore a key press that was already obeyed.
+
+        The screen can deliver one press twice. The second delivery must not hold a cycle that was started in
+        between.
+        """
         if command.press not in self._presses:
             self._control.feed_hold("", command.by)
         if command.press:
@@ -136,16 +143,16 @@ class CommandHandler:
         spindle.limit = rpm
         self._context.log("override", Message("spindle speed limit {rpm} rpm", rpm=f"{rpm or highest:g}"))
 
-    # --- what Cycle Start will begin ----------------------------------------------------------------------
+    # --- selection of the next start ----------------------------------------------------------------------
 
     def _load(self, command: commands.LoadJob) -> None:
-        """A restart belonged to the program before; an open SEARCHTO or MDI stays open."""
+        """Load a job. A prepared restart is dropped, but the start mode (restart or MDI) remains."""
         if self._control.state in CYCLE:
             self._refuse(_UNDER_WAY)
             return
         status = self._control.status
         if status.job is None or status.job.source.name != command.job.source.name:
-            status.modal = status.modal._replace(comment="")  # it belongs to the program before
+            status.modal = status.modal._replace(comment="")  # the comment belongs to the previous program
         self._control.program_run.interruption.loaded(command.job)
         status.job, status.proof, status.start_refused = command.job, command.proof, ""
         self._control.program_run.changed_offsets.forget()
@@ -157,14 +164,14 @@ class CommandHandler:
         self._control.status.proof = command.proof
 
     def _clear(self, command: commands.GiveClearance) -> None:
-        """A refusal that the verdicts no longer support is not shown any more."""
+        """Store new clearances and clear a start refusal that the earlier clearances caused."""
         status = self._control.status
         if status.start_code:
             status.start_refused = status.start_code = ""
         status.clearances = command.clearances
 
     def _renew(self, command: commands.Renew) -> None:
-        """Under a running program it waits for the end of the part; else it counts at once."""
+        """Accept changed offsets: at once between programs, or at the end of the part in progress."""
         changed_offsets, status = self._control.program_run.changed_offsets, self._control.status
         why = changed_offsets.ask(command, status.job)
         if why:
@@ -219,7 +226,7 @@ class CommandHandler:
         if command.while_on and not self._context.button(command.while_on):
             control.stop_jog(
                 "the jog button was released"
-            )  # let go a moment ago, which the screen has not seen yet
+            )  # The screen has not yet seen that the button was released.
             return
         why = control.jog_ended or control.wheel.bars(control.state)
         why = why or jogger.refusal(command.axis, command.velocity, command.lease, command.along)
@@ -243,7 +250,7 @@ class CommandHandler:
             control.enter(State.JOG)
             return
         if not jogger.stepping:
-            jogger.stop()  # a held jog and a step at once: nobody can mean both
+            jogger.stop()  # A continuous jog and a step at the same time are contradictory.
         self._refuse(Message("jog: {why}", why=why))
 
     def _test(self, command: commands.DriveTest) -> None:
@@ -253,7 +260,7 @@ class CommandHandler:
         why = control.wheel.bars(control.state)
         why = why or control.drive_test.refusal(command.path, command.lease)
         if why:
-            jogger.stop()  # whatever moves: nobody can mean both
+            jogger.stop()  # A drive test and another motion at the same time are contradictory.
             self._refuse(Message("drive test: {why}", why=why))
             return
         if control.drive_test.begin(command.path, command.lease):
@@ -264,7 +271,7 @@ class CommandHandler:
     def _may_not_jog(self) -> bool:
         control = self._control
         if control.state is State.IDLE:
-            control.jogger.forget()  # an alarm or the E-stop may have ended the jog before
+            control.jogger.forget()  # An alarm or the E-stop may have ended an earlier jog.
         elif control.state is not State.JOG:
             self._refuse(Message("jogging is not available in state {state}", state=control.state.value))
             return True
@@ -291,7 +298,7 @@ class CommandHandler:
         else:
             control.enter(State.HOME)
 
-    # --- by hand between two programs ---------------------------------------------------------------------
+    # --- manual functions between programs ----------------------------------------------------------------
 
     def _offsets(self, command: commands.UseOffsets) -> None:
         if self._control.state in CYCLE:
@@ -303,7 +310,7 @@ class CommandHandler:
 
     def _stop_spindle(self, _: commands.SpindleStop) -> None:
         if self._control.state in CYCLE:
-            if self._control.status.starts in LINES:  # begun behind what the screen could see
+            if self._control.status.starts in LINES:  # The line started after the last update of the screen.
                 self._control.reset()
             else:
                 self._refuse("a program is running; press feed hold, then Reset to stop the spindle")
@@ -330,7 +337,7 @@ class CommandHandler:
         )
 
     def _output_refusal(self, name: str, on: bool) -> str:
-        """Why an output is not switched by hand now; empty when it is."""
+        """Return why an output cannot be switched manually now, or an empty string if it can."""
         context, state = self._context, self._control.state
         if name not in context.machine.outputs:
             return Message("this machine has no output {name}", name=name)

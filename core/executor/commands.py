@@ -1,7 +1,8 @@
-"""What may be asked of the executor, posted to its queue and never awaited; what a start carries.
+"""Commands that other threads post to the executor's queue, and the clearance that a start requires.
 
-The executor computes no geometry. A worker of the screen computes the verdict for one job at one position of
-the axes and posts it; the executor only compares. A verdict for another position is no verdict.
+The executor does not compute geometry. A worker of the screen checks one job at one position of the axes and
+posts the resulting clearance. The executor only compares positions. A clearance for another position is not
+used.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from core.executor.job import Job, Proof
 from core.executor.snapshot import InterruptedJob, Starts
 from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
 
-SAME: Final = 0.01  # mm: a verdict for a position farther away than this does not count
+SAME: Final = 0.01  # mm, largest distance between the checked position and the start position
 
 UNCHECKED: Final = "start-unchecked"
 INSIDE: Final = "tool-in-part"
@@ -25,12 +26,13 @@ CROSSES: Final = "first-move-crosses"
 
 @dataclass(frozen=True, slots=True)
 class Clearance:
-    """The verdict on a start of the job with this digest, with the axes at ``at`` (machine mm).
+    """The result of checking the first move of a job from one position of the axes.
 
-    ``begun`` is the number of runs that had begun by then: a run may change the part. ``code`` is ``INSIDE``
-    or ``CROSSES`` where the start is refused, with the sentence ``why``; both are empty where it is clear.
-    ``warned`` is announced before the start: the part is not known, or is assumed. ``repeats`` marks the
-    position at which the program ends, from which Cycle Repeat begins.
+    ``job`` is the digest of the job, and ``at`` is the position in machine mm. ``begun`` is the number of
+    runs that had started when the check was made, because a run may change the part. ``code`` is ``INSIDE``
+    or ``CROSSES`` if the start is refused, and ``why`` is the sentence for the operator. Both are empty if
+    the first move is clear. ``warned`` is a warning to show before the start because the part is unknown or
+    assumed. ``repeats`` marks the end position of the program, from which Cycle Repeat starts.
     """
 
     job: str
@@ -42,7 +44,7 @@ class Clearance:
     repeats: bool = False
 
     def applies_to(self, job: str, at: Sequence[float], begun: int) -> bool:
-        """Return whether this is the verdict on a start of this job here and now."""
+        """Return whether this clearance is valid for a start of ``job`` from ``at`` after ``begun`` runs."""
         if self.job != job or (self.begun != begun and not self.repeats):
             return False
         return all(abs(a - b) <= SAME for a, b in zip(self.at, at, strict=False))
@@ -51,20 +53,20 @@ class Clearance:
 def verdict(
     known: Iterable[Clearance], job: str, at: Sequence[float], begun: int, *, repeats: bool = False
 ) -> Clearance | None:
-    """Return the verdict on this start, None: it has not been computed yet."""
+    """Return the clearance for a start of ``job`` from ``at``, or None if it is not yet computed."""
     found = (each for each in known if each.repeats is repeats and each.applies_to(job, at, begun))
     return next(found, None)
 
 
 class Command:
-    """Whatever may be posted; all of them are below."""
+    """Base class of all commands that can be posted to the executor."""
 
     __slots__ = ()
 
 
 @dataclass(frozen=True, slots=True)
 class LoadJob(Command):
-    """Make this the program that Cycle Start runs; without a proof of this very job start is refused."""
+    """Load the job that Cycle Start runs. Start is refused until a proof of this job is available."""
 
     job: Job
     proof: Proof | None = None
@@ -72,27 +74,31 @@ class LoadJob(Command):
 
 @dataclass(frozen=True, slots=True)
 class GiveProof(Command):
-    """The proof of the loaded job, when proving took longer than loading."""
+    """Provide the proof of the loaded job if proving took longer than loading."""
 
     proof: Proof
 
 
 @dataclass(frozen=True, slots=True)
 class Renew(Command):
-    """The offsets of the loaded program have changed: from the next part on it is this job.
+    """Use changed offsets for the loaded program from the next part on.
 
-    It may come while the program is under way, which keeps its offsets to the end of the part. Without a
-    proof it is an announcement: nothing is begun before the job with its proof, or ``trouble``, follows.
+    The command may arrive while the program runs. The part in progress then uses its present offsets to the
+    end. A command without a proof only announces the change. No part starts until a second command brings the
+    job with its proof, or ``trouble``.
     """
 
     job: Job | None = None
     proof: Proof | None = None
-    trouble: str = ""  # why there will be none
+    trouble: str = ""  # why the job cannot be proved
 
 
 @dataclass(frozen=True, slots=True)
 class LeftInterrupted(Command):
-    """What the control before has left interrupted; ``logged``: the log has it already."""
+    """Report the job that was interrupted when the previous control process ended.
+
+    ``logged`` is True if the log already contains the entry.
+    """
 
     left: InterruptedJob
     logged: bool = False
@@ -100,14 +106,18 @@ class LeftInterrupted(Command):
 
 @dataclass(frozen=True, slots=True)
 class CycleStart(Command):
-    """Start, or go on after hold, single block, M00, M01. The station's two-hand relay means the same."""
+    """Start a cycle, or resume after a hold, single block, M00 or M01.
+
+    The two-hand relay of the operator station has the same effect.
+    """
 
 
 @dataclass(frozen=True, slots=True)
 class FeedHold(Command):
-    """Come to rest on the path within commit + v/a. ``by`` tells the log who or what asked for it.
+    """Stop the axes on the path within the commit time plus v/a.
 
-    ``press`` numbers the press of the key, where it is known. One press that arrives twice holds once.
+    ``by`` is the source of the request, for the log. ``press`` is the number of the key press, or 0 if
+    unknown. A press that arrives twice causes only one hold.
     """
 
     by: str = field(default="", compare=False)
@@ -116,17 +126,21 @@ class FeedHold(Command):
 
 @dataclass(frozen=True, slots=True)
 class Reset(Command):
-    """Stop, give the program up, back to its first line; also acknowledges an alarm."""
+    """Stop, cancel the program and return to its first line. The command also acknowledges an alarm."""
 
 
 @dataclass(frozen=True, slots=True)
 class EnableDrives(Command):
-    """After E-stop or power-up: switch the drives on."""
+    """Switch the drives on after an E-stop or at power-up."""
 
 
 @dataclass(frozen=True, slots=True)
 class SetSwitch(Command):
-    """``single_block``, ``optional_stop``, ``cycle_repeat``, ``no_count``: lit words that act at once."""
+    """Turn one of the operator's switches on or off.
+
+    The switches are ``single_block``, ``optional_stop``, ``cycle_repeat`` and ``no_count``. They take effect
+    at once.
+    """
 
     name: str
     on: bool
@@ -134,30 +148,32 @@ class SetSwitch(Command):
 
 @dataclass(frozen=True, slots=True)
 class FeedOverride(Command):
-    """Fraction 0…1.5 of the programmed feed."""
+    """Set the feed override to ``fraction`` of the programmed feed, from 0 to 1.5."""
 
     fraction: float
 
 
 @dataclass(frozen=True, slots=True)
 class Jog(Command):
-    """Move one axis while the lease lasts; mm/s or degrees/s, signed. Renewed before it ends, or it ends.
+    """Move one axis while the lease lasts, at a signed velocity in mm/s or degrees/s.
 
-    ``along``: the axis of this name of a tilted plane (3D-ROT), as its direction in the machine's X Y Z.
+    The sender must renew the lease (s) before it expires, or the axis stops. ``along`` is the direction, in
+    the machine's X, Y and Z, of the axis of this name in a tilted plane (3D-ROT).
     """
 
     axis: str
     velocity: float
     lease: float
-    while_on: str = ""  # an input that has to stay on: a button beside the slides
+    while_on: str = ""  # an input that must stay on, such as a jog button next to the axes
     along: Direction | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Touch(Command):
-    """Touch the tool setter off along ``axis``, towards + or − as ``sign``, while the lease lasts. Renewed.
+    """Touch the tool setter along ``axis`` in the direction ``sign`` (+1 or -1) while the lease (s) lasts.
 
-    ``press`` numbers the press of the key that is held: what has ended is not begun again by that one.
+    The sender must renew the lease. ``press`` is the number of the key press. A touch-off that has ended does
+    not start again until the key is pressed again.
     """
 
     axis: str
@@ -169,9 +185,10 @@ class Touch(Command):
 
 @dataclass(frozen=True, slots=True)
 class JogStep(Command):
-    """Move one axis by exactly ``distance``, mm or degrees, at ``speed``, mm/s or degrees/s, and rest there.
+    """Move one axis by exactly ``distance`` (mm or degrees) at ``speed`` (mm/s or degrees/s).
 
-    Refused while anything moves, and where the whole of it would leave the travel. ``along`` as of ``Jog``.
+    The step is refused while an axis moves, or if the full step would leave the travel. ``along`` is
+    described in ``Jog``.
     """
 
     axis: str
@@ -182,14 +199,14 @@ class JogStep(Command):
 
 @dataclass(frozen=True, slots=True)
 class JogStop(Command):
-    """Give the jog lease back at once; a step that is under way ends short."""
+    """Release the jog lease immediately. A step in progress ends early."""
 
 
 @dataclass(frozen=True, slots=True)
 class DriveTest(Command):
-    """Play a drive test from rest while the lease lasts; ``JogStop`` ends it.
+    """Run a drive test from rest while the lease (s) lasts. ``JogStop`` ends the test.
 
-    Refused while anything moves or the spindle turns, and where the whole of it would leave the travel.
+    The test is refused while an axis moves or the spindle turns, or if the full path would leave the travel.
     """
 
     path: DriveTestPath
@@ -198,17 +215,17 @@ class DriveTest(Command):
 
 @dataclass(frozen=True, slots=True)
 class DriveTestOn(Command):
-    """Renew the lease of the drive test that is under way; it never begins one."""
+    """Renew the lease (s) of the active drive test. This command never starts a test."""
 
     lease: float
 
 
 @dataclass(frozen=True, slots=True)
 class Wheel(Command):
-    """The handwheel moves ``axis`` by ``step`` a click, mm or degrees, while the lease lasts. Renewed.
+    """Let the handwheel move ``axis`` by ``step`` (mm or degrees) per click while the lease (s) lasts.
 
-    What the wheel has counted before moves nothing, nor what it counts faster than the axis goes. An end that
-    the control had to make lasts until ``WheelOff``.
+    The sender must renew the lease. Earlier counts, and counts faster than the axis can follow, cause no
+    motion. If the control ends the handwheel motion, the wheel stays disabled until ``WheelOff``.
     """
 
     axis: str
@@ -218,28 +235,32 @@ class Wheel(Command):
 
 @dataclass(frozen=True, slots=True)
 class WheelOff(Command):
-    """The handwheel moves nothing any more; what it moves stops."""
+    """Deselect the handwheel and stop the axis that it moves."""
 
 
 @dataclass(frozen=True, slots=True)
 class SpindleLimit(Command):
-    """F10: maximum spindle speed until restart, rpm; None: the machine's own."""
+    """Set the operator's spindle speed limit (rpm) of page F10; None selects the machine's maximum.
+
+    The limit applies until TurnDesk is restarted.
+    """
 
     rpm: float | None
 
 
 @dataclass(frozen=True, slots=True)
 class Home(Command):
-    """Look for the home of one axis, or of all that do not know their position when ``axis`` is empty."""
+    """Home ``axis``, or all axes that are not homed if ``axis`` is empty."""
 
     axis: str = ""
 
 
 @dataclass(frozen=True, slots=True)
 class UseOffsets(Command):
-    """The tables of offsets have changed: position display and MDI go by them from now on.
+    """Use changed offset tables for the position display and for MDI.
 
-    Refused while a program is under way, which keeps the offsets that it was proved with.
+    The command is refused while a program runs, because the program uses the offsets with which it was
+    proved.
     """
 
     tools: Mapping[int, ToolOffset]
@@ -248,12 +269,12 @@ class UseOffsets(Command):
 
 @dataclass(frozen=True, slots=True)
 class SpindleStop(Command):
-    """Stop the spindle that MDI or an M02 has left turning; refused while a program is under way."""
+    """Stop a spindle that MDI or M02 left running. The command is refused while a program runs."""
 
 
 @dataclass(frozen=True, slots=True)
 class ForceOutput(Command):
-    """Switch one output by hand, for the test page; only while nothing is under way."""
+    """Switch one output manually from the test page. The command is refused unless the machine is at rest."""
 
     name: str
     on: bool
@@ -261,10 +282,10 @@ class ForceOutput(Command):
 
 @dataclass(frozen=True, slots=True)
 class ConfirmStart(Command):
-    """The operator has read which job was interrupted (its ``at``), and means to start at the first line.
+    """Confirm that the program starts at its first line although a job was interrupted.
 
-    It counts for the next start, for a minute, and until the machine does anything else; an empty ``at``
-    takes it back.
+    ``at`` is the time of the interrupted job that the operator confirmed. The confirmation is valid for the
+    next start only, for 60 s, and until the machine leaves the idle state. An empty ``at`` withdraws it.
     """
 
     at: str
@@ -272,32 +293,37 @@ class ConfirmStart(Command):
 
 @dataclass(frozen=True, slots=True)
 class PartsMade(Command):
-    """So many parts of the loaded program are made; for the number of the part that is under way."""
+    """Set the number of finished parts of the loaded program."""
 
     parts: int
 
 
 @dataclass(frozen=True, slots=True)
 class GiveClearance(Command):
-    """The verdicts on the first move of the next start; they take the place of all earlier ones."""
+    """Replace all clearances for the first move of the next start."""
 
     clearances: tuple[Clearance, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class BarNextPart(Command):
-    """No other part begins after the one under way, and why; empty: another may. Restarts and MDI may."""
+    """Prevent the start of another part after the present one, for the reason ``why``.
+
+    An empty ``why`` permits it.
+
+    Restarts and MDI remain possible.
+    """
 
     why: str
 
 
 @dataclass(frozen=True, slots=True)
 class Prepare(Command):
-    """What the next Cycle Start begins: the program, a restart in it, or a line of MDI with its proof.
+    """Select the next action of Cycle Start: the program, a restart in it, or an MDI line with its proof.
 
-    ``clearance`` is the verdict on the first move of a restart or a line.
-    ``Starts.LINE`` without a job: MDI is open and no line is ready, so that nothing starts. Refused while
-    something is under way.
+    ``clearance`` is the check of the first move of a restart or a line. ``Starts.LINE`` without a job means
+    that MDI is open but no line is ready, so Cycle Start does nothing. The command is refused while a cycle
+    runs.
     """
 
     starts: Starts = Starts.PROGRAM

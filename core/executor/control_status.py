@@ -1,4 +1,4 @@
-"""What the control knows between two ticks: state, job, alarms, modal state, and the part count."""
+"""The state of the control between two ticks: job, alarms, modal state and part count."""
 
 from __future__ import annotations
 
@@ -19,29 +19,37 @@ from core.message import Message
 
 @dataclass(slots=True)
 class Counters:
-    """What is counted from the start of the executor; times in seconds, stops not counted."""
+    """Counts and times since the start of the executor. Times are in seconds and exclude stops."""
 
     parts: int = 0
-    made: int = 0  # of the loaded program, as whoever keeps the count has told and what was made since
-    ends: int = 0  # programs that came to their end, counted or not
-    lines: int = 0  # of MDI that were begun
-    begun: int = 0  # runs: programs, repeats, restarts and lines of MDI
+    # finished parts of the loaded program: the number set with ``PartsMade`` plus the parts made since
+    made: int = 0
+    ends: int = 0  # programs that ran to their end, counted or not
+    lines: int = 0  # MDI lines that were started
+    begun: int = 0  # runs that were started: programs, repeats, restarts and MDI lines
     underruns: int = 0
     cycle: float = 0.0
     last_cycle: float = 0.0
-    timed: int = 0  # whole cycles, of which ``last_cycle`` is the time of the newest
-    cutting: Mapping[int, float] = field(default_factory=dict)  # by tool: at feed, dry runs not counted
+    timed: int = 0  # number of complete cycles; ``last_cycle`` is the time of the latest
+    # seconds at feed by tool number, without dry runs
+    cutting: Mapping[int, float] = field(default_factory=dict)
 
-    borne: tuple[float, float] = (0.0, 0.0)  # by the spindle at feed, in this part: per cent · s, and s
+    borne: tuple[float, float] = (0.0, 0.0)  # spindle load at feed in this part: per cent · s, and s
 
     def cut(self, tool: int, seconds: float, load: float | None = None) -> None:
-        """So long at feed with this tool; whoever has the figures of before keeps them as they were."""
+        """Add cutting time at feed for a tool, and the spindle load in per cent if it is known.
+
+        The mapping of cutting times is replaced, so that earlier copies do not change.
+        """
         self.cutting = {**self.cutting, tool: self.cutting.get(tool, 0.0) + seconds}
         if load is not None:
             self.borne = self.borne[0] + load * seconds, self.borne[1] + seconds
 
     def take_load(self) -> float | None:
-        """The mean load of the spindle at feed in the part that ends, per cent; None where nobody tells."""
+        """Return the mean spindle load at feed in the part that ends, in per cent, or None if it is unknown.
+
+        The call resets the sum for the next part.
+        """
         (borne, seconds), self.borne = self.borne, (0.0, 0.0)
         return borne / seconds if seconds > 0.0 else None
 
@@ -56,27 +64,27 @@ class ControlStatus:
     alarms: tuple[Alarm, ...] = ()
     power_off: bool = False  # an alarm has switched the drives off
     start_refused: str = ""
-    start_code: str = ""  # of that refusal, where the first move was its reason
+    start_code: str = ""  # code of the refusal if the first move caused it
     starts: Starts = Starts.PROGRAM
-    prepared: Job | None = None  # the restart or the line of MDI that Cycle Start begins
+    prepared: Job | None = None  # the restart or the MDI line that Cycle Start begins
     prepared_proof: Proof | None = None
-    checks_starts: bool = False  # no cycle starts without a verdict on its first move
-    clearances: tuple[Clearance, ...] = ()  # the verdicts on the program
-    prepared_clearance: Clearance | None = None  # the verdict on what is prepared
-    next_barred: str = ""  # why no other part begins, as whoever keeps tool lives has told
-    tool_open: bool = False  # MDI has called a tool, and its first move is still to come
-    kept: KeptPass[Any] | None = None  # what lines of MDI in other languages have left in force
-    interrupted: InterruptedJob | None = None  # a program that did not come to its end
-    modal: Modal = field(default_factory=Modal)  # in force while no program is under way
+    checks_starts: bool = False  # a cycle starts only with a clearance for its first move
+    clearances: tuple[Clearance, ...] = ()  # clearances for the program
+    prepared_clearance: Clearance | None = None  # clearance for the prepared job
+    next_barred: str = ""  # why no other part may start, as posted with ``BarNextPart``
+    tool_open: bool = False  # MDI has called a tool that has not moved yet
+    kept: KeptPass[Any] | None = None  # state that MDI lines in other languages have left in force
+    interrupted: InterruptedJob | None = None  # a program that did not reach its end
+    modal: Modal = field(default_factory=Modal)  # modal state in force between programs
 
 
-# --- the modal state between two programs ---------------------------------------------------------------
+# --- modal state between programs -----------------------------------------------------------------------
 
 
 def modal_at_power_up(context: MachineContext) -> Modal:
-    """The state that the control is switched on with: it counts in what the machine's builder counts in.
+    """Return the modal state at power-up, with the units of the machine file.
 
-    SINUMERIK is switched on with DIAMON.
+    A SINUMERIK control powers up with DIAMON.
     """
     machine = context.machine
     begins = Modal(
@@ -88,22 +96,27 @@ def modal_at_power_up(context: MachineContext) -> Modal:
 
 
 def modal_given_up(modal: Modal, language: str = "omniturn") -> Modal:
-    """A program that was reset, or ended by an alarm or the E-stop, leaves what M30 would have left.
+    """Return the modal state after a program was canceled by Reset, an alarm or an E-stop.
 
-    SINUMERIK leaves the diameter words that it is switched on with.
+    The result equals the state after M30. On a SINUMERIK control, the power-up mode of diameter words applies
+    again.
     """
     return after_end(modal, modal.rpm, reset=True)._replace(diameter=language == "sinumerik")
 
 
 def modal_interrupted(modal: Modal) -> Modal:
-    """A line of MDI that was reset, or ended by an alarm, leaves its modes; nothing holds C any more."""
+    """Return the modal state after an MDI line was canceled.
+
+    Its modes remain, but C and the spindle are released.
+    """
     return modal._replace(c_locked=False, c_rpm=None, oriented=None)
 
 
 def modal_as_machine(modal: Modal, context: MachineContext) -> Modal:
-    """M functions as they are at the machine: an alarm, a reset or a hand may have switched them since.
+    """Return the modal state with the M functions as they are at the machine now.
 
-    A stopped spindle releases C; nose compensation and plane switching never outlive their program.
+    An alarm, a reset or a manual action may have switched them. A stopped spindle releases C. Nose
+    compensation and plane switching end with their program.
     """
     on = {name for name, lit in context.ports.io.outputs().items() if lit}
     assigned = {name for name, _ in context.machine.m_codes.values()} | {context.machine.live_output}
@@ -123,28 +136,29 @@ def modal_as_machine(modal: Modal, context: MachineContext) -> Modal:
 def modal_with_offsets(
     modal: Modal, tools: Mapping[int, ToolOffset], secondary: Mapping[int, SecondaryOffset]
 ) -> Modal:
-    """The same state with the offsets of the loaded tool and of the D in force read from these tables."""
+    """Return the modal state with the offsets of its tool and its D number read from the given tables."""
     tool = tools.get(modal.tool, ToolOffset()) if modal.tool else ToolOffset()
     pair = secondary.get(modal.secondary, SecondaryOffset()) if modal.secondary else SecondaryOffset()
     return modal._replace(tool_x=tool.x, tool_z=tool.z, secondary_x=pair.x, secondary_z=pair.z)
 
 
 class Workpiece:
-    """A program from its first line is a new piece; a restart goes on with the one that was given up.
+    """The workpiece in progress. A program from its first line starts a new one; a restart continues it.
 
-    Elementary blocks are numbered through a whole run and a restart keeps their numbers, so they tell what a
-    restart leaves out. A piece of which something was left out makes no part, nor one in whose cycle spindle
-    or outputs were off that the program had on: who finds it good adds it to the count on F10.
+    Elementary blocks have the same numbers in a run and in its restart, so the numbers show whether a restart
+    skipped blocks. A workpiece is not counted as a part if blocks were skipped, or if the spindle or an
+    output was off although the program had turned it on. The operator can add a good part to the count on
+    page F10.
     """
 
     def __init__(self) -> None:
-        self._begun = 0  # blocks of it without a gap
-        self._whole = True  # nothing is left out by what runs now
+        self._begun = 0  # number of blocks started without a gap
+        self._whole = True  # the present run skips no blocks
         self.restarted = False
-        self.disturbed = ""  # what was switched off behind the program's back
+        self.disturbed = ""  # what was switched off without a command of the program
 
     def begin(self, job: Job, begun: int) -> None:
-        """What is going to run; ``begun`` blocks of the piece were begun before it was interrupted."""
+        """Start a run of ``job``. ``begun`` is the number of blocks that started before an interruption."""
         begin = job.setup.begin
         self.restarted = begin is not None
         self._begun = 0 if begin is None else begun
@@ -152,16 +166,16 @@ class Workpiece:
         self._whole = begin is None or (not begin.skips_cuts and begin.checkpoint.blocks <= self._begun)
 
     def begun_to(self, block: int) -> int:
-        """How many blocks are begun without a gap when what runs has come to this one."""
+        """Return the number of blocks started without a gap when the run has reached ``block``."""
         return max(self._begun, block) if self._whole else self._begun
 
     def end(self) -> None:
-        """The program has come to its end: what follows is another piece."""
+        """Reset the state at the end of the program; the next run starts a new workpiece."""
         self._begun, self._whole, self.restarted, self.disturbed = 0, True, False, ""
 
     @property
     def why_none(self) -> str:
-        """Why its end makes no part; empty when it makes one."""
+        """The reason why the end of the program does not count as a part; empty if it counts."""
         if self.disturbed:
             return Message(
                 "the cycle was disturbed ({disturbed}); measure the part and, if it is good, add it "
@@ -172,7 +186,7 @@ class Workpiece:
 
 
 class PartCount:
-    """Counts parts and keeps cycle times; ``counters`` is what everybody reads."""
+    """Counts parts and measures cycle times. Other modules read ``counters``."""
 
     def __init__(self, context: MachineContext) -> None:
         self._context = context
@@ -181,11 +195,11 @@ class PartCount:
 
     @property
     def why_none(self) -> str:
-        """Why the program under way will make no part; empty when it will make one."""
+        """The reason why the running program will not count as a part; empty if it will."""
         return "NO COUNT is on" if self._context.switches.no_count else self.piece.why_none
 
     def ended(self) -> None:
-        """The program has come to its end. The time of a restart is not that of a cycle."""
+        """Count and log the end of the program. The time of a restart is not used as a cycle time."""
         counters, seconds, why = self.counters, self.counters.cycle, self.why_none
         counters.cycle, load = 0.0, counters.take_load()
         counters.ends += 1

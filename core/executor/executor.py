@@ -1,7 +1,7 @@
-"""The executor: commands in, setpoints out, one snapshot a tick; it looks less often at rest.
+"""The executor: processes commands, queues setpoints and publishes one snapshot per tick.
 
-Everything is looked at and decided in every tick. Once nothing has happened for a second a tick comes ten
-times a second, where the drivers ring by themselves, and the snapshot is made anew twenty times at most.
+Inputs are read and all decisions are made in every tick. After 1 s without a change, ticks come ten times per
+second if the drivers can wake the executor, and at most twenty snapshots per second are made.
 """
 
 from __future__ import annotations
@@ -45,43 +45,48 @@ from core.motion.axis_limits import MotionError
 from core.ports import DriverError, MachinePorts, Unknown
 
 _RESTING = frozenset({State.ESTOP, State.DISABLED, State.IDLE, State.FAULT})
-_SETTLED = 100  # ticks in which nothing has happened
-_SHOWN = 0.045  # s between two snapshots then: five ticks, whose length is never quite the same
-RESTS = 0.095  # s between two ticks of a machine at rest: a host sends its SYNC, ten a second, with the look
+_SETTLED = 100  # ticks without a change, after which the machine counts as settled
+# s between two snapshots of a settled machine: five ticks, slightly less because their length varies
+_SHOWN = 0.045
+# s between two ticks at rest; a CANopen host sends its ten SYNC messages per second with these ticks
+RESTS = 0.095
 _log = logging.getLogger(__name__)
-TICK = 0.01  # s from the end of one to the beginning of the next
-_OFF_BY_ESTOP = frozenset({"power-lost", "spindle-off"})  # of what its chain switches off by itself
-_STALL = 0.2  # s between two ticks that tell of a stalled host
-_STALE = 0.5  # s after which nobody expects a press to move the machine any more
+TICK = 0.01  # s from the end of one tick to the start of the next
+_OFF_BY_ESTOP = frozenset({"power-lost", "spindle-off"})  # alarms that the E-stop chain causes
+_STALL = 0.2  # s between two ticks that show a stalled computer
+_STALE = 0.5  # s after which a key press must not start a motion
 STARTS = (CycleStart, DriveTest, EnableDrives, Home, Jog, JogStep, Touch, Wheel)
 """Commands that begin a motion, or switch the drives on."""
-_WAITED_FOR = (EnableDrives, Home, Reset)  # a driver answers them when its drives have obeyed
-_WORTH_AN_ENTRY = 0.1  # change of the feed override that is worth an entry in the log
-_COMMANDS = 100  # looked at in one tick
+_WAITED_FOR = (EnableDrives, Home, Reset)  # a driver returns from these only when its drives have obeyed
+_WORTH_AN_ENTRY = 0.1  # smallest change of the feed override that is logged
+_COMMANDS = 100  # commands handled in one tick at most
 _POWERED = CYCLE | {State.IDLE, State.JOG, State.HOME}
 
 
 class Rest:
-    """Of one executor, on its thread alone."""
+    """Detects that nothing changes, so that the executor can tick less often. Used on its thread only."""
 
     def __init__(self, context: MachineContext, control: MachineControl) -> None:
         self._context, self._control = context, control
         self._wakeup = context.ports.wakeup
-        self._seen: tuple[object, ...] = ()  # what the last tick has seen, but for the time
-        self._same = 0  # ticks since anything of that has changed
+        self._seen: tuple[object, ...] = ()  # the values seen in the last tick, without the time
+        self._same = 0  # ticks since any of these values changed
         self._shown_at = -1.0
         self._rested = False
-        self.stirred = False  # with the last tick something has changed on a machine at rest
+        self.stirred = False  # a value changed in the last tick although the machine is at rest
 
     def over(self) -> None:
-        """Something was asked for: for a second every tick counts."""
+        """Return to the normal tick rate for at least 1 s because a command or a change arrived."""
         self._same = -1
 
     def look(self) -> bool:
-        """At the end of a tick: whether it is worth showing; a snapshot is most of what a tick costs."""
+        """Compare the machine with the last tick and return whether a new snapshot is needed.
+
+        Making a snapshot is the largest part of the cost of a tick.
+        """
         context, status = self._context, self._control.status
         seen: tuple[object, ...] = ()
-        with Attempt() as look:  # a driver that breaks here is told of by whoever needs what it does not say
+        with Attempt() as look:  # The code that needs the missing value reports a driver that fails here.
             seen = (
                 status.state,
                 context.sample[1:],
@@ -106,8 +111,9 @@ class Rest:
         return shown
 
     def wait(self) -> bool:
-        """Between two ticks: until something is asked for or has changed. False, and at once, where the
-        machine is not at rest or its drivers do not ring.
+        """Wait until a driver wakes the executor, at most 0.095 s.
+
+        Returns False at once if the machine is not at rest or its drivers cannot wake the executor.
         """
         wakeup = self._wakeup
         if wakeup is None or not self._lasts() or not wakeup.settled():
@@ -118,11 +124,11 @@ class Rest:
 
     @property
     def holds(self) -> bool:
-        """Whether nothing has happened for a second."""
+        """True if nothing has changed for 1 s."""
         return self._same >= _SETTLED
 
     def _lasts(self) -> bool:
-        """Nothing turns either, and nothing is on that an E-stop would switch off."""
+        """Return whether the spindle is stopped and every output is in its E-stop state."""
         if not self.holds or self._control.wheel.axis:
             return False
         context = self._context
@@ -133,21 +139,22 @@ class Rest:
 
 
 def _discard(_what: InterruptedJob | None) -> None:
-    """Where nothing outlives the executor, no interrupted job is kept."""
+    """Ignore an interrupted job because nothing is stored after the executor ends."""
 
 
 def _lay_out(ports: MachinePorts) -> Callable[[float], None]:
-    """Who hears up to what speed the radius may take the spindle."""
+    """Return the function that receives the highest spindle speed before each speed command."""
     return ports.blocks.lay_out if ports.blocks is not None else lambda _: None
 
 
 class Executor:
-    """``post`` and ``snapshot`` may be used from any thread, ``tick`` from one only.
+    """The main loop of the control.
 
-    ``passes`` makes a pass through a job with the circumstances of the start; tests give their own.
-    ``note`` is told what job a power cut would leave interrupted now, ``left`` is what the last one left.
-    With ``checks_starts`` no cycle starts before a worker has given its verdict on the first move.
-    ``tell`` is handed what the scope records of each tick, and must only put it into a queue.
+    ``post`` and ``snapshot`` may be used from any thread, ``tick`` from one thread only. ``passes`` starts a
+    pass through a job; tests supply their own. ``note`` receives the job that a power loss would leave
+    interrupted, and ``left`` is the job that the previous process left interrupted. With ``checks_starts``, a
+    cycle starts only after a worker has posted the clearance for its first move. ``tell`` receives the data
+    that the scope records in each tick and must return at once.
     """
 
     def __init__(
@@ -166,8 +173,8 @@ class Executor:
         self._ports = ports
         self._tell = tell
         self._due = ports.clock.now()  # when the next tick is expected
-        self._missed = False  # the scope could not be told something
-        self._late = 0.0  # s, the worst since the last that was handed over
+        self._missed = False  # a failure of the scope has been logged
+        self._late = 0.0  # s, the longest delay since the scope last received data
         spindle = SpindleControl(
             ports.spindle, machine.spindle, ports.lock, _lay_out(ports), ports.orientation, ports.spindle_lag
         )
@@ -191,36 +198,40 @@ class Executor:
         self._rest = Rest(self._context, self._control)
         self.stirs: Callable[[], None] = lambda: (
             None
-        )  # called on its thread when what was at rest has changed
+        )  # called on the executor's thread when a machine at rest has changed
         self._logged_override = 1.0
-        self._lost = ""  # what of the station was gone a tick ago
+        self._lost = ""  # the fault of the station connection in the previous tick
         self._told_lost = ""
-        self.ticks = 0  # so many have ended: what the watchdog looks at
-        self.patient = False  # it waits for drives, which may take seconds
+        self.ticks = 0  # number of finished ticks, which the watchdog checks
+        self.patient = False  # the executor waits for drives, which may take seconds
         self._silent = ""  # why the watchdog has halted the machine
         self.snapshot: Snapshot = self._publish()
 
     @property
     def halt(self) -> Callable[[], None] | None:
-        """The drivers' own way to stop everything, which any thread may use."""
+        """The drivers' function that stops the machine from any thread, or None."""
         return self._ports.halt
 
     def post(self, command: Command, at: float | None = None) -> None:
-        """Ask for something; it is looked at first thing in the next tick. Never waits.
+        """Post a command for the next tick, without waiting.
 
-        ``at`` is when it was asked for, s of the machine's clock; None: now.
+        ``at`` is the time of the request in seconds of the machine's clock; None means now.
         """
         self._commands.put((self._ports.clock.now() if at is None else at, command))
         self.wake()
 
     def wake(self) -> None:
-        """Look at once, from any thread; where the drivers do not ring that is the next tick anyway."""
+        """Start the next tick at once, from any thread.
+
+        Has no effect if the drivers cannot wake the executor.
+        """
         if self._ports.wakeup is not None:
             self._ports.wakeup.ring()
 
     def rest(self) -> bool:
-        """Between two ticks, on their thread: wait where the machine is at rest, until something is asked for
-        or has changed. False, and at once, elsewhere.
+        """Wait between two ticks while the machine is at rest, until a command or a change arrives.
+
+        Returns False at once if the machine is not at rest. Must be called on the executor's thread.
         """
         with ReportedAttempt(self.failed):
             if self._commands.empty() and self._rest.wait():
@@ -229,7 +240,10 @@ class Executor:
         return False
 
     def tick(self) -> None:
-        """Once every 10 to 20 ms: look, obey, supervise, go on, publish. Raises nothing."""
+        """Run one tick, every 10 to 20 ms: read, execute commands, supervise, advance and publish.
+
+        Raises nothing; failures become alarms.
+        """
         with ReportedAttempt(self.failed) as look:
             self._look()
         if look.error is not None:
@@ -250,7 +264,10 @@ class Executor:
         self.ticks += 1
 
     def _note_late(self, late: float) -> None:
-        """A busy computer deepens the setpoint queue; that a hold reacts later is logged once."""
+        """Record by how many seconds the tick was late.
+
+        A busy computer makes the setpoint queue longer. The longer delay of a feed hold is logged once.
+        """
         self._late = max(self._late, late)
         lateness = self._context.lateness
         if lateness.look(late, self._context.now):
@@ -258,8 +275,9 @@ class Executor:
             self._context.log("late", Message(words, seconds=f"{lateness.hold_later:.1f}"))
 
     def declare_silent(self, why: str) -> None:
-        """From the watchdog's thread, which has halted the machine: an alarm on the screen, whose snapshot
-        then stands still. Should this executor ever tick again, the alarm is what it begins with.
+        """Show an alarm because the watchdog has found the executor unresponsive and halted the machine.
+
+        Called on the watchdog's thread. If the executor ticks again, its first action is to raise this alarm.
         """
         self._silent = why
         alarm = make_alarm("control-silent", why, self._context.line, self.snapshot.t)
@@ -274,20 +292,20 @@ class Executor:
             raise AlarmError("control-silent", why)
 
     def failed(self, error: BaseException) -> None:
-        """A driver that does not answer, or a mistake of the control itself: nothing may go on."""
+        """Raise an alarm for a driver error or for an internal error of the control."""
         if isinstance(error, DriverError):
             self._control.alarm(AlarmError(error.code, str(error)))
         else:
             self._control.failed(error)
 
     def shut(self) -> None:
-        """The end of the executor: nothing is left moving or switched on. Raises nothing."""
+        """Stop all motion and switch everything off when the executor ends. Raises nothing."""
         with ReportedAttempt(self.failed):
             self._control.shut()
         self._show()
 
     def _show(self) -> None:
-        """Where the machine cannot be read any more, its state and alarms at least."""
+        """Publish a snapshot, or only the state and the alarms if the machine cannot be read."""
         with ReportedAttempt(self.failed) as publishing:
             self.snapshot = self._publish()
         if publishing.error is not None:
@@ -297,7 +315,7 @@ class Executor:
             )
 
     def _hand_over(self) -> None:
-        """What the scope records; that nothing can be recorded stops nothing."""
+        """Pass the data of this tick to the scope. A failure is logged once and stops nothing."""
         if self._tell is None:
             return
         with Attempt() as trial:
@@ -309,11 +327,11 @@ class Executor:
             turns, rests = self._context.spindle.angle.turns, self._rest.holds
             self._tell(Tick(self.snapshot, late, queued, turns, samples, rests))
         if trial.error is not None and not self._missed:
-            self._missed = True  # once: it would come a hundred times a second
+            self._missed = True  # Logged once, because the error may occur in every tick.
             _log.error("the scope misses what the machine does", exc_info=trial.error)
 
     def _blind(self) -> None:
-        """Something cannot be read: what was seen before starts nothing, and E-stop is still obeyed."""
+        """Handle a failed read: ignore the last start signal, but obey the E-stop."""
         context = self._context
         context.signals = context.signals._replace(start=False)
         with Attempt():
@@ -343,18 +361,18 @@ class Executor:
                         "the control software did not run for {now} s", now=f"{context.now - before:.2f}"
                     ),
                 )
-                if self._control.cycle is not None:  # before what was pressed meanwhile stops or ends it
+                if self._control.cycle is not None:  # before a key pressed during the stall stops the cycle
                     self._control.cycle.catch_up()
 
     def _log_lost(self) -> None:
-        """A pendant that is unplugged, and that is there again."""
+        """Log when the pendant is disconnected and when it is connected again."""
         lost = self._context.signals.lost or self._context.signals.wheel_trouble
         if lost != self._told_lost:
             self._told_lost = lost
             self._context.log("disturbed", (lost or "the pendant is connected again").upper())
 
     def _log_override(self) -> None:
-        """A turned pot goes to the log in steps worth reading."""
+        """Log the feed override when it changes by 10 % or reaches or leaves zero."""
         fraction = self._context.feed_override
         if abs(fraction - self._logged_override) >= _WORTH_AN_ENTRY or (fraction == 0.0) != (
             self._logged_override == 0.0
@@ -365,7 +383,7 @@ class Executor:
             )
 
     def _obey(self) -> None:
-        """E-stop first, then what was posted, then the station's buttons."""
+        """Handle the E-stop, then the posted commands, then the buttons of the operator station."""
         signals, control = self._context.signals, self._control
         control.mirror_estop(signals.estop)
         for command in self._posted():
@@ -378,7 +396,7 @@ class Executor:
         elif signals.lost and (control.state in ACTIVE or signals.lost != self._lost):
             control.feed_hold(signals.lost, code="pendant")
         elif self._context.spindle.guard_open and control.state in ACTIVE:
-            control.feed_hold("GUARD OPEN")  # a jog in setting is the builder's to limit
+            control.feed_hold("GUARD OPEN")  # The machine builder limits jogging with an open guard.
         if signals.start:
             control.start()
         elif signals.late_start:
@@ -394,7 +412,7 @@ class Executor:
                 posted, command = self._commands.get_nowait()
             except queue.Empty:
                 return
-            self._rest.over()  # whatever it does is shown at once
+            self._rest.over()  # show the effect of the command at once
             if isinstance(command, STARTS) and self._context.now - posted > _STALE:
                 self._context.log(
                     "refused",
@@ -422,7 +440,7 @@ class Executor:
         self._context.spindle.update(self._context.now, self._context.sample.demand[0] - offset)
 
     def _guarded(self, part: Callable[[], None]) -> None:
-        """What a part of a tick has to tell becomes an alarm, and the other parts go on."""
+        """Run one part of a tick and turn its errors into alarms, so that the other parts still run."""
         with ReportedAttempt(self.failed):
             try:
                 part()
@@ -431,12 +449,12 @@ class Executor:
             except MotionError as error:
                 self._control.alarm(AlarmError("program", str(error)))
             except TrippedError:
-                pass  # refused, since the driver host has stopped something: the next look tells what
+                pass  # The driver host has switched something off; the next tick reports the details.
             except DriverError as error:
                 self._alarm(AlarmError(error.code, str(error)))
 
     def _alarm(self, trouble: AlarmError) -> None:
-        """An E-stop that was pressed since the station was looked at is the cause of what has no power."""
+        """Raise an alarm, or follow the E-stop if it has caused the loss of power."""
         if trouble.code in _OFF_BY_ESTOP and self._ports.station.snapshot().estop:
             self._control.mirror_estop(True)
         else:

@@ -1,4 +1,4 @@
-"""Keeps what a power cut would leave as interrupted job, and declares a program that broke off to be one."""
+"""Storage of the job that a power loss would interrupt, and of programs that were canceled."""
 
 from __future__ import annotations
 
@@ -20,17 +20,17 @@ from core.tool_edges import edge_name
 Note = Callable[[InterruptedJob | None], None]
 """Takes what is to be kept of the program under way, None: nothing. It must only put it into a queue."""
 
-_EVERY = 1.0  # s between two notes while the program goes on
-_MOVED = 0.01  # mm or degrees: less is no other place
-_STANDS = 0.2  # s at rest after which a tool stands where it stands
-_ANSWERED = 60.0  # s for which the answer of an operator counts
+_EVERY = 1.0  # s between two notes while the program runs
+_MOVED = 0.01  # mm or degrees; smaller changes count as the same position
+_STANDS = 0.2  # s at rest after which the tool position is final
+_ANSWERED = 60.0  # s for which a confirmation of the operator is valid
 
 
 class InterruptionWatch:
-    """A power cut gives no time to write, so what would be true after it is noted before anything moves.
+    """Stores the interrupted job in advance, because a power loss leaves no time to write.
 
-    At the start of the cycle, at each part and tool, whenever the cycle stops, and once a second at most
-    while it goes on. On the executor's thread alone.
+    The state is noted before a cycle starts, at each part and tool, at each stop, and otherwise once per
+    second at most. Used on the executor's thread only.
     """
 
     def __init__(
@@ -41,13 +41,13 @@ class InterruptionWatch:
         note: Note,
         left: InterruptedJob | None,
     ) -> None:
-        """``left`` is what the control found at its start."""
+        """Initialize the watch. ``left`` is the interrupted job found at the start of the control."""
         self._context, self._status, self._parts, self._keep = context, status, parts, note
-        self._begun = False  # whether this control has begun any program
+        self._begun = False  # this control has started a program
         self._begin: Begin | None = None
-        self._before: InterruptedJob | None = None  # what a restart under way goes on with
+        self._before: InterruptedJob | None = None  # the interrupted job that the present restart continues
         self._noted: InterruptedJob | None = None
-        self._next = 0.0  # s, monotonic: no note before
+        self._next = 0.0  # s, monotonic time of the next permitted note
         self._stopped = False
         self._rests_since: float | None = None
         self._settled = True
@@ -55,23 +55,23 @@ class InterruptionWatch:
         status.interrupted = left
 
     def found(self, left: InterruptedJob, *, logged: bool = False) -> None:
-        """What the control before has left, known only now. A program begun since has settled it."""
+        """Set the job that the previous control left interrupted, unless a program has started since."""
         if not self._begun and self._status.interrupted != left:
             self._status.interrupted = left
             if not logged:
                 self._context.log("interrupted", left.words)
 
-    # --- the program under way ----------------------------------------------------------------------------
+    # --- running program ----------------------------------------------------------------------------------
 
     @property
     def begun(self) -> int:
-        """Elementary blocks of the piece in the collet that are begun already."""
+        """The number of elementary blocks of the present workpiece that have started."""
         status = self._status
         job, before = status.job, status.interrupted
         return before.begun if job is not None and before is not None and _of(before, job) else 0
 
     def begin(self, begin: Begin | None) -> None:
-        """The program begins, or a restart in it: from here on a power cut leaves an interrupted job."""
+        """Note the start of a program or a restart, which a power loss would now interrupt."""
         status, before = self._status, self._status.interrupted
         assert status.job is not None
         self._begun = True
@@ -84,7 +84,7 @@ class InterruptionWatch:
         self._note(self._now(status.job, None))
 
     def look(self, cycle: Cycle | None) -> None:
-        """Every tick: keep what has changed. ``cycle`` is that of a program, None: none is under way."""
+        """Note changes, once per tick. ``cycle`` is the cycle of a program, or None if no program runs."""
         if self._status.state is not State.IDLE:
             self._answered = None
         block = cycle.current if cycle is not None else None
@@ -104,14 +104,15 @@ class InterruptionWatch:
         return moved and self._context.now >= self._next
 
     def finished(self) -> None:
-        """The program has come to its end."""
+        """Clear the note because the program has reached its end."""
         self._noted = self._before = None
         self._keep(None)
 
     def broke_off(self, block: Block | None, why: str) -> None:
-        """The program under way is over before its end at this block: an interrupted job from now on.
+        """Store the program as interrupted at ``block`` for the reason ``why``.
 
-        Without a block nothing of it has begun.
+        If ``block`` is None, no block has started, and the program is not interrupted unless it was a
+        restart.
         """
         job = self._status.job
         if job is None or (block is None and self._before is None):
@@ -125,7 +126,7 @@ class InterruptionWatch:
         self._context.log("interrupted", found.words)
 
     def _settle(self) -> None:
-        """The slides still brake when an E-stop is seen: the tool stands where it has come to rest."""
+        """Update the tool position until the axes have been at rest for 0.2 s after an E-stop."""
         found, now = self._status.interrupted, self._context.now
         if self._settled or found is None:
             return
@@ -136,10 +137,10 @@ class InterruptionWatch:
         if self._settled:
             self._keep(self._status.interrupted)
 
-    # --- between two programs -----------------------------------------------------------------------------
+    # --- between programs ---------------------------------------------------------------------------------
 
     def loaded(self, job: Job) -> None:
-        """Another program takes its place; the same one read again does not."""
+        """Clear the interrupted job if another program is loaded, but not if the same program is reloaded."""
         before = self._status.interrupted
         self._answered = None
         if before is not None and not _of(before, job):
@@ -148,28 +149,31 @@ class InterruptionWatch:
             )
 
     def answer(self, at: str) -> str:
-        """The operator has read what a start at the first line does; why that does not count, or nothing."""
+        """Accept the operator's confirmation of a start at the first line.
+
+        Returns the reason if the confirmation is refused, or an empty string.
+        """
         self._answered = None
         found = self._status.interrupted
         if not at:
-            return ""  # taken back
+            return ""  # the confirmation is withdrawn
         if found is None or found.at != at or self._status.state is not State.IDLE:
             return "no interrupted program is waiting for confirmation"
         self._answered = self._context.now
         return ""
 
     def withdraw(self) -> None:
-        """The next start is to begin something else."""
+        """Withdraw the confirmation because the next start begins something else."""
         self._answered = None
 
     @property
     def answered(self) -> bool:
-        """Whether that was said, and not too long ago."""
+        """True if the operator has confirmed the start within the last 60 s."""
         return self._answered is not None and self._context.now - self._answered <= _ANSWERED
 
     @property
     def refusal(self) -> str:
-        """Why a start at the first line has to be confirmed; empty when it has not."""
+        """The reason why a start at the first line needs a confirmation; empty if it does not."""
         found = self._status.interrupted
         if found is None or self._status.starts is not Starts.PROGRAM or self.answered:
             return ""
@@ -190,16 +194,16 @@ class InterruptionWatch:
         self._keep(None)
         self._context.log("cleared", words)
 
-    # --- what is noted ------------------------------------------------------------------------------------
+    # --- noted state --------------------------------------------------------------------------------------
 
     def _note(self, what: InterruptedJob) -> None:
         self._noted, self._next = what, self._context.now + _EVERY
         self._keep(what)
 
     def _now(self, job: Job, block: Block | None) -> InterruptedJob:
-        """What would be true if the power went now.
+        """Return the job that a power loss at this moment would leave interrupted.
 
-        On the way of a restart it is still what that goes on with.
+        During the approach of a restart, this is the earlier interrupted job.
         """
         begin, before = self._begin, self._before
         if before is not None and (
@@ -224,5 +228,8 @@ class InterruptionWatch:
 
 
 def _of(found: InterruptedJob, job: Job) -> bool:
-    """Whether it is this program that was interrupted; its text or its offsets may have changed since."""
+    """Return whether the interrupted job belongs to this program.
+
+    The text or the offsets of the program may have changed since the interruption.
+    """
     return found.program == job.source.name

@@ -1,6 +1,6 @@
-"""Job: a program under fixed circumstances, its proof, and its blocks by read-ahead for a run.
+"""Jobs, their proofs, and reading of their blocks ahead of the motion.
 
-A proof belongs to one job and to no other.
+A proof is valid for exactly one job.
 """
 
 from __future__ import annotations
@@ -31,9 +31,10 @@ WARNING = "WARNING: "
 
 
 class ProgramPass(NamedTuple):
-    """One pass through a program: its blocks as they come, and what the interpreter has to say so far.
+    """One pass through a program: its blocks as they are read, and the diagnostics found so far.
 
-    ``left`` tells what a line of MDI leaves to the next one; a program has none, it ends with M30 or M02.
+    ``left`` returns the state that an MDI line passes to the next line. It is None for a program, which ends
+    with M30 or M02.
     """
 
     blocks: Iterator[Block]
@@ -42,35 +43,40 @@ class ProgramPass(NamedTuple):
 
 
 class ReadAhead:
-    """``pending`` belongs to one path section; ``stop`` waits behind it for a standstill (``SectionEnds``).
+    """Reads the blocks of a pass ahead of the motion.
 
-    Nothing behind ``stop`` is read before it has been carried out, so that a program that asks inputs asks
-    them at their time. Each block is checked once more against the machine as it is read.
+    ``pending`` contains the blocks of one path section. ``stop`` is the next block that needs a standstill
+    (``SectionEnds``). No block after ``stop`` is read until it has been executed, so that the program reads
+    inputs at the correct time. Each block is checked again against the machine as it is read.
     """
 
     def __init__(self, source: ProgramPass, machine: Machine) -> None:
         self._source = source
         self._machine = machine
-        self._reported = 0  # problems of the interpreter that were looked at
+        self._reported = 0  # number of interpreter diagnostics already checked
         self._ends = SectionEnds()
         self.pending: deque[Block] = deque()
-        self.seconds = 0.0  # what the pending blocks take at least
+        self.seconds = 0.0  # shortest possible time of the pending blocks
         self.stop: Block | None = None
-        self.trouble: AlarmError | None = None  # what ends the pass once all before it is done
+        # the error that ends the pass after the earlier blocks are done
+        self.trouble: AlarmError | None = None
         self.ended = False
 
     @property
     def next_block(self) -> Block | None:
-        """What comes after the blocks that were taken."""
+        """The next block that has not been taken, or None."""
         return self.pending[0] if self.pending else self.stop
 
     @property
     def dry(self) -> bool:
-        """Nothing more can be pulled before a standstill."""
+        """True if no more blocks can be read before a standstill."""
         return self.stop is not None or self.ended or self.trouble is not None
 
     def pull(self, blocks: int, seconds: float) -> None:
-        """Read on until so many blocks were read or so many seconds are pending, pull-outs of threads too."""
+        """Read until ``blocks`` blocks were read or ``seconds`` seconds of motion are pending.
+
+        A thread is read to the end of its pull-out, even if more seconds are pending.
+        """
         for _ in range(blocks):
             if self.dry or (self.seconds >= seconds and not self._ends.in_thread):
                 return
@@ -79,14 +85,14 @@ class ReadAhead:
                 self._sort(block)
 
     def take(self) -> list[Block]:
-        """The pending blocks, for moving."""
+        """Return the pending blocks for motion and remove them."""
         taken = list(self.pending)
         self.pending.clear()
         self.seconds = 0.0
         return taken
 
     def pass_stop(self) -> None:
-        """The standstill has been used: an action is done, a cutting block may start."""
+        """Mark the standstill as used: the action is done, or the cutting block may start."""
         block, self.stop = self.stop, None
         if block is not None:
             self._ends.rested(block)
@@ -107,7 +113,7 @@ class ReadAhead:
         return None if self.trouble else block
 
     def _find_error(self) -> None:
-        """An error that the live run met and the proof could not."""
+        """Store the first new error of the interpreter, which only a live run can meet."""
         problems = self._source.problems()
         for problem in problems[self._reported :]:
             if problem.severity is Severity.ERROR and self.trouble is None:
@@ -131,19 +137,21 @@ class ReadAhead:
 
 
 def nominal_seconds(block: Block) -> float:
-    """Seconds the block takes at its programmed speed: never more than it will take."""
+    """Return the time of a block at its programmed speed, in seconds. The real time is never shorter."""
     speed = (
         block.feed * abs(block.rpm) / 60.0 if block.per_rev and block.kind is not Kind.RAPID else block.feed
     )
     return block.length / speed if speed > 0.0 else 0.0
 
 
-# --- checked again before it moves ----------------------------------------------------------------------
+# --- checks before a move -------------------------------------------------------------------------------
 
 
 def check_block(block: Block, machine: Machine) -> None:
-    """Raises AlarmError for a move out of the travel, one fed by the turns of a spindle that stands, and
-    one of C while the spindle that is C turns.
+    """Check a block again before it moves.
+
+    Raises AlarmError if the block leaves the travel, feeds per revolution with a stopped spindle, or moves C
+    while the spindle, which is the C axis, turns.
     """
     if not block.moves:
         return
@@ -177,47 +185,50 @@ def check_block(block: Block, machine: Machine) -> None:
 
 @dataclass(frozen=True, slots=True)
 class Job:
-    """What is going to run: text, offsets and switches, by value. ``digest`` names exactly this job.
+    """A program with its offsets, units and switches, stored by value.
 
-    ``reading`` is its text for whoever goes through it; who proves the job has read it for who runs it.
+    ``digest`` identifies exactly this job.
+
+    ``reading`` is the parsed text. The proof and the run of a job share it.
     """
 
     source: Source
     setup: Setup
     digest: str
     reading: ReadProgram = field(compare=False, repr=False)
-    tools_set: frozenset[int] = frozenset()  # numbers of the tool offsets that somebody has entered
-    carries: frozenset[str] = frozenset()  # what the program has from the job before it
-    text_digest: str = ""  # of the text alone
-    part_of: str = ""  # digest of the program's job, when this one begins in the middle of it
+    tools_set: frozenset[int] = frozenset()  # numbers of the tool offsets that have been entered
+    carries: frozenset[str] = frozenset()  # settings that the program inherits from the previous job
+    text_digest: str = ""  # digest of the text alone
+    part_of: str = ""  # digest of the whole program's job if this job starts in its middle
 
 
 @dataclass(frozen=True, slots=True)
 class Proof:
-    """What proving said of the job with this digest.
+    """The result of proving the job with this digest.
 
-    ``warned`` says in a few words each what may go wrong as far as something is assumed: it refuses no start,
-    but is announced before it.
+    ``warned`` contains short warnings about assumed values. They do not prevent a start but are shown before
+    it.
     """
 
     digest: str
     errors: tuple[str, ...]
     blocks: int = 0
     cycle_time: float = 0.0
-    tools: tuple[int, ...] = ()  # offsets the program asks for
-    measured: tuple[int, ...] = ()  # those of them that had been set, or that the program measures itself
-    needs: tuple[Need, ...] = ()  # what it asks of the machine beyond straight lines
+    tools: tuple[int, ...] = ()  # tool offsets that the program uses
+    measured: tuple[int, ...] = ()  # those that are set or that the program measures itself
+    needs: tuple[Need, ...] = ()  # machine functions that the program needs beyond straight lines
     warned: tuple[str, ...] = ()
 
     def unset(self, job: Job) -> list[int]:
-        """Tools of the program that nobody has measured."""
+        """Return the tools of the program that are neither set nor measured by the program itself."""
         return sorted(set(self.tools) - job.tools_set - set(self.measured))
 
 
 def make_job(source: Source, setup: Setup, whole: Job | None = None) -> Job:
-    """The job of this program under these circumstances; of ``whole`` when it begins in the middle of that.
+    """Return the job of a program with its setup.
 
-    The digest covers all that the elementary blocks depend on except live inputs and where the slides stand.
+    ``whole`` is the job of the whole program if this job starts in its middle. The digest covers everything
+    that the elementary blocks depend on, except live inputs and the position of the axes.
     """
     part_of = whole.digest if whole is not None else ""
     circumstances = (
@@ -256,7 +267,10 @@ def make_job(source: Source, setup: Setup, whole: Job | None = None) -> Job:
 
 
 def outdated(job: Job, left: Modal) -> str:
-    """Whether the job before has left another unit or rapid rate than this job was proved with; in words."""
+    """Return how the present units or rapid rate differ from those of the proof.
+
+    The previous job may have changed them. The result is empty if nothing differs.
+    """
     if job.setup.begin is not None:
         return ""
     if UNITS in job.carries and job.setup.metric != left.metric:
@@ -266,11 +280,11 @@ def outdated(job: Job, left: Modal) -> str:
     return ""
 
 
-# --- a job interpreted ----------------------------------------------------------------------------------
+# --- interpretation of a job ----------------------------------------------------------------------------
 
 
 def interpret(job: Job, setup: Setup) -> ProgramPass:
-    """One pass; its blocks end at the first error, which ``problems`` then tells."""
+    """Start one pass through a job. Its blocks end at the first error, which ``problems`` then returns."""
     if setup.begin is not None and setup.begin.single:
         line = line_alone(job.source, setup)
         return ProgramPass(
@@ -281,5 +295,5 @@ def interpret(job: Job, setup: Setup) -> ProgramPass:
 
 
 def circumstances(setup: Setup, start: tuple[float, ...], inputs: Callable[[str], bool]) -> Setup:
-    """The job's setup at this machine now: from where the slides stand, with its inputs live."""
+    """Return the setup of a job with the present position of the axes and the live inputs."""
     return dataclasses.replace(setup, start=start, inputs=inputs)

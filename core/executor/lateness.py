@@ -1,46 +1,46 @@
-"""How late the computer lets the executor tick, and how deep the setpoint queue is because of it.
+"""Delay of the executor's ticks on a busy computer, and the resulting depth of the setpoint queue.
 
-The queue is what moves the axes while the executor does not run. It deepens by one step as soon as a tick has
-come so late that half of it was used up, and gives one step back after a while without a late tick.
+The queue moves the axes while the executor does not run. The queue becomes one step deeper when a late tick
+has used more than half of it. After a time without late ticks, it becomes one step shallower.
 """
 
 from __future__ import annotations
 
 import math
 
-STEPS = (0.0, 0.5, 1.0, 2.0)  # s by which the queue is deeper
-LATE = 0.1  # s: a tick that comes later than this is late
-CALM = 30.0  # s without a late tick after which one step is given back
-SHOWN = 0.1  # s: the steps in which a later reaction is shown
+STEPS = (0.0, 0.5, 1.0, 2.0)  # s added to the queue depth
+LATE = 0.1  # s; a tick with a longer delay counts as late
+CALM = 30.0  # s without a late tick after which the depth is reduced by one step
+SHOWN = 0.1  # s; the displayed delay is rounded up to this step
 AHEAD = 0.25  # s queued beyond the look-ahead, so that extending is not needed every tick
 
 
 class Lateness:
-    """Of one executor, on its thread alone. ``lookahead`` is the depth that the machine file gives, s."""
+    """Tracks late ticks of one executor. ``lookahead`` is the queue depth of the machine file, in seconds."""
 
     def __init__(self, lookahead: float) -> None:
         self._lookahead = lookahead
         self._step = 0
         self._calm_since = -math.inf
-        self._worst = 0.0  # s, since the computer was last calm
+        self._worst = 0.0  # longest delay in s since the last reset of the depth
 
     @property
     def lookahead(self) -> float:
-        """Seconds for which setpoints are queued ahead of the motion."""
+        """The time for which setpoints are queued ahead of the motion, in seconds."""
         return self._lookahead + STEPS[self._step]
 
     @property
     def hold_later(self) -> float:
-        """Seconds by which a hold may react later than it does on a computer that is not busy.
+        """The additional delay of a feed hold on a busy computer, in seconds, rounded up to 0.1 s.
 
-        They are never more than the depth of the queue: at its end the axes stop by themselves.
+        The delay never exceeds the queue depth, because the axes stop at the end of the queue.
         """
         if self._worst < LATE:
             return 0.0
         return math.ceil(min(self._worst, self.lookahead + AHEAD) / SHOWN - 1e-9) * SHOWN
 
     def look(self, late: float, now: float) -> bool:
-        """Note by how many seconds a tick came late; returns whether ``hold_later`` has grown."""
+        """Record that a tick was ``late`` seconds late; return whether ``hold_later`` has increased."""
         before = self.hold_later
         if late >= LATE:
             self._calm_since = now

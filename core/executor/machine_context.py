@@ -1,4 +1,4 @@
-"""What every part of the executor has at hand in a tick: machine, ports, spindle, switches, event log."""
+"""Data shared by all parts of the executor in a tick: machine, ports, spindle, switches and event log."""
 
 from __future__ import annotations
 
@@ -19,22 +19,22 @@ from core.ports import AxisSample, FloatArray, MachinePorts, Unknown
 
 _log = logging.getLogger(__name__)
 _QUIET = StationSignals(estop=False, start=False, hold=False, feed=1.0, spindle=1.0, auto=True, trouble="")
-_LEAST = 0.005  # of the feed: a smaller change of a pot is no change
+_LEAST = 0.005  # smallest step of the feed override
 
 
 @dataclass(slots=True)
 class Switches:
-    """The lit words that an operator turns."""
+    """The operator's switches that are shown as lit words on the screen."""
 
     single_block: bool = False
     optional_stop: bool = False
     cycle_repeat: bool = False
-    no_count: bool = False  # what runs is no part: a dry run
+    no_count: bool = False  # dry run: the cycle does not count as a part
 
 
 @dataclass(slots=True)
 class MachineContext:
-    """What all parts of the executor look at in one tick; written by the executor's thread alone."""
+    """Data that all parts of the executor share in one tick. Only the executor's thread writes it."""
 
     machine: Machine
     ports: MachinePorts
@@ -45,44 +45,48 @@ class MachineContext:
     inputs: dict[str, bool]
     outputs: CommandedOutputs  # the same as ``ports.io``
     signals: StationSignals = _QUIET
-    unknown: frozenset[Unknown] = frozenset()  # of what nothing is heard
+    unknown: frozenset[Unknown] = frozenset()  # items of which no data arrives
     switches: Switches = field(default_factory=Switches)
     soft_override: float = 1.0
-    lamp_test: float = 0.0  # until when all lamps of the tower are on
-    line: int = 0  # of the block being executed, for the log
-    stop: Alarm | None = None  # why the machine stands, where no alarm says it
+    lamp_test: float = 0.0  # time until which all lamps of the signal tower are on
+    line: int = 0  # line of the block being executed, for the log
+    stop: Alarm | None = None  # why the machine is stopped although no alarm is active
     lateness: Lateness = field(init=False)
-    _noted: Code | None = None  # the last that went into the log
-    _borne: float | None = None  # by the spindle's drive, per cent, as its samples said last
+    _noted: Code | None = None  # code of the last stop that was logged
+    _borne: float | None = None  # spindle load of the latest driver sample, per cent
 
     def __post_init__(self) -> None:
         self.lateness = Lateness(self.machine.timing.lookahead)
 
     @property
     def spindle_load(self) -> float | None:
-        """Per cent: of the machine's own input, else as the driver samples it; None where nobody tells."""
+        """The spindle load in per cent, from the machine's input or else from the driver; None if unknown."""
         return self._borne if self.signals.spindle_load is None else self.signals.spindle_load
 
     def note_load(self, samples: FloatArray | None) -> None:
-        """The newest that the driver's samples tell, (n, 5 + 3 axes); ``core.ports.SampleSource``."""
+        """Store the spindle load of the newest driver sample. ``samples`` has the shape (n, 5 + 3 axes).
+
+        The columns are described in ``core.ports.SampleSource``.
+        """
         if samples is not None and len(samples):
             load = float(samples[-1, -2])
             self._borne = load if math.isfinite(load) else None
 
     @property
     def feed_override(self) -> float:
-        """Pot times key, 0…1.5 of the programmed feed; steps of half a per cent."""
+        """The feed override: pot times screen setting, 0 to 1.5, in steps of 0.005."""
         fraction = min(self.signals.feed * self.soft_override, 1.5)
         return round(fraction / _LEAST) * _LEAST
 
     def log(self, kind: str, text: str) -> None:
-        """Put something into the log."""
+        """Write an entry with the current time and line to the event log."""
         self.log_event(Event(self.now, kind, text, self.line))
 
     def show_stop(self, code: Code, detail: str = "") -> None:
-        """A hold, a stop or the E-stop: it is shown until something goes on, and it goes into the log.
+        """Show a hold, a stop or the E-stop until motion resumes, and log it.
 
-        Of blocks that are stepped through one by one the first alone: they would push all else out of it.
+        Of consecutive single-block stops only the first is logged, so that they do not crowd out other
+        entries.
         """
         if code == "single-block" == self._noted:
             self.stop = make_alarm(code, detail, self.line, self.now)
@@ -90,7 +94,7 @@ class MachineContext:
             self.stop = self.log_stop(code, detail)
 
     def log_stop(self, code: Code, detail: str = "") -> Alarm:
-        """A stop that is over at once: it only goes into the log."""
+        """Log a stop that needs no display, and return it as an alarm entry."""
         stop = make_alarm(code, detail, self.line, self.now)
         self._noted = code
         kind = "estop" if code == "estop" else "stop"
@@ -98,14 +102,14 @@ class MachineContext:
         return stop
 
     def log_event(self, event: Event) -> None:
-        """Hand an event to who keeps the log; that it cannot be kept stops nothing."""
+        """Pass an event to the log. A failure of the log is reported but stops nothing."""
         with Attempt() as trial:
             self.on_event(event)
         if trial.error is not None:
             _log.error("an event was lost: %s", event, exc_info=trial.error)
 
     def terminal(self, name: str) -> bool:
-        """Whether an input is on, by the name or terminal that a program uses."""
+        """Return whether an input is on. ``name`` is its name or terminal, as used in a program."""
         if name in self.inputs:
             return self.inputs[name]
         for model in self.machine.inputs.values():
@@ -114,10 +118,10 @@ class MachineContext:
         return False
 
     def button(self, name: str) -> bool:
-        """Whether a button that holds a motion is down, and the enabling switch where there is one."""
+        """Return whether a jog button is pressed, together with the enabling switch if there is one."""
         return self.inputs.get(name, False) and self.inputs.get(ENABLE, True)
 
     def in_position(self) -> bool:
-        """All slides are where they were sent."""
+        """Return whether all axes are at rest and within their in-position windows."""
         pairs = zip(self.machine.axes, self.sample.following_error, strict=True)
         return not self.sample.moving and all(abs(error) <= axis.in_position for axis, error in pairs)

@@ -1,4 +1,4 @@
-"""The state of the machine and all that changes it: start, feed hold, Reset, E-stop, alarms, end."""
+"""The machine state and all its transitions: start, feed hold, Reset, E-stop, alarms and shutdown."""
 
 from __future__ import annotations
 
@@ -40,13 +40,13 @@ from core.message import Message
 from core.ports import Unknown
 
 _GOES_ON = frozenset({State.RUN, State.WAIT, State.IDLE, State.DISABLED, State.JOG, State.HOME})
-MEANT = 0.8  # s from an answer to a start by hands: half a second between two palms, and time to read
+MEANT = 0.8  # s between a confirmation and a start: 0.5 s between the two palm buttons, plus time to read
 _AT_REST = frozenset({State.IDLE, State.DISABLED})
 _STOPPED = frozenset({State.ESTOP, State.FAULT, State.DISABLED})
 
 
 class MachineControl:
-    """Everything about one machine that outlives a tick. Used by the executor's thread alone."""
+    """The complete control of one machine. Used by the executor's thread only."""
 
     def __init__(
         self,
@@ -71,29 +71,29 @@ class MachineControl:
         self.disturbance = OutputsWatch(context, self.program_run)
         self.announcement.sources += [self._spindle_starts, self.disturbance.starts, self._warned]
         self.announcement.sources.append(self._first_move_warned)
-        self.meant_at = -MEANT  # when what the next start begins was answered for
-        self.jog_ended = ""  # why the control has ended a held jog: none goes on before it was let go
-        self._turned = False  # the spindle turned as it was asked to, a tick ago
+        self.meant_at = -MEANT  # time at which the operator last confirmed a start
+        self.jog_ended = ""  # why the control ended a jog; it stays ended until the key is released
+        self._turned = False  # in the previous tick the spindle turned as commanded
         self._giving_up = False
-        self._hindered = ""  # by what a start was kept, a tick ago
+        self._hindered = ""  # the reason that prevented a start in the previous tick
 
     @property
     def state(self) -> State:
-        """The present state."""
+        """The present state of the machine."""
         return self.status.state
 
     @property
     def cycle(self) -> Cycle | None:
-        """The cycle under way, if any."""
+        """The running cycle, or None."""
         return self.program_run.cycle
 
     @property
     def modal(self) -> Modal:
-        """In force now: of the block being executed, or what stands between two programs."""
+        """The modal state of the block being executed, or the state in force between two programs."""
         return self.program_run.modal
 
     def enter(self, state: State) -> None:
-        """Change the state; raises TransitionError for a change that the table does not hold."""
+        """Change the state and log the change. Raises TransitionError if the change is not permitted."""
         if state is self.state:
             return
         demand_allowed(self.state, state)
@@ -104,10 +104,10 @@ class MachineControl:
             self._context.stop = None
         self._context.log("state", state.value)
 
-    # --- what is asked ------------------------------------------------------------------------------------
+    # --- requests -----------------------------------------------------------------------------------------
 
     def start(self) -> None:
-        """Cycle Start: begin, or go on. While a cycle runs it means nothing."""
+        """Handle Cycle Start: start or resume a cycle. Has no effect while a cycle runs."""
         state, cycle = self.state, self.cycle
         if state in ACTIVE or self._giving_up:
             return
@@ -123,14 +123,14 @@ class MachineControl:
             self.program_run.begin()
 
     def refuse(self, why: str) -> bool:
-        """Keep and log why a start is refused; False when there is no reason."""
+        """Store and log a start refusal. Return True if ``why`` contains a reason."""
         self.status.start_refused = why
         if why:
             self._context.log("refused", why)
         return bool(why)
 
     def _forget_refusal(self) -> None:
-        """What kept a start from the machine, and does so no longer, is not told any more."""
+        """Clear a displayed start refusal when its cause in the machine has gone."""
         if self.status.start_refused:
             now = start_conditions.hindrance(self._context, self.state)
             if self._hindered == self.status.start_refused != now:
@@ -138,7 +138,10 @@ class MachineControl:
             self._hindered = now
 
     def spindle_switch(self) -> None:
-        """From OFF to AUTO by hand: between programs that starts the spindle, under one the palms do."""
+        """Handle the spindle switch turned from OFF to AUTO.
+
+        Between programs the switch starts a waiting spindle. In a stopped cycle only Cycle Start does.
+        """
         spindle = self._context.spindle
         if self.state not in BY_HAND or not spindle.waits:
             return
@@ -151,7 +154,10 @@ class MachineControl:
             self.announcement.begin(SPINDLE)
 
     def _just_meant(self) -> str:
-        """An answer is no start: what it begins was asked for before the first hand came down."""
+        """Return why a start within 0.8 s after a confirmation is refused, or an empty string.
+
+        The operator cannot have read the prompt in that time.
+        """
         if self._context.now - self.meant_at >= MEANT:
             return ""
         return (
@@ -165,7 +171,10 @@ class MachineControl:
         return unclamped or self.announcement.refusal(self._context.now)
 
     def _spindle_starts(self) -> Iterator[Starting]:
-        """One that waits: in a cycle for the palms alone, between programs for its switch too."""
+        """Yield the announcement of a waiting spindle that the next start turns on.
+
+        In a cycle only Cycle Start turns it on. Between programs the spindle switch does too.
+        """
         spindle = self._context.spindle
         rpm, by_hand = spindle.would_turn, self.state in BY_HAND
         if rpm and (by_hand or (self.state in STOPPED and not spindle.start_barred)):
@@ -179,18 +188,19 @@ class MachineControl:
             )
 
     def _warned(self) -> Iterator[Starting]:
-        """What the proof of the program that would begin has warned of: it is read before it is begun."""
+        """Yield the warnings of the proof, which the operator must read before the program starts."""
         status = self.status
         job, proof = status.job, status.proof
         if self.state not in _AT_REST or status.starts in LINES or job is None or proof is None:
             return
-        if proof.digest == job.digest and proof.warned and not proof.errors:  # else nothing begins
+        # otherwise the start is refused anyway
+        if proof.digest == job.digest and proof.warned and not proof.errors:
             first, more = proof.warned[0], len(proof.warned) - 1
             said = Message("{first_error} ({more} MORE)", first_error=first, more=more) if more else first
             yield Starting("warned" + job.digest, Message("WARNING: {warned}", warned=said), lambda: None)
 
     def _first_move_warned(self) -> Iterator[Starting]:
-        """What the first move may meet where the part is not known, or is only assumed."""
+        """Yield the warning that the first move may hit a part that is unknown or only assumed."""
         if self.state not in _AT_REST or not self.status.checks_starts:
             return
         found = start_conditions.first_move_verdict(self._context, self.status, self.counters.begun)
@@ -200,10 +210,10 @@ class MachineControl:
             )
 
     def feed_hold(self, reason: str, by: str = "", code: Code | None = None) -> None:
-        """Hold the cycle, end a jog, brake a homing, take the handwheel away.
+        """Hold the cycle, end a jog, stop homing and disable the handwheel.
 
-        ``reason`` in the words of the catalogue or with its ``code``, empty where somebody pressed it: ``by``
-        whom.
+        ``reason`` is a text of the alarm catalog, or a detail for ``code``. It is empty if a button was
+        pressed; ``by`` then names the button.
         """
         if self.wheel.axis:
             self.wheel.end(reason.lower() or "feed hold", self.state)
@@ -216,7 +226,7 @@ class MachineControl:
             self.cycle.hold(reason, by, code)
 
     def reset(self) -> None:
-        """Give the program up, stop the spindle, acknowledge alarms."""
+        """Cancel the program, stop the spindle and acknowledge alarms."""
         self.status.start_refused = ""
         self.safe.functions_off()
         if self.status.alarms:
@@ -235,26 +245,27 @@ class MachineControl:
             self._stop_homing()
 
     def stop_jog(self, why: str) -> None:
-        """What is moved by hand stops, and with it a touch-off. Raises DriverError."""
+        """Stop manual motion and a touch-off for the reason ``why``. Raises DriverError."""
         self.touch.end(why)
         self.jogger.stop()
 
     def let_go(self) -> None:
-        """The key or finger that holds a jog is up: the next press counts again. Raises DriverError.
+        """Handle the release of a jog key or button, after which the next press counts again.
 
-        A release that comes late or twice stops nothing that runs after the jog.
+        A late or repeated release does not stop a motion that started after the jog. Raises DriverError if a
+        driver fails.
         """
         self.jog_ended = ""
         if self.state is State.JOG:
             self.stop_jog("the key or button was released")
 
     def _end_jog(self, why: str) -> None:
-        """The control ends what is moved by hand; renewals of a key that is still held are refused."""
+        """End manual motion and refuse further renewals until the key is released."""
         self.jog_ended = "" if self.jogger.stepping or self.jogger.goal is not None else why
         self.stop_jog(why)
 
     def _mind_spindle(self) -> None:
-        """Who feeds by hand into a part that turned a moment ago would crash into one that stands."""
+        """End manual motion when the spindle stops, because the tool would crash into the stopped part."""
         spindle = self._context.spindle
         turned, self._turned = self._turned, spindle.asked and not spindle.fails
         if not turned or self._turned or self.state is not State.JOG:
@@ -278,12 +289,15 @@ class MachineControl:
             self._context.log("refused", Message("jog: {why}", why=why))
 
     def follow_wheel(self) -> None:
-        """Where the handwheel is turned, its axis goes. Raises DriverError."""
+        """Move the selected axis as the handwheel turns. Raises DriverError if a driver fails."""
         if self.wheel.turn(self.state):
             self.enter(State.JOG)
 
     def mirror_estop(self, pressed: bool) -> None:
-        """The hardware has stopped everything; the control follows, and nothing starts on release."""
+        """Follow the E-stop of the hardware, which has stopped the machine.
+
+        Nothing starts when it is released.
+        """
         if pressed and self.state is not State.ESTOP:
             self.safe.react(Reaction.OFF)
             self._context.show_stop("estop")
@@ -292,10 +306,10 @@ class MachineControl:
         elif not pressed and self.state is State.ESTOP:
             self.enter(State.DISABLED)
 
-    # --- every tick ---------------------------------------------------------------------------------------
+    # --- actions in every tick ----------------------------------------------------------------------------
 
     def go_on(self) -> None:
-        """Whatever is under way. Raises AlarmError, MotionError, DriverError."""
+        """Advance the active function by one tick. Raises AlarmError, MotionError or DriverError."""
         self._finish_stopping()
         self._forget_refusal()
         self.program_run.look()
@@ -315,7 +329,7 @@ class MachineControl:
             self.enter(State.IDLE)
 
     def _go_on_by_hand(self) -> None:
-        """A touch-off goes on through its standstills; a jog is over at rest, and ends with its button."""
+        """Advance a touch-off or a jog. The jog is over when the axis is at rest."""
         if self.touch.phase is not None:
             self.touch.step()
             return
@@ -325,7 +339,7 @@ class MachineControl:
             self.enter(State.IDLE)
 
     def _mind_the_queue(self, cycle: Cycle) -> None:
-        """A host that comes back too late finds the slides braking on their path, or at rest: a hold."""
+        """Hold the cycle if the setpoint queue runs low, because the computer was too late to refill it."""
         motion = self.program_run.motion
         left = motion.starving - self._context.now
         if motion.active and left < self._context.machine.timing.low_water:
@@ -344,7 +358,7 @@ class MachineControl:
     # --- alarms -------------------------------------------------------------------------------------------
 
     def alarm(self, trouble: AlarmError) -> None:
-        """Stop the machine and say why. The same alarm twice is one."""
+        """Stop the machine and show the alarm. An alarm that is already active is ignored."""
         context = self._context
         alarm, reaction = alarm_and_reaction(trouble, context.line, context.now)
         if any(old.code == alarm.code for old in self.status.alarms):
@@ -361,7 +375,7 @@ class MachineControl:
         context.log_event(Event(context.now, "alarm", log_line(alarm), alarm.line, alarm))
 
     def _holds(self, trouble: AlarmError) -> bool:
-        """What need not cost the part is a hold; False where there is nothing that could be held."""
+        """Handle an alarm whose reaction is feed hold; return False if nothing is moving."""
         if self.cycle is not None and self.state in ACTIVE:
             self.cycle.starve(trouble.code, trouble.detail)
         elif self.state in BY_HAND:
@@ -373,15 +387,15 @@ class MachineControl:
         return True
 
     def failed(self, error: BaseException) -> None:
-        """A mistake of the control itself, whatever the table of states says about it."""
+        """Enter the alarm state for an internal error, even if the transition table does not permit it."""
         if self.state is not State.ESTOP:
             self.status.state = State.FAULT
         self.alarm(AlarmError("internal", Message("{name}: {error}", name=type(error).__name__, error=error)))
 
     def _give_up(self, why: str) -> None:
-        """What was under way is over, whether or not what it stood on still answers."""
+        """Cancel the active function, even if its driver no longer responds."""
         self._giving_up = False
-        self.jogger.forget()  # the stop has ended it: a release that comes later finds nothing to stop
+        self.jogger.forget()  # The stop has ended the jog, so a later release must not stop anything.
         with Attempt() as trial:
             self.program_run.forget(why)
         if trial.error is not None:
@@ -391,7 +405,7 @@ class MachineControl:
             )
 
     def _finish_stopping(self) -> None:
-        """A safe stop that a driver keeps from being done is tried on, and is an alarm of its own."""
+        """Retry an incomplete safe stop and raise an alarm if a driver still does not carry it out."""
         if self.state in _STOPPED:
             self.safe.again()
             if self.safe.undone and not any(each.code in CUT_OFF for each in self.status.alarms):
@@ -406,7 +420,7 @@ class MachineControl:
                 )
 
     def shut(self) -> None:
-        """Nothing is left moving or switched on."""
+        """Stop all motion and switch everything off."""
         self.safe.react(Reaction.OFF)
         self.safe.finish()
         self._give_up(CLOSED)
@@ -414,14 +428,14 @@ class MachineControl:
             self.status.state = State.DISABLED
 
     def _power_off(self) -> None:
-        """Drives that nobody hears are not told either; Reset is what leads back to them."""
+        """Switch the drives off. A failure is ignored if the drives no longer communicate."""
         with Attempt() as off:
             self._context.ports.axes.enable(False)
         if off.error is not None and Unknown.SLIDES not in self._context.unknown:
             raise off.error
 
     def _acknowledge(self) -> None:
-        """Reset with an alarm: only at rest, and drives that an alarm has switched off stay off."""
+        """Acknowledge the alarms at rest. Drives that an alarm has switched off remain off."""
         context, status = self._context, self.status
         if context.sample.moving:
             context.log("refused", "reset: wait until the axes have stopped")

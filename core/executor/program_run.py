@@ -1,6 +1,6 @@
-"""Runs of programs and MDI lines: begun, repeated (Cycle Repeat), given up; changed offsets such as wear.
+"""Runs of programs and MDI lines: start, Cycle Repeat, cancel, and changed offsets such as wear.
 
-Between two parts changed offsets are taken up, and what a run leaves in force is kept for the next.
+Changed offsets take effect between two parts. The modal state that a run leaves is stored for the next run.
 """
 
 from __future__ import annotations
@@ -33,10 +33,12 @@ from core.tool_edges import tool_of
 
 
 class ChangedOffsets:
-    """The program under way with other offsets, at most one; the part under way keeps those that it has.
+    """A request to continue the running program with changed offsets.
 
-    What was asked for must be proved before anything of the program moves again: with Cycle Repeat the next
-    part waits for it, and a program that does not pass the proof with the new offsets is not repeated.
+    The part in progress uses its present ones.
+
+    The changed job must be proved before its first move. With Cycle Repeat, the next part waits for the
+    proof. A program that fails the proof with the new offsets is not repeated.
     """
 
     def __init__(self, context: MachineContext) -> None:
@@ -45,16 +47,16 @@ class ChangedOffsets:
 
     @property
     def wanted(self) -> bool:
-        """Whether the next part begins with other offsets."""
+        """True if the next part starts with changed offsets."""
         return self._asked is not None
 
     @property
     def pending(self) -> bool:
-        """Whether the proof is still to come."""
+        """True if the proof of the changed offsets has not arrived yet."""
         return self._asked is not None and self._asked.proof is None and not self._asked.trouble
 
     def ask(self, asked: Renew, running: Job | None) -> str:
-        """Keep them for the end of the part; returns why not, empty when they are kept."""
+        """Store a request until the end of the part; return why it is refused, or an empty string."""
         job = asked.job
         if job is not None and (running is None or job.source.text != running.source.text):
             return (
@@ -65,7 +67,7 @@ class ChangedOffsets:
         return ""
 
     def refusal(self, left: Modal) -> str:
-        """Why the program is not repeated with what was asked for; empty without a reason."""
+        """Return why the program is not repeated with the changed offsets, or an empty string."""
         asked = self._asked
         if asked is None:
             return ""
@@ -77,9 +79,9 @@ class ChangedOffsets:
         return why or outdated(asked.job, left)
 
     def take_up(self, status: ControlStatus) -> None:
-        """Between two parts, or when the program is over: what was asked for is the program now.
+        """Make the changed job the loaded program, between two parts or after the program.
 
-        Without its proof nothing can be started: the old offsets are not those of the tables any more.
+        Without a proof, the program cannot start, because its old offsets no longer match the tables.
         """
         asked, self._asked = self._asked, None
         if asked is None:
@@ -92,12 +94,12 @@ class ChangedOffsets:
             self._context.log("offsets", "the changed offsets are in effect")
 
     def forget(self) -> None:
-        """Another program is loaded: nothing is asked for any more."""
+        """Discard the request because another program is loaded."""
         self._asked = None
 
 
 class ProgramRun:
-    """The cycle under way, if any, and what stands between two of them. On the executor's thread alone."""
+    """The running cycle and the state between two cycles. Used by the executor's thread only."""
 
     def __init__(
         self,
@@ -118,12 +120,12 @@ class ProgramRun:
         self.changed_offsets = ChangedOffsets(context)
         self.cycle: Cycle | None = None
         self._source: ProgramPass | None = None
-        self._line = False  # what is under way is a line of MDI
-        self._dialect = Dialect.OMNITURN  # of what is under way
-        self._between = False  # the part is made, and the next one waits for the proof of changed offsets
+        self._line = False  # the run is an MDI line
+        self._dialect = Dialect.OMNITURN  # language of the run
+        self._between = False  # a part is finished, and the next one waits for the proof of changed offsets
 
     def refusal(self, state: State) -> str:
-        """Why what Cycle Start would begin may not begin; empty when it may."""
+        """Return why Cycle Start may not start the selected job, or an empty string."""
         why = start_conditions.start_refusal(self._context, state, self.status)
         self.status.start_code = ""
         if why:
@@ -135,7 +137,7 @@ class ProgramRun:
         return why or self.interruption.refusal
 
     def begin(self) -> None:
-        """The program, a restart in it, or the line of MDI; whatever was prepared counts once."""
+        """Start the program, the restart or the MDI line. A prepared job is used only once."""
         status, context = self.status, self._context
         job = start_conditions.job_to_start(status)
         assert job is not None
@@ -158,22 +160,22 @@ class ProgramRun:
 
     @property
     def will_count(self) -> bool:
-        """Whether a program is under way that will have made a part when it ends."""
+        """True if a program is running that will count as a part when it ends."""
         return self.cycle is not None and not (self._line or self._between or self.parts.why_none)
 
     def disturb(self, why: str) -> None:
-        """Something was off that the program had on: the part under way is not counted."""
+        """Mark the part in progress as disturbed, so that it is not counted."""
         if not (self._line or self._between):
             self.parts.piece.disturbed = self.parts.piece.disturbed or why
 
     def cut(self, seconds: float) -> None:
-        """So much time has gone by: at feed it wears the tool. In a dry run nothing is cut."""
+        """Add ``seconds`` to the cutting time of the tool if it moves at feed. Dry runs do not count."""
         block = self.cycle.current if self.cycle is not None and not self.cycle.at_rest else None
         if block is not None and block.moves and not block.rapid and not self._context.switches.no_count:
             self.counters.cut(tool_of(block.modal.tool), seconds, self._context.spindle_load)
 
     def leave(self) -> bool:
-        """A cycle that was reset is over as soon as the slides rest; True once it is."""
+        """Finish a canceled cycle as soon as the axes are at rest; return True when it is finished."""
         if self.cycle is None or not self.cycle.at_rest:
             return False
         said = "the MDI line was canceled by reset" if self._line else "program canceled by reset"
@@ -184,9 +186,9 @@ class ProgramRun:
         return True
 
     def forget(self, why: str) -> None:
-        """What an interrupted program leaves in force is what M30 would have left; MDI keeps its modes.
+        """Cancel the run for the reason ``why``.
 
-        ``why`` is in words what interrupts it.
+        A program leaves the modal state that M30 would leave. An MDI line leaves its modes.
         """
         cycle = self.cycle
         if cycle is None:
@@ -199,13 +201,13 @@ class ProgramRun:
         self._put_away(modal_interrupted(cycle.modal) if self._line else given_up)
 
     def drop(self) -> None:
-        """The same where nothing answers any more: only that nothing goes on counts."""
+        """Discard the run without calling the drivers, for use after a driver failure."""
         self.cycle = self._source = None
         self._between = False
         self._context.line = 0
 
     def _put_away(self, left: Modal, *, tool_open: bool = False) -> None:
-        """Nothing is under way any more; offsets that were changed meanwhile count from here on."""
+        """End the run with the modal state ``left`` and apply offsets that were changed during the run."""
         self._stand(left, tool_open=tool_open)
         if not self._line:
             self.status.kept = None
@@ -216,14 +218,14 @@ class ProgramRun:
         self.changed_offsets.take_up(self.status)
 
     def _stand(self, modal: Modal, *, tool_open: bool = False) -> None:
-        """Unit and rapid rate are OmniTurn's own: what other dialects did with theirs does not count."""
+        """Store the modal state. Units and rapid rate are taken over only from OmniTurn programs."""
         before = self.status.modal
         if self._dialect is not Dialect.OMNITURN:
             modal = modal._replace(metric=before.metric, rapid_rate=before.rapid_rate)
         self.status.modal, self.status.tool_open = modal, tool_open
 
     def look(self) -> None:
-        """Between two cycles: what stands is what the machine really does; the next part may begin."""
+        """Update the state between two cycles, and start the next part of Cycle Repeat if it may start."""
         self.interruption.look(None if self._line or self._between else self.cycle)
         if self.cycle is None:
             self.status.modal = modal_as_machine(self.status.modal, self._context)
@@ -231,7 +233,7 @@ class ProgramRun:
             self._go_round(self.cycle)
 
     def _open(self, job: Job) -> None:
-        """A pass from where the slides stand now; nothing is kept of an earlier one."""
+        """Start a pass through ``job`` from the present position of the axes."""
         at, _ = self._context.ports.axes.demand_at(self._context.now)
         setup = circumstances(job.setup, at, self._context.terminal)
         self.motion.forget()
@@ -243,7 +245,7 @@ class ProgramRun:
         self.cycle = Cycle(self._context, self.motion, self._source, begins, self._enter, self._ended)
 
     def _ended(self, end: ProgramEnd | None) -> None:
-        """M30 and M02, or the end of a line of MDI."""
+        """Handle M30, M02, or the end of an MDI line."""
         if end is not None and end.reset:
             self._end_functions()
         if self._line:
@@ -258,7 +260,7 @@ class ProgramRun:
             self._program_ended()
 
     def _go_round(self, cycle: Cycle) -> None:
-        """The next part begins once changed offsets are proved; or why it does not is said."""
+        """Start the next part once changed offsets are proved, or log why it does not start."""
         repeat = self._context.switches.cycle_repeat
         if repeat and self.changed_offsets.pending and not self.status.next_barred:
             cycle.wait_for("PROVING WITH THE CHANGED OFFSETS")
@@ -300,7 +302,10 @@ class ProgramRun:
         self._enter(State.IDLE)
 
     def _line_ended(self, end: ProgramEnd | None) -> None:
-        """What the line leaves to the next one; M30 leaves what it leaves behind a program."""
+        """Store the state that an MDI line leaves for the next line.
+
+        After M30 it is the state after a program.
+        """
         source = self._source
         left = source.left() if source is not None and source.left is not None else None
         modal = self.modal if left is None else modal_as_machine(left.modal, self._context)
@@ -311,11 +316,11 @@ class ProgramRun:
 
     @property
     def modal(self) -> Modal:
-        """In force now: of the block being executed, or what stands between two programs."""
+        """The modal state of the block being executed, or the state in force between two programs."""
         return self.cycle.modal if self.cycle is not None else self.status.modal
 
     def _end_functions(self) -> None:
-        """M30 ends what M functions have begun; the collet stays."""
+        """Stop the spindle and turn off the outputs at M30, except the collet."""
         context = self._context
         context.spindle.stop()
         for name, on in context.ports.io.outputs().items():
@@ -324,6 +329,6 @@ class ProgramRun:
 
 
 def _motion_of(context: MachineContext) -> PathMotion:
-    """By setpoints, or block by block where the controller plans by itself."""
+    """Return the motion by setpoints, or block by block if the controller plans the motion."""
     blocks = context.ports.blocks
     return SetpointMotion(context) if blocks is None else ControllerMotion(context, blocks)

@@ -1,4 +1,4 @@
-"""An alarm as it is raised, with what the catalogue says, and attempts that report their failure."""
+"""Raised alarms with their catalog entries, and context managers that catch and report failures."""
 
 from __future__ import annotations
 
@@ -19,9 +19,10 @@ CODES_OF_HOLDS: dict[str, Code] = {
 
 
 class AlarmError(Exception):
-    """Something that must stop the machine: an alarm's code, and what exactly, where.
+    """Raised for a condition that must stop the machine.
 
-    ``detail`` is a sentence: for the operator where the catalogue's entry says so, else for the log.
+    ``code`` is the code of the alarm catalog, and ``line`` is the program line or 0. ``detail`` is a sentence
+    that is shown to the operator if the catalog entry permits it, and is logged otherwise.
     """
 
     def __init__(self, code: Code, detail: str = "", line: int = 0) -> None:
@@ -32,13 +33,13 @@ class AlarmError(Exception):
 
 
 def alarm_and_reaction(trouble: AlarmError, line: int, now: float) -> tuple[Alarm, Reaction]:
-    """The alarm to show, and what it makes of the machine."""
+    """Return the alarm to show, with ``line`` as its default line, and the reaction of the machine."""
     alarm = make_alarm(trouble.code, trouble.detail, trouble.line or line, now)
     return alarm, CATALOGUE[trouble.code].reaction
 
 
 def make_alarm(code: Code, detail: str, line: int, now: float) -> Alarm:
-    """What the catalogue says of an alarm, a hold or a stop, and what is known of this one."""
+    """Return an alarm, a hold or a stop with the texts of the catalog and the details of this case."""
     entry = CATALOGUE[code]
     exactly = detail if entry.tells else ""
     return Alarm(
@@ -55,7 +56,11 @@ def make_alarm(code: Code, detail: str, line: int, now: float) -> Alarm:
 
 
 def code_of_hold(reason: str, by: str) -> tuple[Code, str]:
-    """What of the catalogue a hold is: ``reason`` in its words, or ``by`` whom it was pressed."""
+    """Return the alarm code and the detail of a hold.
+
+    ``reason`` is a catalog text in capitals or a free text. It is empty if a button was pressed; ``by`` then
+    names the button.
+    """
     if not reason:
         return "feed-hold", Message("feed hold requested by {name}", name=by) if by else ""
     code = CODES_OF_HOLDS.get(reason)
@@ -63,20 +68,20 @@ def code_of_hold(reason: str, by: str) -> tuple[Code, str]:
 
 
 def log_line(alarm: Alarm) -> str:
-    """One line for the log of events; it begins with the number, by which the catalogue is found again."""
+    """Return one line for the event log, starting with the alarm number of the catalog."""
     return Message("{number} {alarm}: {cause}", number=alarm.number, alarm=alarm.text, cause=alarm.cause)
 
 
 def log_alarm(alarm: Alarm) -> None:
-    """The technical side of an alarm, for whoever mends it."""
+    """Write the technical details of an alarm to the log file, for service."""
     where = Message(" line {line}", line=alarm.line) if alarm.line else ""
     _log.warning("alarm %d %s%s: %s", alarm.number, alarm.code, where, alarm.detail or alarm.cause)
 
 
 class Attempt:
-    """A ``with`` block that is over when it fails: ``error`` is what it raised, SystemExit of a library too.
+    """A ``with`` block that catches its error, including SystemExit, and stores it in ``error``.
 
-    Only Ctrl-C goes on: it is meant for the program, and comes to its main thread alone.
+    Only KeyboardInterrupt is raised again, because it is meant for the main thread of the program.
     """
 
     def __init__(self) -> None:
@@ -93,10 +98,10 @@ class Attempt:
 
 
 class ReportedAttempt(Attempt):
-    """A ``with`` block whose failure is written to the log, given to ``failed`` and then over.
+    """A ``with`` block that logs its error and passes it to ``failed``.
 
-    Should ``failed`` fail as well, that is written too. What comes in every tick is written the first, the
-    tenth, the hundredth time, so that it does not drown what was before.
+    An error in ``failed`` is logged too. An error that repeats in every tick is logged the first, tenth,
+    hundredth … time, so that it does not hide earlier entries.
     """
 
     _written: ClassVar[Counter[str]] = Counter()

@@ -1,7 +1,8 @@
-"""The recorder of the scope: takes over what the executor hands out each tick, and keeps the last minutes.
+"""Recorder of the scope: stores the data of the executor's ticks for the last minutes.
 
-The executor only appends to a queue. A thread of its own empties that ten times a second into the ring, twice
-a second while the machine rests, and writes what stood before an alarm into a file.
+The executor only appends to a queue. A separate thread moves the queue into a ring buffer ten times per
+second, or twice per second while the machine rests. The thread also saves the record before an alarm to a
+file.
 """
 
 from __future__ import annotations
@@ -30,14 +31,14 @@ from core.records.ring_file import NOW, RingFile, new_ring
 
 _log = logging.getLogger(__name__)
 _NAN = float("nan")
-_LOOK = 0.1  # s between two looks at what was handed over
-_RESTS = 0.5  # s more while nothing happens
-_AT_REST = 0.1  # s between two rows of a machine on which nothing changes
+_LOOK = 0.1  # s between two passes through the queue
+_RESTS = 0.5  # additional s while nothing happens
+_AT_REST = 0.1  # s between two rows while no value changes
 _GRAIN = 0.005  # s; half a tick
-_MOST = 12_000  # ticks that wait for a recorder that does not come: two minutes
-BEFORE, BEHIND = 10.0, 2.0  # s before an alarm and after it that are kept with it
-_SOON = 0.2  # s; a machine that stands is waited for so long
-ENDS = 3.0  # s that closing waits for the thread: a disk may hang
+_MOST = 12_000  # largest number of queued ticks: 2 min
+BEFORE, BEHIND = 10.0, 2.0  # s before and after an alarm that its record contains
+_SOON = 0.2  # s that the record continues after an alarm at rest
+ENDS = 3.0  # s that closing waits for the thread, because a disk may hang
 _FROZEN = frozenset({"alarm", "estop"})  # kinds of events
 _STATES = {state: float(i) for i, state in enumerate(State)}
 _STANDS = 0.01  # mm/s
@@ -45,14 +46,14 @@ _TURNS = 1.0  # rpm
 
 
 class _Frozen(NamedTuple):
-    """An alarm whose record is still to be written."""
+    """An alarm whose record has not been written yet."""
 
     event: Event
     program: str
 
 
 def recorded_of(machine: Machine, ports: MachinePorts) -> Recorded:
-    """What is recorded of this machine."""
+    """Return the list of signals that are recorded for this machine."""
     return Recorded(
         {axis.name: axis.rotary for axis in machine.axes},
         tuple(machine.inputs),
@@ -65,11 +66,12 @@ def recorded_of(machine: Machine, ports: MachinePorts) -> Recorded:
 
 
 class Recorder(Recordings):
-    """``tell`` and ``note`` are the executor's; ``latest`` and ``between`` may be used from any thread.
+    """Records ticks in a ring buffer and saves a file for each alarm.
 
-    ``folder`` is where the ring's file ``name`` and the records of alarms lie, None: nothing is written.
-    ``trouble`` says why the file is not written; the record is then in memory alone. ``memory`` is shared
-    with another process that reads the ring.
+    The executor calls ``tell`` and ``note``; ``latest`` and ``between`` may be used from any thread.
+    ``folder`` contains the ring file ``name`` and the alarm records; None means that no file is written.
+    ``trouble`` is the reason why the ring file cannot be written, in which case the record is in memory only.
+    ``memory`` is shared with another process that reads the ring.
     """
 
     def __init__(
@@ -83,12 +85,12 @@ class Recorder(Recordings):
         self._told: deque[Tick] = deque(maxlen=_MOST)
         self._noted: deque[_Frozen] = deque()
         self._freezing: _Frozen | None = None
-        self._name = self._writing = ""  # of the record that is being waited for, that is being written
+        self._name = self._writing = ""  # names of the record that is pending and of the record being written
         self._program = ""
-        self._skipped: list[float] | None = None  # the last tick, where it said nothing new
+        self._skipped: list[float] | None = None  # the last tick if it contained no change
         self._figures: list[float] = []
         self._late = 0.0
-        self._silent = False  # nothing is heard of the slides
+        self._silent = False  # no data arrives from the axes
         self._place: tuple[object, ...] = ()
         self._resting: list[float] | None = None
         self._file: RingFile | None = None
@@ -106,14 +108,14 @@ class Recorder(Recordings):
     # --- the executor's thread ------------------------------------------------------------------------
 
     def tell(self, tick: Tick) -> None:
-        """One tick; never waits."""
+        """Queue the data of one tick. Never waits."""
         self._program = tick.snapshot.program
         self._told.append(tick)
         if not tick.rests:
             self._happens.set()
 
     def note(self, event: Event) -> Event:
-        """An alarm or E-stop is given the name of its record, which will be written; never waits."""
+        """Return an alarm or E-stop event with the name of the record that will be written. Never waits."""
         if self.folder is None or event.kind not in _FROZEN or event.alarm is None:
             return event
         if not self._name:
@@ -132,11 +134,11 @@ class Recorder(Recordings):
     # --- the recorder's thread --------------------------------------------------------------------------
 
     def start(self) -> None:
-        """Begin to empty the queue."""
+        """Start the recorder's thread."""
         self._thread.start()
 
     def close(self) -> None:
-        """Keep what was handed over, write what was frozen, and end."""
+        """Store the queued ticks, write the open alarm record and end the thread."""
         self._closing.set()
         self._happens.set()
         if self._thread.is_alive():
@@ -157,7 +159,7 @@ class Recorder(Recordings):
                 return
 
     def drain(self, *, last: bool = False) -> None:
-        """Keep what was handed over so far; ``last``: nothing more will come."""
+        """Store the queued ticks. ``last`` is True if no more ticks will follow."""
         ticks = [self._told.popleft() for _ in range(len(self._told))]
         if ticks:
             self._keep(self.ring.ticks, self._tick_rows(ticks))
@@ -178,7 +180,7 @@ class Recorder(Recordings):
                 self._file = None
 
     def _tick_rows(self, ticks: Iterable[Tick]) -> FloatArray:
-        """A row of each tick that says something new, and ten a second of a machine at rest."""
+        """Return a row for each tick that contains a change, and ten rows per second at rest."""
         recorded, last = self.ring.recorded, self.ring.ticks.last
         rows: list[list[float]] = []
         for tick in ticks:
@@ -209,7 +211,7 @@ class Recorder(Recordings):
         return np.array(rows).reshape(-1, recorded.tick_width)
 
     def _sample_rows(self, ticks: list[Tick]) -> FloatArray:
-        """The driver's, or where it has none what the axes said at each tick."""
+        """Return the driver's samples, or the axis positions at each tick if the driver has no samples."""
         width, last = self.ring.recorded.sample_width, self.ring.samples.last
         told = [
             _loaded(tick.samples, tick) for tick in ticks if tick.samples is not None and len(tick.samples)
@@ -221,7 +223,7 @@ class Recorder(Recordings):
         return rows[rows[:, 0] > np.maximum.accumulate(np.concatenate(([last], rows[:-1, 0])))]
 
     def _with_gap(self, rows: FloatArray, ticks: Iterable[Tick]) -> FloatArray:
-        """Where slides begin not to be heard of there is a row without figures: nothing is drawn across."""
+        """Insert a row of NaN where the data of the axes is lost, so that no line is drawn across the gap."""
         silent = [tick.snapshot.t for tick in ticks if Unknown.SLIDES in tick.snapshot.unknown]
         begins, self._silent = bool(silent) and not self._silent, bool(silent)
         if not silent:
@@ -232,7 +234,7 @@ class Recorder(Recordings):
         return np.concatenate([before, gap, behind])
 
     def _seen(self, ticks: Iterable[Tick], last: float) -> FloatArray:
-        """Samples by the snapshots: the last row before anything changes is among them."""
+        """Return samples taken from the snapshots. The last row before a change is always included."""
         width, none = self.ring.recorded.sample_width, [_NAN] * len(self.ring.recorded.axes)
         rows: list[list[float]] = []
         for tick in ticks:
@@ -253,14 +255,14 @@ class Recorder(Recordings):
     # --- records of alarms --------------------------------------------------------------------------------
 
     def _freeze(self, now: Snapshot | None, *, last: bool) -> None:
-        """Write the record of an alarm once the machine stands, or two seconds have gone by."""
+        """Write the record of an alarm when the machine is at rest or 2 s have passed."""
         if self._freezing is None and self._noted:
             self._freezing = self._noted.popleft()
         if self._freezing is None or (now is None and not last):
             return
         event = self._freezing.event
         if last or now is None or _over(now, event.t):
-            self._name, self._writing = "", self._name  # what comes now has a record of its own
+            self._name, self._writing = "", self._name  # a later alarm gets its own record
             frozen, self._freezing = self._freezing, None
             self._write(frozen, min(self.ring.samples.last, event.t + BEHIND))
             self._writing = ""
@@ -291,7 +293,7 @@ class Recorder(Recordings):
 
 
 def _told(figures: list[float], heard: bool) -> list[float]:
-    """The figures; of what nothing is heard none."""
+    """Return the values, or NaN for each value if no data arrives."""
     return figures if heard else [_NAN] * len(figures)
 
 
@@ -301,7 +303,7 @@ def _over(now: Snapshot, alarm: float) -> bool:
 
 
 def rotate(folder: Path) -> None:
-    """Take away the oldest records of alarms beyond the number that is kept. Raises RecordError."""
+    """Delete the oldest alarm records above the permitted number. Raises RecordError if deletion fails."""
     try:
         for old in sorted(folder.glob(f"*-alarm*{ENDING}"))[:-KEPT]:
             old.unlink()
@@ -315,7 +317,7 @@ def rotate(folder: Path) -> None:
         ) from error
 
 
-_LOAD = -2  # column of the spindle's load in a sample
+_LOAD = -2  # column of the spindle load in a sample
 
 
 def _load(tick: Tick) -> float:
@@ -323,7 +325,7 @@ def _load(tick: Tick) -> float:
 
 
 def _loaded(rows: FloatArray, tick: Tick) -> FloatArray:
-    """With the load that an input tells, where the driver's own samples tell none."""
+    """Return the samples with the spindle load of the machine's input, if the driver does not measure it."""
     load = tick.snapshot.spindle_load
     if load is None or not len(rows) or not np.isnan(rows[:, _LOAD]).all():
         return rows

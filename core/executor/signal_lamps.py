@@ -1,8 +1,8 @@
-"""What the machine signals now, and the signal tower that shows it: red, amber, green and buzzer.
+"""Signal tower with red, amber and green lamps and a buzzer, and the machine signals that it shows.
 
-Lamps are no outputs of the program: one that fails holds no cycle, M30 leaves them, and a machine at rest
-sleeps with one on. A fault of the drives, the E-stop and the end of the control bring them to their safe
-state with all other outputs, by the drivers' own way; then the control lights what it can still light.
+Lamps are not outputs of the program. A failed lamp does not hold the cycle, M30 does not change lamps, and a
+lamp that is on does not keep a machine at rest awake. A drive fault, the E-stop and the shutdown bring lamps
+to their safe state like all other outputs. The control then turns on the lamps that it can still switch.
 """
 
 from __future__ import annotations
@@ -17,19 +17,22 @@ from core.message import Message
 from core.ports import DigitalIO, Unknown
 
 _NO_PARTS = frozenset({State.ESTOP, State.FAULT, State.DISABLED})
-_AGAIN = 1.0  # s until a lamp that is not as it was switched is switched again
-_REFUSED = 5.0  # s until one that the driver refused is
+_AGAIN = 1.0  # s after which a lamp in the wrong state is switched again
+_REFUSED = 5.0  # s after which a lamp that the driver refused is switched again
 
 
 @dataclass(slots=True)
 class SignalKinds:
-    """Sees every tick or every frame; remembers whether a part is done and nobody has begun another."""
+    """Determines the active signals, and remembers whether a part is finished and no other has started."""
 
     _ends: int = -1
     _made: bool = False
 
     def see(self, state: State, ends: int, *, barred: bool) -> tuple[str, ...]:
-        """Everything that is so now. ``ends`` of programs; ``barred``: no other part begins."""
+        """Return the names of all active signals.
+
+        ``ends`` is the number of finished programs. ``barred`` is True if no other part may start.
+        """
         self._made = (self._made or ends > self._ends >= 0) and state is State.IDLE
         self._ends = ends
         found = [kind for kind in (_of_state(state),) if kind]
@@ -52,27 +55,28 @@ def _of_state(state: State) -> str:
 
 @dataclass(slots=True)
 class SignalLamps:
-    """``look`` is called last in a tick, on the executor's thread. It raises nothing and never waits."""
+    """Switches the lamps at the end of each tick on the executor's thread. Never raises or waits."""
 
     context: MachineContext
-    io: DigitalIO  # the driver's own: what is written here is no command of a program
+    io: DigitalIO  # the driver's port, because lamps are not commanded by a program
     _lamps: tuple[str, ...] = field(init=False)
     _kinds: tuple[str, ...] = ()
-    _since: dict[str, float] = field(default_factory=dict)  # when each kind began
+    _since: dict[str, float] = field(default_factory=dict)  # start time of each signal
     _signals: SignalKinds = field(default_factory=SignalKinds)
-    _due: dict[str, float] = field(default_factory=dict)  # before which a lamp is not switched again
+    _due: dict[str, float] = field(default_factory=dict)  # earliest time at which each lamp is switched again
     _sent: dict[str, bool] = field(default_factory=dict)
-    _refused: dict[str, float] = field(default_factory=dict)  # by its driver; not asked again before
+    # earliest time of the next attempt after a refusal of the driver
+    _refused: dict[str, float] = field(default_factory=dict)
     _told: str = ""
 
     def __post_init__(self) -> None:
         self._lamps = self.context.machine.lamps
 
     def look(self, state: State, ends: int, *, barred: bool) -> None:
-        """The machine of this tick; ``barred``: no other part begins, for a tool or a measurement."""
+        """Update the lamps; ``barred`` is True if a tool or a measurement prevents the next part."""
         if not self._lamps:
             return
-        with Attempt():  # a lamp stops nothing, whatever its driver raises
+        with Attempt():  # A driver error of a lamp must not stop the machine.
             self._see(self._signals.see(state, ends, barred=barred))
             if Unknown.OUTPUTS not in self.context.unknown:
                 self._switch(self._wanted(state))
@@ -84,13 +88,17 @@ class SignalLamps:
             self._kinds = kinds
 
     def _wanted(self, state: State) -> dict[str, bool]:
-        """Each lamp as it ought to be now; what no kind lights is safe after a fault, and off elsewhere."""
+        """Return the required state of each lamp.
+
+        A lamp without an active signal is in its safe state after a fault, and off otherwise.
+        """
         now, outputs = self.context.now, self.context.machine.outputs
         if now < self.context.lamp_test:
             return dict.fromkeys(self._lamps, True)
         fault = state in {State.FAULT, State.ESTOP}
         wanted = {name: fault and bool(outputs[name].safe) for name in self._lamps}
-        steady = self.context.ports.blocks is not None and state in ACTIVE  # its lines wait behind blocks
+        # its output commands wait for the queued blocks
+        steady = self.context.ports.blocks is not None and state in ACTIVE
         for kind in self._kinds:
             signal, age = SIGNALS[kind], now - self._since[kind]
             dark = signal.blinks and not steady and age % (2.0 * HALF) >= HALF

@@ -1,4 +1,4 @@
-"""The operator station as the control believes it, and outputs as they were commanded."""
+"""Filtered signals of the operator station, and outputs with their commanded states."""
 
 from __future__ import annotations
 
@@ -12,49 +12,50 @@ from core.machine.machine_model import OutputModel
 from core.message import Message
 from core.ports import DigitalIO, StationState
 
-_SILENT = 0.3  # s without a word: the last value is held, a running cycle too
-_JUMP = 0.2  # of the range within a tenth of a second: a wiper, not a hand
-_STAND = 0.3  # s that a risen pot must stand before it is believed
-_NOISY = 3  # jumps within a second that make a pot unbelievable
-_DEBOUNCE = 0.3  # s in which a second start is the same press
-_AWAY = 0.3  # s between two looks: what was pressed or turned in a longer one is old, and starts nothing
-_TELLS = 0.5  # s in which an output that was written may still be told as it was before
+_SILENT = 0.3  # s without data, after which the last value is used and a running cycle stops in feed hold
+_JUMP = 0.2  # fraction of the range within 0.1 s that only a bad pot wiper can cause
+_STAND = 0.3  # s for which an increased value must be stable
+_NOISY = 3  # jumps within 1 s after which a pot counts as faulty
+_DEBOUNCE = 0.3  # s within which a second start counts as the same press
+_AWAY = 0.3  # s between two readings; a press during a longer gap is too old to start a motion
+_TELLS = 0.5  # s for which a driver may still report the state before a write
 
 
 class StationSignals(NamedTuple):
-    """What the station asks for in this tick."""
+    """The requests of the operator station in one tick."""
 
     estop: bool
-    start: bool  # both palms, this moment
-    hold: bool  # while the button is down
+    start: bool  # both palm buttons, in this tick only
+    hold: bool  # while the hold button is pressed
     feed: float
     spindle: float
     auto: bool
-    trouble: str  # why the cycle must be held, empty when all is well
-    wheel: int = 0  # what the handwheel has counted
-    turned_on: bool = False  # the spindle switch was turned from OFF to AUTO, this moment
-    lost: str = ""  # what of the station is gone, so that the cycle must be held: a sentence
-    wheel_trouble: str = ""  # why handwheel and jog buttons are not believed
+    trouble: str  # why the cycle must stop in feed hold; empty without a fault
+    wheel: int = 0  # counts of the handwheel
+    turned_on: bool = False  # the spindle switch was turned from OFF to AUTO in this tick
+    lost: str = ""  # sentence about a missing part of the station, which causes a feed hold
+    wheel_trouble: str = ""  # why handwheel and jog buttons are ignored
     spindle_load: float | None = None  # per cent
-    late_start: bool = False  # both palms, but while nobody looked: it starts nothing
+    # both palm buttons were pressed between two late readings, so the start is ignored
+    late_start: bool = False
 
 
 class OverridePot:
-    """One pot. A fall is obeyed at once, since it only slows; a sudden rise must stand to be believed."""
+    """Filter of one override pot. A decrease takes effect at once; a sudden increase must be stable first."""
 
     def __init__(self) -> None:
         self.value = 1.0
-        self._recent: deque[tuple[float, float]] = deque()  # what was read within a tenth of a second
+        self._recent: deque[tuple[float, float]] = deque()  # readings of the last 0.1 s
         self._rising: tuple[float, float] | None = None
         self._jumps: deque[float] = deque()
 
     @property
     def noisy(self) -> bool:
-        """Jumps too often to be a hand."""
+        """True if the value jumps more often than a hand could turn the pot."""
         return len(self._jumps) >= _NOISY
 
     def read(self, raw: float, now: float) -> float:
-        """The value to use."""
+        """Return the filtered value for a raw reading at time ``now``."""
         self._count_jumps(raw, now)
         if raw <= self.value or self._slow(raw):
             self.value, self._rising = raw, None
@@ -79,18 +80,18 @@ class OverridePot:
 
 
 class StationWatch:
-    """Turns states of the station into what has to be done."""
+    """Converts states of the operator station to requests."""
 
     def __init__(self) -> None:
         self._feed = OverridePot()
         self._spindle = OverridePot()
-        self._started = True  # a start that is on when the control begins to look is no press
+        self._started = True  # A start signal that is on at power-up does not count as a press.
         self._last_start = -1e9
-        self._auto = True  # where the spindle switch stood when the station last spoke
-        self._spoke = -1e9  # when it last spoke
+        self._auto = True  # position of the spindle switch in the last message of the station
+        self._spoke = -1e9  # time of the last message of the station
 
     def read(self, state: StationState, now: float) -> StationSignals:
-        """One look at the station."""
+        """Return the requests of the station for one reading at time ``now``."""
         silent = not (state.age <= _SILENT and math.isfinite(state.feed_pot + state.spindle_pot))
         if not silent:
             self._feed.read(state.feed_pot, now)
@@ -123,7 +124,7 @@ class StationWatch:
         )
 
     def may_start(self, now: float) -> bool:
-        """Whether this start is a new one and no bounce of the last; remembers it."""
+        """Return whether a start is a new press rather than contact bounce, and record its time."""
         fresh = now - self._last_start >= _DEBOUNCE
         if fresh:
             self._last_start = now
@@ -131,14 +132,14 @@ class StationWatch:
 
 
 class Differing(NamedTuple):
-    """An output that is not what it was commanded to be."""
+    """An output whose actual state differs from its commanded state."""
 
     name: str
     wanted: bool
 
     @property
     def words(self) -> str:
-        """What has become of it, as the operator reads it."""
+        """The change of the output as a text for the operator."""
         name = self.name.upper()
         return (
             Message("{name} TURNED OFF", name=name) if self.wanted else Message("{name} TURNED ON", name=name)
@@ -146,54 +147,55 @@ class Differing(NamedTuple):
 
 
 class CommandedOutputs:
-    """``core.ports.DigitalIO``: every output that the executor writes goes through here and is remembered."""
+    """Outputs that the executor writes, with their commanded states. Implements ``core.ports.DigitalIO``."""
 
     def __init__(self, io: DigitalIO, models: Mapping[str, OutputModel]) -> None:
         self._io = io
         self._models = models
-        self._lamps = frozenset(LAMPS) & models.keys()  # the control's own: no program commands them
+        self._lamps = frozenset(LAMPS) & models.keys()  # lamps are switched by the control, not by programs
         self._wanted = dict(self.outputs())
-        self._written: dict[str, float] = {}  # when each was written last, told late by some drivers
+        # time of the last write of each output; some drivers report it late
+        self._written: dict[str, float] = {}
 
     def inputs(self) -> Mapping[str, bool]:
-        """All inputs by name."""
+        """Return the states of all inputs by name."""
         return self._io.inputs()
 
     def outputs(self) -> Mapping[str, bool]:
-        """The outputs as they are, by name, but for the lamps of the signal tower."""
+        """Return the actual states of the outputs by name, without the lamps of the signal tower."""
         outputs = self._io.outputs()
         return (
             {name: on for name, on in outputs.items() if name not in self._lamps} if self._lamps else outputs
         )
 
     def everything(self) -> Mapping[str, bool]:
-        """The same with the lamps."""
+        """Return the actual states of all outputs by name, including the lamps."""
         return self._io.outputs()
 
     def write(self, name: str, on: bool) -> None:
-        """Switch one output. Raises DriverError, and then it was not commanded."""
+        """Switch one output. If DriverError is raised, the output does not count as commanded."""
         self._io.write(name, on)
         self._wanted[name] = on
         self._written[name] = self._now
 
     def safe(self) -> None:
-        """Every output to its safe state."""
+        """Switch every output to its safe state."""
         self._io.safe()
         for model in self._models.values():
             if model.safe is not None and model.name not in self._lamps:
                 self._wanted[model.name], self._written[model.name] = model.safe, self._now
 
     def look(self, now: float) -> None:
-        """Called first in a tick, with the time by which writes are remembered."""
+        """Set the time at which later writes are recorded. Called first in each tick."""
         self._now = now
 
     def fell(self, names: Sequence[str]) -> None:
-        """These are known to have been switched off by somebody else, however lately they were written."""
+        """Mark outputs as switched off by another device, even if they were written recently."""
         for name in names:
             self._written.pop(name, None)
 
     def differing(self) -> list[Differing]:
-        """The outputs that are not as they were commanded, and ought to be by now."""
+        """Return the outputs that are not in their commanded state although the delay has passed."""
         actual = self._io.outputs()
         return [
             Differing(name, wanted)
@@ -202,7 +204,7 @@ class CommandedOutputs:
         ]
 
     def accept(self) -> list[Differing]:
-        """No program is under way: outputs count as they are now. Returns those that have changed."""
+        """Accept the actual states as commanded when no program runs, and return the outputs that changed."""
         changed = self.differing()
         for each in changed:
             self._wanted[each.name] = not each.wanted

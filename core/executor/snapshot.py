@@ -1,7 +1,6 @@
-"""The one picture of the machine that all displays are drawn from, with the interrupted job.
+"""The snapshot of the machine, from which all displays are drawn, and the interrupted job.
 
-Its state is one of a table that says which may follow which; what is not in the table is a mistake of the
-control and becomes an alarm.
+A table specifies which state may follow which. Any other change is an internal error and becomes an alarm.
 """
 
 from __future__ import annotations
@@ -33,18 +32,19 @@ _NUMBERS = ("line", "block", "begun", "tool", "part")
 
 @dataclass(frozen=True, slots=True)
 class InterruptedJob:
-    """Which job, at which line, with which tool, and where that stands.
+    """The program, line, tool and position at which a job was interrupted.
 
-    ``where`` is machine positions in the order of ``axes``: mm with X a radius, and degrees. ``part`` is the
-    number of the part that was being made, ``begun`` how many elementary blocks of it were begun without a
-    gap. ``at`` is the time of day, UTC, ISO 8601.
+    ``where`` contains machine positions in the order of ``axes``, in mm with X as a radius, and in degrees.
+    ``part`` is the number of the part in progress. ``begun`` is the number of its elementary blocks that had
+    started without a gap. ``at`` is the time of day in UTC, in ISO 8601 format.
     """
 
     program: str  # name of its file
-    job: str  # digest of the loaded job: text, offsets, switches
+    job: str  # =
     text: str  # digest of the text alone
     line: int
-    block: int  # elementary block, counted through the whole run: the pass of a loop follows from it
+    # elementary block, counted through the whole run, so that it also identifies the pass of a loop
+    block: int
     begun: int
     tool: int
     part: int
@@ -67,12 +67,12 @@ class InterruptedJob:
 
 
 def plain(kept: InterruptedJob) -> dict[str, object]:
-    """The interrupted job as JSON can hold it."""
+    """Return the interrupted job as a dictionary for JSON."""
     return asdict(kept) | {"axes": list(kept.axes), "where": list(kept.where)}
 
 
 def of_plain(value: object) -> InterruptedJob | None:
-    """The interrupted job that was stored; None where there is none, or none that can be understood."""
+    """Return the interrupted job read from JSON, or None if the value is missing or invalid."""
     if not isinstance(value, Mapping):
         return None
     try:
@@ -87,12 +87,12 @@ def of_plain(value: object) -> InterruptedJob | None:
 
 
 def utc_now() -> str:
-    """The time of day, to the second."""
+    """Return the time of day in UTC with a resolution of 1 s, in ISO 8601 format."""
     return datetime.now(UTC).isoformat(timespec="seconds").replace("+00:00", "Z")
 
 
 class State(StrEnum):
-    """States of the executor; the words are what the operator reads."""
+    """States of the executor. The values are shown to the operator."""
 
     ESTOP = "E-STOP"
     DISABLED = "DRIVES OFF"
@@ -109,12 +109,12 @@ class State(StrEnum):
 
 
 class Starts(StrEnum):
-    """What Cycle Start begins."""
+    """The action of the next Cycle Start."""
 
     PROGRAM = "program"
     LINE = "line"
     RESTART = "restart"
-    WAY_OUT = "way-out"  # of the part, after a stop; what was interrupted stays so
+    WAY_OUT = "way-out"  # retract from the part after a stop; the interrupted job remains interrupted
 
 
 LINES = frozenset({Starts.LINE, Starts.WAY_OUT})
@@ -123,10 +123,10 @@ LINES = frozenset({Starts.LINE, Starts.WAY_OUT})
 
 @dataclass(frozen=True, slots=True)
 class Alarm:
-    """An alarm, a hold or a stop: text, cause, what to do, and the line that was running (0: none).
+    """An alarm, a hold or a stop, with its text, cause, remedy and program line (0 if unknown).
 
-    ``cause`` is what exactly happened here where that is known, else the likeliest of ``causes``; ``detail``
-    is for the log.
+    ``cause`` is the known cause in this case, or else the most likely one of ``causes``. ``detail`` is for
+    the log.
     """
 
     number: int
@@ -141,10 +141,11 @@ class Alarm:
 
 
 class DriveTestState(NamedTuple):
-    """How it stands with drive tests. ``barred``: why this machine has none.
+    """State of the drive tests. ``barred`` is the reason why this machine cannot run them.
 
-    ``axis`` is under test, empty for none; ``number`` counts those that were begun, the last one at ``began``
-    of the samples' clock; ``whole`` counts those that came to their end. ``rate`` is the samples a second.
+    ``axis`` is the axis under test, empty without a test. ``number`` counts the tests that were started; the
+    last one started at ``began`` on the clock of the samples. ``whole`` counts the completed tests. ``rate``
+    is the number of samples per second.
     """
 
     barred: str = ""
@@ -159,22 +160,24 @@ NO_DRIVE_TEST = DriveTestState()
 
 
 class TouchPhase(StrEnum):
-    """What a touch-off at the tool setter does."""
+    """The phases of a touch-off at the tool setter."""
 
     SEARCH = "search"
     BACK_OFF = "back off"
     SLOW = "slow"
     RETREAT = "retreat"
-    RETURN = "return"  # nothing was touched: back to where it began
+    RETURN = "return"  # no touch detected: return to the start
 
 
 @dataclass(frozen=True, slots=True)
 class Touched:
-    """How a touch-off has ended. ``place`` is where the axis was when it touched, machine mm by its encoder,
-    and ``error`` by how much that may be off; None: ``why`` there is none.
+    """The result of a touch-off.
+
+    ``place`` is the position of the axis at the touch, in machine mm by its encoder, and ``error`` is its
+    uncertainty. ``place`` is None if the touch-off failed for the reason ``why``.
     """
 
-    number: int  # of the touch-offs that have ended
+    number: int  # number of touch-offs that have ended
     axis: str
     sign: int
     place: float | None = None
@@ -184,105 +187,115 @@ class Touched:
 
 @dataclass(frozen=True, slots=True)
 class Snapshot:
-    """Machine and program at one instant. Lengths mm, X a radius, machine frame unless said otherwise."""
+    """The state of machine and program at one instant.
+
+    Lengths are in mm with X as a radius, in machine coordinates unless noted otherwise.
+    """
 
     t: float = 0.0
     state: State = State.DISABLED
-    waiting_for: str = ""  # in words: AT SPEED, COLLET, TB2-5, DWELL; of a hold, until the tap is out
+    # text such as AT SPEED, COLLET, TB2-5 or DWELL; for a tap, that the hold waits for its exit
+    waiting_for: str = ""
     program: str = ""
     job: str = ""  # digest of the loaded job: program, offsets and switches
-    line: int = 0  # source line being executed, 0 none
-    block: int = 0  # elementary block being executed, 0 none
+    line: int = 0  # source line being executed; 0 without one
+    block: int = 0  # elementary block being executed; 0 without one
     block_text: str = ""
     next_text: str = ""
-    axes: tuple[str, ...] = ("X", "Z", "C")  # the order of what follows: slides, then rotary axes
+    axes: tuple[str, ...] = ("X", "Z", "C")  # order of the following tuples: linear axes, then rotary axes
     demand: tuple[float, ...] = (0.0, 0.0, 0.0)
     actual: tuple[float, ...] = (0.0, 0.0, 0.0)
     following_error: tuple[float, ...] = (0.0, 0.0, 0.0)
     homed: tuple[bool, ...] = (False, False, False)
-    powered: bool = False  # the drives have power, as they tell it themselves
-    block_end: tuple[float, ...] = (0.0, 0.0, 0.0)  # for distance to go
+    powered: bool = False  # the drives report that they have power
+    block_end: tuple[float, ...] = (0.0, 0.0, 0.0)  # end position of the block, for the distance to go
     offset: tuple[float, float] = (0.0, 0.0)  # machine minus program, X and Z
-    swivel: Swivel | None = None  # of a mill: the working plane of the last block that was begun
+    swivel: Swivel | None = None  # working plane of the last started block on a mill
     modal: Modal = field(default_factory=Modal)
-    x_diameter: bool | None = None  # X is read as a diameter; None: as ``modal`` counts
-    velocity: float = 0.0  # along the path, mm/s, actual
-    feed: float = 0.0  # programmed: mm/s or mm/rev by modal
+    x_diameter: bool | None = None  # X is displayed as a diameter; None: as in ``modal``
+    velocity: float = 0.0  # actual speed along the path, mm/s
+    feed: float = 0.0  # programmed feed: mm/s or mm/rev, see ``modal``
     rapid: bool = False
-    turns: bool = False  # the feed is that of rotary axes alone: degrees instead of mm
+    turns: bool = False  # only rotary axes move, so the feed is in degrees instead of mm
     rpm_command: float = 0.0
     rpm_actual: float = 0.0
-    orienting: bool = False  # the spindle's drive turns it to an angle
-    oriented: float | None = None  # degrees from its index at which the drive holds it
-    spindle_asked: float = 0.0  # signed rpm that program or MDI want, before pot, switch and limit of F10
+    orienting: bool = False  # the spindle drive moves the spindle to an angle
+    oriented: float | None = None  # angle in degrees from the index at which the drive holds the spindle
+    # signed rpm that the program or MDI commands, before pot, switch and F10 limit
+    spindle_asked: float = 0.0
     feed_override: float = 1.0
     spindle_override: float = 1.0
     spindle_auto: bool = True
-    spindle_limit: float = 0.0  # F10, until restart, rpm; 0: the machine's own maximum
+    # limit of page F10 until the restart of TurnDesk, rpm; 0: the maximum of the machine
+    spindle_limit: float = 0.0
     single_block: bool = False
     optional_stop: bool = False
     block_delete: bool = False
     cycle_repeat: bool = False
     no_count: bool = False
-    counts: bool = False  # a program is under way that will have made a part when it ends
-    outputs: frozenset[str] = frozenset()  # names that are on
-    absent: frozenset[str] = frozenset()  # and of those that this machine has not
+    counts: bool = False  # a program is running that will count as a part when it ends
+    outputs: frozenset[str] = frozenset()  # names of the outputs that are on
+    absent: frozenset[str] = frozenset()  # outputs that this machine does not have
     inputs: frozenset[str] = frozenset()
     comment: str = ""
-    message: str = ""  # of M00/M01 while the stop lasts
-    optionally_stopped: bool = False  # at an M01 and not an M00
-    alarms: tuple[Alarm, ...] = ()  # that stand, the first one first
-    stop: Alarm | None = None  # why the machine stands, where no alarm says it: a hold, a stop, E-stop
-    cycle_elapsed: float = 0.0  # of this cycle, stops not counted
+    message: str = ""  # message of M00 or M01 during the stop
+    optionally_stopped: bool = False  # the stop is an M01 instead of an M00
+    alarms: tuple[Alarm, ...] = ()  # active alarms, the oldest first
+    # why the machine is stopped although no alarm is active: a hold, a stop or the E-stop
+    stop: Alarm | None = None
+    cycle_elapsed: float = 0.0  # time of this cycle without stops
     last_cycle: float = 0.0
-    timed: int = 0  # cycles that ``last_cycle`` has told so: a part that a restart has finished has none
+    timed: int = 0  # number of cycles timed by ``last_cycle``; a part finished by a restart is not timed
     parts: int = 0  # completed and counted since the executor was started
-    made: int = 0  # of the loaded program, as it was told with ``PartsMade`` and counted since
+    made: int = 0  # finished parts of the loaded program: set with ``PartsMade`` and counted since
     cutting: Mapping[int, float] = field(default_factory=dict)  # s at feed by tool since the start
-    next_barred: str = ""  # why no other part begins after the one under way
-    ends: int = 0  # programs that came to their end, counted or not
+    next_barred: str = ""  # why no other part starts after the present one
+    ends: int = 0  # programs that ran to their end, counted or not
     underruns: int = 0
-    hold_later: float = 0.0  # s by which a hold reacts later, since the computer is busy
+    hold_later: float = 0.0  # additional delay of a feed hold on a busy computer, s
     max_following_error: float = 0.0
-    proof_wanted: bool = False  # a job is loaded that no proof covers
-    starts: Starts = Starts.PROGRAM  # what Cycle Start begins
-    prepared: str = ""  # digest of the line or restart that Cycle Start would begin
-    interrupted: InterruptedJob | None = None  # a program that did not come to its end
-    confirmed: bool = False  # that a start at the first line is meant all the same
-    lines: int = 0  # of MDI that were begun since the executor was started
-    tool_open: bool = False  # MDI has called a tool, and its first move is still to come
-    kept: KeptPass[Any] | None = None  # what lines of MDI in other languages have left in force
-    announced: tuple[str, ...] = ()  # what the next Cycle Start will start, besides going on
+    proof_wanted: bool = False  # the loaded job has no proof
+    starts: Starts = Starts.PROGRAM  # the action of the next Cycle Start
+    prepared: str = ""  # digest of the line or restart that Cycle Start would run
+    interrupted: InterruptedJob | None = None  # a program that did not reach its end
+    confirmed: bool = False  # a start at the first line is confirmed
+    lines: int = 0  # MDI lines started since the start of the executor
+    tool_open: bool = False  # MDI has called a tool that has not moved yet
+    kept: KeptPass[Any] | None = None  # state that MDI lines in other languages have left in force
+    announced: tuple[str, ...] = ()  # further actions that the next Cycle Start starts
     start_refused: str = ""  # why the last Cycle Start did nothing
-    start_code: str = ""  # code of that refusal, where the first move was its reason
-    begun: int = 0  # runs since the executor was started: programs, repeats, restarts and lines of MDI
-    wheel: str = ""  # axis that the handwheel moves, empty for none
-    wheel_ended: str = ""  # why the control has taken the handwheel away
-    # Nothing is heard of these: what is said of them in here is the last that was known, not what is so.
+    start_code: str = ""  # code of the refusal if the first move caused it
+    begun: int = 0  # runs since the start of the executor: programs, repeats, restarts and MDI lines
+    wheel: str = ""  # axis that the handwheel moves; empty without one
+    wheel_ended: str = ""  # why the control disabled the handwheel
+    # No data arrives from these items, so their values here are the last known ones.
     unknown: frozenset[Unknown] = frozenset()
     drive_test: DriveTestState = NO_DRIVE_TEST
     touching: TouchPhase | None = None  # a tool is being touched off at the tool setter
-    touched: Touched | None = None  # how the last such touch-off has ended
-    spindle_load: float | None = None  # per cent, where the machine has such an input
+    touched: Touched | None = None  # result of the last touch-off
+    spindle_load: float | None = None  # per cent; None if the machine does not measure the load
 
     def tells_as(self, other: Snapshot) -> bool:
-        """Whether another one tells the same, but for its time."""
+        """Return whether another snapshot is equal except for its time."""
         return self is other or _told(self) == _told(other)
 
     @property
     def interrupted_line(self) -> int:
-        """The line at which the loaded program was interrupted, 0: it was not."""
+        """The line at which the loaded program was interrupted, or 0 if it was not."""
         found = self.interrupted
         return found.line if found is not None and found.program == self.program else 0
 
     @property
     def reads_diameter(self) -> bool:
-        """Whether displays show X as a diameter; a program's mode remains after its end, reset or E-stop."""
+        """True if displays show X as a diameter.
+
+        The mode of a program remains after its end, Reset or E-stop.
+        """
         return self.modal.diameter if self.x_diameter is None else self.x_diameter
 
     @property
     def tip(self) -> tuple[float, float]:
-        """Actual machine X and Z: where the pictures of a lathe show the tool."""
+        """The actual machine X and Z, at which the pictures of a lathe show the tool."""
         return self.actual[self.axes.index("X")], self.actual[self.axes.index("Z")]
 
 
@@ -291,7 +304,7 @@ _told = attrgetter(*(each.name for each in fields(Snapshot) if each.name != "t")
 
 @dataclass(frozen=True, slots=True)
 class Event:
-    """Something worth remembering: goes to the log by a queue."""
+    """An event for the event log."""
 
     t: float
     # state, alarm, disturbed, estop, start, repeat, restart, mdi, end, part, uncounted, stop,
@@ -299,30 +312,30 @@ class Event:
     kind: str
     text: str
     line: int = 0
-    alarm: Alarm | None = None  # of an alarm, an E-stop and a stop: what the catalogue says of it
-    record: str = ""  # file of the scope's record of the seconds before it, in the folder records
-    part: int = 0  # of a part: its number among those of the program
-    load: float | None = None  # of a part: mean load of the spindle at feed, per cent
+    alarm: Alarm | None = None  # catalog entry of an alarm, an E-stop or a stop
+    record: str = ""  # file of the scope record before the event, in the folder ``records``
+    part: int = 0  # number of the part among those of the program
+    load: float | None = None  # mean spindle load at feed for a part, per cent
 
 
 class Tick(NamedTuple):
-    """What the executor hands to the recorder at each of its ticks.
+    """The data that the executor passes to the recorder in each tick.
 
-    ``samples`` are the driver's own, None where it has none.
+    ``samples`` are the driver's samples, or None if the driver has none.
     """
 
     snapshot: Snapshot
-    late: float  # s by which the tick came later than planned
-    queue: float  # s of motion queued, nan where the samples say it
-    turns: float  # of the spindle, nan where it has no encoder
+    late: float  # s by which the tick was late
+    queue: float  # s of queued motion, nan if the samples contain it
+    turns: float  # revolutions of the spindle, nan without an encoder
     samples: FloatArray | None
-    rests: bool = False  # nothing has happened for a while
+    rests: bool = False  # the machine is at rest and nothing changes
 
 
-# --- which state may follow which -----------------------------------------------------------------------
+# --- permitted state changes ----------------------------------------------------------------------------
 
 
-# Only E-stop and alarm may come from anywhere; nothing leads from them back into motion.
+# E-stop and alarm may follow any state, and no motion may follow them directly.
 _ALWAYS = {State.ESTOP, State.FAULT}
 _UNDER_WAY = {State.RUN, State.WAIT, State.HOLDING, State.HOLD, State.BLOCK_END, State.PROGRAM_STOP}
 
@@ -341,18 +354,19 @@ TRANSITIONS: dict[State, frozenset[State]] = {
     State.FAULT: frozenset({State.ESTOP, State.DISABLED, State.IDLE}),
 }
 
-ACTIVE = frozenset({State.RUN, State.WAIT, State.HOLDING})  # the cycle goes on by itself
-STOPPED = frozenset({State.HOLD, State.BLOCK_END, State.PROGRAM_STOP})  # Cycle Start goes on
+ACTIVE = frozenset({State.RUN, State.WAIT, State.HOLDING})  # the cycle advances automatically
+STOPPED = frozenset({State.HOLD, State.BLOCK_END, State.PROGRAM_STOP})  # Cycle Start resumes the cycle
 CYCLE = ACTIVE | STOPPED
-BY_HAND = frozenset({State.IDLE, State.JOG})  # the machine is worked by hand: its spindle switch is one
+# manual operation, in which the spindle switch starts the spindle
+BY_HAND = frozenset({State.IDLE, State.JOG})
 
 
 class TransitionError(Exception):
-    """The executor asked for a change of state that the table does not hold."""
+    """Raised when the executor requests a state change that the table does not permit."""
 
 
 def demand_allowed(old: State, new: State) -> None:
-    """Raises TransitionError unless ``new`` may follow ``old``."""
+    """Raise TransitionError unless ``new`` may follow ``old``."""
     if new not in TRANSITIONS[old]:
         raise TransitionError(
             Message("the machine state cannot change from {old} to {new}", old=old.value, new=new.value)

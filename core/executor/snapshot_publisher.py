@@ -1,4 +1,4 @@
-"""The snapshot: the machine of this instant, from what is played and measured, not from what is planned."""
+"""Construction of snapshots from the block being executed and from measured values."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from core.ports import AxisSample
 
 
 class _Played(TypedDict):
-    """What a snapshot has of the block that is played."""
+    """The values of a snapshot that come from the block being executed."""
 
     line: int
     block: int
@@ -31,17 +31,17 @@ class _Played(TypedDict):
 
 
 class Publisher:
-    """Makes snapshots; remembers the last sample, from which the velocity is measured."""
+    """Makes snapshots, and measures the velocity from two consecutive samples."""
 
     def __init__(self) -> None:
         self._before: AxisSample | None = None
         self._velocity = 0.0
         self._swivel: Swivel | None = None
-        self._diameter: bool | None = None  # how X is read; None: as the control counts
-        self._shown_for = ""  # the program whose mode that is
+        self._diameter: bool | None = None  # X is displayed as a diameter; None: the mode of the control
+        self._shown_for = ""  # the program to which this mode belongs
 
     def snapshot(self, context: MachineContext, control: MachineControl) -> Snapshot:
-        """The snapshot of this tick."""
+        """Return the snapshot of this tick."""
         cycle, status, counters = control.cycle, control.status, control.counters
         block = cycle.current if cycle else None
         job, modal = status.job, control.modal
@@ -120,12 +120,12 @@ class Publisher:
         )
 
     def _x_mode(self, block: Block | None, modal: Modal, status: ControlStatus) -> bool:
-        """Return whether X is read as a diameter.
+        """Return whether X is displayed as a diameter.
 
-        The mode of the last program, or of the last line of MDI, remains after its end, a reset or an E-stop:
-        the tool may still be in the part, and a value that halves on its own misleads. It remains on the way
-        out of the part too. Another program, and MDI, in which typed values count, bring the mode of the
-        control.
+        The mode of the last program or MDI line remains after its end, a reset or an E-stop, and during a
+        retract from the part. The tool may still be in the part, and a displayed value that suddenly halves
+        would mislead the operator. Another program selects the mode of the control. So does MDI, where typed
+        values are in that mode.
         """
         name = status.job.source.name if status.job is not None else ""
         if name != self._shown_for:
@@ -139,14 +139,17 @@ class Publisher:
         return modal.diameter if self._diameter is None else self._diameter
 
     def _system(self, block: Block | None, *, under_way: bool) -> Swivel | None:
-        """Of a mill: the system of the last block; between programs nothing is tilted or shifted."""
+        """Return the working plane of the last block on a mill.
+
+        Between programs, the working plane is neither tilted nor shifted.
+        """
         if block is not None:
             return block.swivel
         last = self._swivel
         return last if last is None or under_way or last.system.level else last.levelled()
 
     def _measured(self, sample: AxisSample, slides: int) -> float:
-        """Velocity of all slides together, mm/s, from the encoders."""
+        """Return the velocity of the linear axes together, in mm/s, measured by the encoders."""
         before, self._before = self._before, sample
         if before is None:
             return 0.0
@@ -161,7 +164,7 @@ def _ends(block: Block) -> bool:
 
 
 def _played(block: Block | None, modal: Modal, sample: AxisSample) -> _Played:
-    """Without a block what is in force, and the slides stand at its end."""
+    """Return the values of the block, or of the modal state and the setpoint without a block."""
     return _Played(
         line=block.line if block else 0,
         block=block.n if block else 0,
@@ -175,28 +178,28 @@ def _played(block: Block | None, modal: Modal, sample: AxisSample) -> _Played:
 
 
 def _optional(block: Block | None) -> bool:
-    """Whether a stop at this block is one that the operator's switch asks for."""
+    """Return whether the block is an optional stop (M01)."""
     action = block.action if block else None
     return isinstance(action, ProgramStop) and action.optional
 
 
 def _next_text(cycle: Cycle | None) -> str:
-    """Of the block that comes after the one that is played."""
+    """Return the text of the block after the one being executed, or an empty string."""
     following = cycle.next_block if cycle else None
     return following.text if following else ""
 
 
 def _turns(block: Block | None, modal: Modal) -> bool:
-    """Whether the programmed feed is degrees instead of mm."""
+    """Return whether the programmed feed is in degrees instead of mm."""
     if block is None:
         return False
     return (block.swivels and not block.rapid) or (block.kind is Kind.ROTATE and not modal.c_locked)
 
 
 def _feed(block: Block | None, modal: Modal) -> float:
-    """Programmed: of the block where it moves, otherwise what is in force."""
+    """Return the programmed feed of a moving block, or the feed in force."""
     if block is not None and block.moves and block.kind is not Kind.ROTATE:
-        # A tap goes by its lead, also where the feed that is in force counts a minute.
+        # A tap moves by its lead even if the feed per minute is in force.
         by_minute = block.coupled and block.per_rev and not block.modal.per_rev
         return block.feed * abs(block.rpm) / 60.0 if by_minute else block.feed
     return modal.feed or 0.0

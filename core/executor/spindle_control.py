@@ -1,6 +1,6 @@
-"""The main spindle: what the program asks for, what the operator allows, what it really does.
+"""The main spindle: requested speed, operator limits, commanded and measured speed.
 
-Also where it will be: its angle in the next moments, from the last readings of the encoder.
+The module also predicts the spindle angle from the latest encoder readings.
 """
 
 from __future__ import annotations
@@ -23,17 +23,18 @@ from core.ports import Spindle, SpindleHold, SpindleOrientation
 # --- the angle of the spindle ---------------------------------------------------------------------------
 
 
-_WINDOW = 0.2  # s of readings that count; longer is quieter, shorter follows a changing speed better
+_WINDOW = 0.2  # s of readings used; a longer time is less noisy, a shorter one follows speed changes better
 _DEGREE = 3
-_CURVED = 0.06  # s beyond the last reading for which a change of speed is taken to go on
+_CURVED = 0.06  # s after the last reading for which the speed change is extrapolated
 _LEAST_READINGS = 8  # readings
 
 
 class SpindleAngle:
-    """A cubic through the encoder's readings of the last moments; revolutions, signed, and seconds.
+    """Prediction of the spindle angle by a cubic fit to the latest encoder readings.
 
-    A reading every 10 ms in 4096 steps a turn tells the angle 45 ms ahead within .25 degree, and with a speed
-    that swings by 2 % in two seconds within .2 degree.
+    Angles are in signed revolutions and times in seconds. With one reading every 10 ms and 4096 counts per
+    revolution, the angle 45 ms ahead is accurate within 0.25 degree. If the speed varies by 2 % in 2 s, it is
+    accurate within 0.2 degree.
     """
 
     def __init__(self) -> None:
@@ -41,7 +42,7 @@ class SpindleAngle:
         self._fit: tuple[list[float], float] | None = None
 
     def note(self, read: tuple[float, float] | None) -> None:
-        """A reading (time, revolutions), None from a spindle without encoder."""
+        """Add a reading (time, revolutions). None means that the spindle has no encoder."""
         if read is None:
             self._reads.clear()
         elif not self._reads or read[0] > self._reads[-1][0]:
@@ -54,16 +55,16 @@ class SpindleAngle:
 
     @property
     def turns(self) -> float:
-        """Revolutions by the last reading; no number without one."""
+        """Revolutions of the latest reading; NaN if there are no readings."""
         return self._reads[-1][1] if self._reads else math.nan
 
     @property
     def known(self) -> bool:
-        """Whether enough was read of late: not right after the control was away, never without encoder."""
+        """True if there are enough recent readings for a prediction."""
         return len(self._reads) >= _LEAST_READINGS
 
     def at(self, t: float) -> tuple[float, float] | None:
-        """(revolutions, revolutions per second) at ``t``; None as long as too little has been read."""
+        """Return (revolutions, revolutions per second) at time ``t``, or None without enough readings."""
         if not self.known:
             return None
         if self._fit is None:
@@ -77,7 +78,7 @@ class SpindleAngle:
         return base + turns + speed * (u - near), speed
 
     def turning_at(self, t: float) -> tuple[float, float]:
-        """The same of a spindle that turns. Raises AlarmError for one that stands or is not measured."""
+        """Return the result of ``at``, but raise AlarmError if the spindle is stopped or not measured."""
         state = self.at(t)
         if state is None:
             raise AlarmError("thread-no-encoder", "the spindle encoder does not count")
@@ -86,17 +87,18 @@ class SpindleAngle:
         return state
 
     def _fitted(self) -> tuple[list[float], float]:
-        """Factors of the cubic from the last reading on, and that reading."""
+        """Return the coefficients of the cubic from the last reading on, and the angle of that reading."""
         last, base = self._reads[-1]
         times, turns = zip(*self._reads, strict=True)
         return _least_squares([t - last for t in times], [each - base for each in turns], _DEGREE), base
 
 
 def _least_squares(u: list[float], y: list[float], degree: int) -> list[float]:
-    """Factors of the polynomial nearest to ``y`` at ``u``, the constant first.
+    """Return the coefficients of the least-squares polynomial through ``y`` at ``u``, the constant first.
 
-    By polynomials orthogonal on these places (Forsythe 1957), each from the two before it: for a score of
-    readings a tenth of what a solver of matrices takes, and readings close together harm it no more.
+    The method uses polynomials that are orthogonal on these points (Forsythe 1957), each computed from the
+    two previous ones. For 20 readings it takes a tenth of the time of a matrix solver and tolerates readings
+    that are close together.
     """
     shape = [0.0] * (degree + 1)
     factors, factors_before = [1.0], [0.0]
@@ -116,16 +118,19 @@ def _least_squares(u: list[float], y: list[float], degree: int) -> list[float]:
     return shape
 
 
-_GRACE = 1.0  # s in which a drive must have begun to obey another speed,
-_REACTS = 0.5  # of which its own delay takes at most so much; the rest is for an ordinary wire
-_OVER = 0.1  # fraction and
-_OVER_RPM = 50.0  # rpm above what ought to be
-_STOOD = 0.2  # s of standing still although it was told to turn: it has stopped, and
-_GONE = 2.0  # s after which its command is withdrawn; until then its drive can still tell why
+_GRACE = 1.0  # s within which a drive must start to follow a new speed
+_REACTS = 0.5  # s of this time for the delay of the drive; the rest is for an ordinary connection
+_OVER = 0.1  # fraction by which the speed may exceed the expected speed, and
+_OVER_RPM = 50.0  # rpm by which the speed may exceed the expected speed
+_STOOD = 0.2  # s at standstill with a command, after which the spindle counts as stopped
+_GONE = 2.0  # s after which the command is withdrawn, so that the drive can first report the cause
 
 
 class SpindleDemand(NamedTuple):
-    """Signed rpm of M03 and M04, or a surface speed in mm/s with the clamps of G76 and G77 in force."""
+    """The requested signed speed in rpm, or a surface speed in mm/s with its rpm limits.
+
+    M03 and M04 give the sign. G76 and G77 set the limits ``lowest`` and ``highest``.
+    """
 
     rpm: float
     surface: float | None = None
@@ -134,16 +139,16 @@ class SpindleDemand(NamedTuple):
 
     @classmethod
     def of(cls, block: Block) -> SpindleDemand:
-        """What is in force in a block."""
+        """Return the spindle speed that is in force in a block."""
         return cls(block.rpm, block.css, block.modal.css_min, block.modal.css_max)
 
 
 class SpindleControl:
-    """Turns the program's word into a command, every tick, and watches the drive obey it.
+    """Converts the programmed speed to a command in every tick, and monitors the spindle drive.
 
-    Nothing in here starts a spindle but ``ask`` and ``permit``: after ``stop`` it stays still until the
-    program asks again. One that was asked for and stands, because of the switch, the pot or by itself, waits:
-    it keeps what it was asked, its command is withdrawn, and it starts when it is permitted to.
+    Only ``ask`` and ``permit`` start the spindle. After ``stop`` it remains at rest until the program
+    requests it again. A requested spindle that is stopped by the switch, the pot or a fault waits. Its
+    request is stored, its command is withdrawn, and it starts when permitted.
     """
 
     def __init__(
@@ -155,46 +160,49 @@ class SpindleControl:
         orientation: SpindleOrientation | None = None,
         lag: Callable[[], float] = float,
     ) -> None:
-        """``lay_out`` hears before each speed up to how many rpm the radius may take it; ``lag`` returns the
-        seconds by which the wire delays a command and the speed that shows it.
+        """Initialize the control.
+
+        Before each speed command, ``lay_out`` receives the highest rpm that the radius may require. ``lag``
+        returns the delay in seconds that the connection adds to commands and measured speeds.
         """
         self._port = port
         self._lay_out, self._lag = lay_out, lag
         self._lock = lock
         self.orientation = Orientation(orientation, model.orient_rpm)
         self._model = model
-        self.limit: float | None = None  # F10, until restart
-        self.command = 0.0  # signed rpm as sent
+        self.limit: float | None = None  # limit of page F10 until the restart of TurnDesk, rpm
+        self.command = 0.0  # signed rpm as sent to the drive
         self.measured = 0.0
-        self.known = True  # else ``measured`` is the last that was heard of it
+        self.known = True  # if False, ``measured`` is the last known speed
         self.angle = SpindleAngle()
         self.override = 1.0
         self.auto = True
-        self.guard_open = False  # at a machine whose guard stops the spindle
-        self.waits = ""  # why it stands although it is asked to turn: it starts when it is permitted to
+        self.guard_open = False  # the guard is open, and the machine stops the spindle for it
+        self.waits = ""  # why a requested spindle is stopped and waits for permission to start
         self._ask: SpindleDemand | None = None
-        self._turned = False  # it has turned since its command was given
-        self._stands: float | None = None  # since when it stands, commanded and after it has turned
-        self._withdrawn = False  # what waits has no command any more
-        self._again = False  # the command is sent although it is the same: a driver may have dropped it
+        self._turned = False  # the spindle has turned since the command was sent
+        # time since which the spindle is stopped although it is commanded and has turned
+        self._stands: float | None = None
+        self._withdrawn = False  # the command of the waiting spindle is withdrawn
+        self._again = False  # send the command even if it is unchanged, because a driver may have dropped it
         self._coasting = False
         self._in_band_since: float | None = None
-        self._fell: tuple[float, float] = (0.0, 0.0)  # when, and from what speed, the command fell
-        self._rose: tuple[float, float] = (0.0, 0.0)  # the same of a rise
+        self._fell: tuple[float, float] = (0.0, 0.0)  # time and speed at which the command fell
+        self._rose: tuple[float, float] = (0.0, 0.0)  # time and speed at which the command rose
 
     @property
     def highest(self) -> float:
-        """The highest speed allowed now, rpm."""
+        """The maximum permitted speed, in rpm."""
         return min(self._model.rpm_max, self.limit or self._model.rpm_max)
 
     @property
     def asked(self) -> bool:
-        """Whether the program wants it to turn."""
+        """True if the program requests that the spindle turns."""
         return self._ask is not None
 
     @property
     def asked_rpm(self) -> float:
-        """Signed speed that is wanted of it; under G96 at the tool's present radius, with its clamps."""
+        """The requested signed speed in rpm. With G96, it is calculated for the present tool radius."""
         ask = self._ask
         if ask is None:
             return 0.0
@@ -202,35 +210,38 @@ class SpindleControl:
 
     @property
     def stopped(self) -> bool:
-        """Whether it stands still, measured; of one that nobody hears nobody knows that."""
+        """True if the measured speed is zero. False if no speed data arrives."""
         return self.known and abs(self.measured) < self._model.stop_below
 
     @property
     def stands_or_orients(self) -> bool:
-        """Whether it stands, or its drive turns it to an angle and nothing else does."""
+        """True if the spindle is stopped or moves only because its drive orients it."""
         return self.known and (self.stopped or self.orientation.turns_at > 0.0)
 
     @property
     def lost(self) -> bool:
-        """Less than half of what an obedient drive turns by now, or the other way: feeding must stop."""
+        """True if the spindle turns at less than half of the expected speed, or in the wrong direction.
+
+        Feeding must stop in this case.
+        """
         along = math.copysign(1.0, self.command) * self.measured
         return self.command == 0.0 or along < 0.5 * min(abs(self.command), self._owed(self._now))
 
     @property
     def fails(self) -> bool:
-        """It is asked to turn, and is slower by half than a drive that obeys: nothing may be cut."""
+        """True if the spindle should turn but is too slow to cut."""
         return self._ask is not None and self.lost
 
     @property
     def why_slow(self) -> str:
-        """What keeps it from turning, when that is the operator."""
+        """The reason why the spindle does not turn, if the operator or the program has caused it."""
         if self._ask is None:
             return "SPINDLE STOPPED"
         return self.start_barred or self.waits
 
     @property
     def start_barred(self) -> str:
-        """What keeps it from being started at all, at the station."""
+        """The reason at the operator station that prevents a spindle start, or an empty string."""
         if self.guard_open:
             return "GUARD OPEN"
         if not self.auto:
@@ -239,45 +250,47 @@ class SpindleControl:
 
     @property
     def would_turn(self) -> float:
-        """Signed rpm with which it starts when it is permitted to; 0 where it does not wait for that.
+        """The signed speed in rpm at which a waiting spindle will start; 0 if it does not wait.
 
-        The switch is not asked here: it may be what permits.
+        The position of the spindle switch is ignored, because turning the switch may be the permission.
         """
         return self._obeying() if self.waits else 0.0
 
     def permit(self) -> None:
-        """Both palms, or the switch by hand: what waits may turn again."""
+        """Permit a waiting spindle to start after Cycle Start, or after the spindle switch was turned on."""
         if self._ask is not None and not self.start_barred:
             self._forget_waiting()
             self._again, self._in_band_since = True, None
 
     def dropped(self, why: str) -> None:
-        """What is between control and drive has stopped it: it waits, and has no command any more."""
+        """Record that a device between control and drive has stopped the spindle, which then waits."""
         if self._ask is not None:
             self.waits, self._withdrawn = why, True
 
     def ask(self, ask: SpindleDemand) -> None:
-        """M03, M04, S."""
+        """Request a speed by M03, M04 or S."""
         self._let_go()
         self._ask = ask
         self._forget_waiting()
         self._in_band_since = None
 
     def follow(self, block: Block) -> None:
-        """The block being played may say G96 or G97: that changes the speed, it never starts a spindle."""
+        """Adopt the speed of the block being executed, such as after G96 or G97. Never starts the spindle."""
         if self._ask is not None and block.rpm != 0.0:
             self._ask = SpindleDemand.of(block)
 
     def stop(self) -> None:
-        """M05, and every stop of the control: the word is forgotten."""
+        """Stop the spindle by M05 or by a stop of the control, and discard the request."""
         self._ask = None
         self._forget_waiting()
         self._let_go()
         self._send(0.0, self._now)
 
     def safe_steps(self, *, coast: bool) -> list[tuple[str, Callable[[], None]]]:
-        """What a safe stop does about it, each to be done whatever the others raise: the word is forgotten, C
-        is let go, the drive is told to stop, also one that is believed to have been told.
+        """Return the steps of a safe stop of the spindle. Each step must be run even if another step raises.
+
+        The request is discarded, C is released, and the drive is commanded to stop even if a stop was already
+        sent.
         """
         self._ask, self._in_band_since = None, None
         self._forget_waiting()
@@ -294,13 +307,16 @@ class SpindleControl:
             self.command = 0.0
             self._port.coast()
         else:
-            if self.command != 0.0:  # told again, it has no more time to obey
+            if self.command != 0.0:  # a repeated stop does not restart the time limit
                 self._note_fall(0.0, self._now)
             self.command = 0.0
             self._port.run(0.0)
 
     def hold(self, *, orient: bool) -> bool:
-        """M19 and M89: as C; True once it is. Raises DriverError."""
+        """Switch the spindle to C-axis mode (M19, M89); return True when it is engaged.
+
+        Raises DriverError if the drive rejects the change.
+        """
         if self._lock is None:
             return True
         if not self._lock.held():
@@ -308,8 +324,9 @@ class SpindleControl:
         return self._lock.held()
 
     def orient(self, angle: float, sense: int) -> bool:
-        """M19 and SPOS of a drive that orients: True once it is held there. What keeps the spindle from being
-        started keeps it from turning to an angle. Raises AlarmError, DriverError.
+        """Orient the spindle (M19, SPOS); return True when the drive holds it at ``angle`` degrees.
+
+        A condition that prevents a spindle start also prevents orienting. Raises AlarmError or DriverError.
         """
         if self.start_barred and self.orientation.at is None:
             self.orientation.let_go()
@@ -317,7 +334,7 @@ class SpindleControl:
         return self.orientation.bring(angle, sense)
 
     def break_off(self) -> None:
-        """Feed hold: a change-over or a way to an angle that is under way ends; what waits asks again."""
+        """End a change to C-axis mode or an orientation that is in progress, because of a feed hold."""
         if not self.held:
             self._free_c()
         if self.orientation.at is None:
@@ -325,7 +342,7 @@ class SpindleControl:
 
     @property
     def held(self) -> bool:
-        """Whether C may move, as far as the spindle's drive decides that."""
+        """True if C may move as far as the spindle drive is concerned."""
         return self._lock is None or self._lock.held()
 
     def _let_go(self) -> None:
@@ -337,18 +354,19 @@ class SpindleControl:
             self._lock.hold(False)
 
     def look(self) -> None:
-        """First thing in a tick: read the encoder."""
+        """Read the encoder. Called first in each tick."""
         self.angle.note(self._port.angle())
 
     def update(self, now: float, radius: float) -> None:
-        """Once a tick: send what has changed, and see what the drive does.
+        """Send a changed speed and monitor the drive, once per tick.
 
-        ``radius`` (mm) of the tool decides under constant surface speed. Raises AlarmError
-        when the drive has tripped or does not obey.
+        ``radius`` is the tool's radius in mm for constant surface speed. Raises AlarmError if the drive has
+        tripped or does not follow its command.
         """
         self._now = now
         measured = self._port.speed()
-        if not math.isfinite(measured):  # the last speed stays: what is not known does not stand
+        # keep the last speed, because an unknown speed must not count as a standstill
+        if not math.isfinite(measured):
             raise AlarmError("spindle-encoder", "the spindle drive reports a speed that is not a number")
         self.measured = measured
         self._radius = radius
@@ -370,7 +388,7 @@ class SpindleControl:
             raise AlarmError("ignores-stop", turns)
 
     def at_speed(self, now: float) -> bool:
-        """Within its band for long enough, and turning at all when it ought to."""
+        """Return whether the spindle has been within its speed window long enough, or is not requested."""
         if self._ask is None:
             return True
         if self.command == 0.0 or self._in_band_since is None:
@@ -390,7 +408,7 @@ class SpindleControl:
         return rpm if ask.rpm >= 0.0 else -rpm
 
     def _rpm_of(self, ask: SpindleDemand, highest: float) -> float:
-        """Unsigned; ``highest`` as G77 knows it."""
+        """Return the unsigned speed of a request in rpm. ``highest`` limits a surface speed."""
         if ask.surface is None:
             return abs(ask.rpm)
         return surface_rpm(ask.surface, self._radius, ask.lowest, min(ask.highest or highest, highest))
@@ -410,22 +428,25 @@ class SpindleControl:
         self._port.run(rpm)
 
     def _highest_by_radius(self) -> float:
-        """rpm; 0 without a surface speed."""
+        """Return the highest speed in rpm that the radius may require; 0 without a surface speed."""
         ask = self._ask
         if ask is None or ask.surface is None:
             return 0.0
         return min(min(ask.highest or self.highest, self.highest) * self.override, self._model.rpm_max)
 
     def _note_fall(self, rpm: float, now: float) -> None:
-        """From where another speed begins; measured, since it may still coast from an E-stop."""
+        """Record the time and speed at which a change of the command starts.
+
+        The measured speed is included because the spindle may still coast after an E-stop.
+        """
         fastest = max(abs(self.measured), abs(self.command))
         if abs(rpm) < fastest or rpm * self.command < 0.0 or rpm * self.measured < 0.0:
             self._fell = (now, fastest)
-        elif abs(rpm) > abs(self.command) <= self._owed(now):  # else it is still on its way up
+        elif abs(rpm) > abs(self.command) <= self._owed(now):  # otherwise the spindle is still accelerating
             self._rose = (now, min(abs(self.measured), abs(self.command)))
 
     def _watch_standing(self, now: float) -> None:
-        """A spindle that stands although it is asked to turn must not start when its cause goes away."""
+        """Let a requested but stopped spindle wait, so that it does not start when the cause goes away."""
         if self._ask is None:
             return
         if self.start_barred:
@@ -448,19 +469,19 @@ class SpindleControl:
             self._in_band_since = now
 
     def _owed(self, now: float) -> float:
-        """Speed that an obeying drive has at least after the command rose, rpm."""
+        """Return the speed in rpm that a correct drive has at least reached after the command rose."""
         since, speed = self._rose
         return speed + self._model.accel * max(now - since - self._grace, 0.0)
 
     def _allowed(self, now: float) -> float:
-        """Highest speed that an obeying drive can still have after the command fell."""
+        """Return the highest speed in rpm that a correct drive can have after the command fell."""
         since, speed = self._fell
         ramp = speed - self._model.decel * max(now - since - self._grace, 0.0)
         return max(abs(self.command), ramp, self.orientation.turns_at) * (1.0 + _OVER) + _OVER_RPM
 
     @property
     def _grace(self) -> float:
-        """Seconds after a command in which the measured speed need not show it."""
+        """The time in seconds after a command in which the measured speed need not follow."""
         return max(_GRACE, self._lag() + _REACTS)
 
     _now = 0.0

@@ -1,4 +1,4 @@
-"""The spindle held at an angle by its own drive: asked for, waited for, watched, let go."""
+"""Spindle orientation by the drive: request, wait, supervision and release."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from core.ports import SpindleOrientation
 
 
 class Orientation:
-    """One angle at a time. Whoever lets the spindle turn, or stops it, lets the angle go first."""
+    """The orientation of the spindle at one angle. It must be released before the spindle turns or stops."""
 
     def __init__(self, port: SpindleOrientation | None, rpm: float) -> None:
-        """``rpm``: how fast the drive may turn on its way to an angle."""
+        """Initialize without a requested angle. ``rpm`` is the maximum speed of an orienting spindle."""
         self._port = port
         self._rpm = rpm
         self._asked: tuple[float, int] | None = None
@@ -19,21 +19,21 @@ class Orientation:
 
     @property
     def at(self) -> float | None:
-        """Degrees at which the spindle is held; None while it is not."""
+        """The angle in degrees at which the drive holds the spindle, or None."""
         return self._asked[0] if self._asked is not None and self._reached else None
 
     @property
     def on_its_way(self) -> bool:
-        """Whether the drive turns it to an angle."""
+        """True while the drive moves the spindle to an angle."""
         return self._asked is not None and not self._reached
 
     @property
     def turns_at(self) -> float:
-        """rpm at which the spindle may turn without a command: on its way to an angle."""
+        """The maximum speed in rpm that an orientation can cause; 0 without a requested angle."""
         return self._rpm if self._asked is not None else 0.0
 
     def bring(self, angle: float, sense: int) -> bool:
-        """Ask for an angle, once; True as soon as the spindle is held there. Raises DriverError."""
+        """Request an angle once; return True when the drive holds it. Raises AlarmError or DriverError."""
         if self._port is None:
             raise AlarmError("spindle-orient", "this machine cannot orient the spindle to an angle")
         if self._asked != (angle, sense):
@@ -44,13 +44,13 @@ class Orientation:
         return self._reached
 
     def let_go(self) -> None:
-        """The angle counts no more, reached or not."""
+        """Release the requested angle, whether it has been reached or not."""
         asked, self._asked, self._reached = self._asked, None, False
         if asked is not None and self._port is not None:
             self._port.release()
 
     def look(self) -> None:
-        """Every tick. Raises AlarmError where the drive no longer holds the angle that it had reached."""
+        """Raise AlarmError if the drive no longer holds the angle that it reached. Called every tick."""
         if self._reached and self._port is not None and not self._port.oriented():
             assert self._asked is not None
             self._reached = False

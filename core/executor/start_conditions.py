@@ -1,7 +1,7 @@
-"""Why a cycle may not start: every reason, in the order in which an operator has to remove them.
+"""Conditions of a cycle start, in the order in which an operator has to satisfy them.
 
-Of the machine, of the job that Cycle Start begins (the program, a restart in it, a line of MDI) and its
-proof, and of what a start would set going besides: that has to be announced first.
+They concern the machine, the job to start (program, restart or MDI line) and its proof. Anything else that a
+start would turn on must be announced first.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from core.interpreter.shared.modal_state import Modal
 from core.message import Message
 from core.tool_edges import edge_name
 
-INHIBIT = "start_inhibit"  # the input that keeps every cycle from being started or going on
+INHIBIT = "start_inhibit"  # the input that prevents every cycle from starting or resuming
 _BUSY = {
     State.ESTOP: "E-stop is pressed: release it",
     State.FAULT: "an alarm is active: clear its cause and press Reset",
@@ -32,12 +32,12 @@ _BUSY = {
 
 
 def guard_open(context: MachineContext) -> bool:
-    """Whether the guard is open at a machine whose file says that it stops the cycle; off is open."""
+    """Return whether the guard is open at a machine whose guard stops the cycle. An off input means open."""
     return context.machine.interlocks.guard_stops and not context.inputs.get("guard", False)
 
 
 def station_stop(context: MachineContext) -> str:
-    """What at the operator station keeps a cycle from going on; empty when nothing."""
+    """Return which condition of the operator station prevents a cycle, or an empty string."""
     if context.signals.hold:
         return "feed hold is pressed"
     if guard_open(context):
@@ -48,15 +48,16 @@ def station_stop(context: MachineContext) -> str:
 
 
 def unclamped(context: MachineContext) -> str:
-    """Why the spindle may not be started as the collet is; empty when it may."""
+    """Return why the collet prevents a spindle start, or an empty string."""
     if context.machine.interlocks.spindle_with_collet_open or context.inputs.get("collet_closed", True):
         return ""
     return "the spindle does not start with the collet open: close the collet first"
 
 
 def unclamped_by_program(context: MachineContext) -> str:
-    """As ``unclamped`` behind a stop of a cycle, whose outputs no hand switches: what the program has opened
-    is closed only once that is over.
+    """Return why the collet prevents a spindle start within a stopped cycle, or an empty string.
+
+    If the program has opened the collet, the operator must press Reset before closing it.
     """
     why = unclamped(context)
     if why and not context.outputs.outputs().get("collet", True):
@@ -68,7 +69,7 @@ def unclamped_by_program(context: MachineContext) -> str:
 
 
 def hindrance(context: MachineContext, state: State) -> str:
-    """What keeps any cycle from being started at this machine now; empty when nothing."""
+    """Return which state of the machine prevents any cycle start, or an empty string."""
     if state in _BUSY:
         return _BUSY[state]
     if station_stop(context):
@@ -85,12 +86,12 @@ def hindrance(context: MachineContext, state: State) -> str:
 
 
 def job_refusal(context: MachineContext, state: State, job: Job | None, proof: Proof | None) -> str:
-    """Why this job may not be started now; empty when it may."""
+    """Return why this job may not be started now, or an empty string if it may."""
     return hindrance(context, state) or unproved(job, proof) or lacking(context, proof)
 
 
 def lacking(context: MachineContext, proof: Proof | None) -> str:
-    """What the program asks for and this machine cannot do; empty when nothing."""
+    """Return which function the program needs but the machine does not have, or an empty string."""
     blocks = context.ports.blocks
     absent = {Message("output {name}", name=name) for name in context.machine.absent}
     for need in proof.needs if proof is not None else ():
@@ -120,7 +121,7 @@ def lacking(context: MachineContext, proof: Proof | None) -> str:
 
 
 def unproved(job: Job | None, proof: Proof | None) -> str:
-    """What proving leaves to be done before this job may be started; empty when nothing."""
+    """Return why the proof does not permit a start of this job, or an empty string."""
     if job is None:
         return "no program is loaded"
     if proof is None:
@@ -137,23 +138,23 @@ def unproved(job: Job | None, proof: Proof | None) -> str:
     return ""
 
 
-# --- what Cycle Start begins ----------------------------------------------------------------------------
+# --- job that Cycle Start begins ------------------------------------------------------------------------
 
 
 _NOTHING = {
     Starts.LINE: "no MDI line is ready to start",
     Starts.RESTART: "the restart is not ready: search for a line and confirm it",
 }
-_SAME = 0.01  # mm, degrees: nearer than this the slides stand where a way was planned from
+_SAME = 0.01  # mm or degrees, tolerance between the axes and the planned start position
 
 
 def job_to_start(status: ControlStatus) -> Job | None:
-    """The job that Cycle Start would begin."""
+    """Return the job that Cycle Start would run, or None."""
     return status.job if status.starts is Starts.PROGRAM else status.prepared
 
 
 def start_refusal(context: MachineContext, state: State, status: ControlStatus) -> str:
-    """Why Cycle Start does nothing now; empty when it may start."""
+    """Return why Cycle Start is refused now, or an empty string if it may start."""
     job, proof = job_to_start(status), status.proof
     if status.starts is not Starts.PROGRAM:
         proof = status.prepared_proof
@@ -164,7 +165,7 @@ def start_refusal(context: MachineContext, state: State, status: ControlStatus) 
 
 
 def first_move_refusal(context: MachineContext, status: ControlStatus, begun: int) -> tuple[str, str]:
-    """Code and sentence why the first move of what Cycle Start begins may not be made; empty when it may."""
+    """Return the code and the sentence if the first move is refused; both are empty if it is permitted."""
     job = job_to_start(status)
     if not status.checks_starts or job is None:
         return "", ""
@@ -177,7 +178,10 @@ def first_move_refusal(context: MachineContext, status: ControlStatus, begun: in
 def first_move_verdict(
     context: MachineContext, status: ControlStatus, begun: int, *, repeats: bool = False
 ) -> Clearance | None:
-    """The verdict on what Cycle Start, or Cycle Repeat, would begin from here; None: not computed yet."""
+    """Return the clearance of the first move after Cycle Start, or after Cycle Repeat if ``repeats``.
+
+    The result is None if the clearance has not been computed yet.
+    """
     job, known = job_to_start(status), status.clearances
     if repeats:
         job = status.job
@@ -200,7 +204,7 @@ def _moved(context: MachineContext, job: Job | None) -> str:
 
 
 def _changed(context: MachineContext, status: ControlStatus, job: Job | None) -> str:
-    """What has changed since the program, the line or the restart was proved; empty when nothing."""
+    """Return what has changed since the program, the line or the restart was proved, or an empty string."""
     if job is None:
         return ""
     begin = job.setup.begin
@@ -223,14 +227,14 @@ def _changed(context: MachineContext, status: ControlStatus, job: Job | None) ->
 
 
 def _again(begin: Begin) -> str:
-    """How the operator has it proved anew."""
+    """Return how the operator can have the job proved again."""
     if begin.single:
         return "request the retract path again" if begin.approach else "enter or select the line again"
     return "search for the line again"
 
 
 def _changed_for_restart(status: ControlStatus, job: Job, begin: Begin, now: Modal) -> str:
-    """The program must still be the one that is loaded, and the collet as the line has it."""
+    """Return why a restart is outdated: another program is loaded, or the collet is in another state."""
     if status.job is None or status.job.digest != job.part_of:
         return "the program was loaded again: search for the line again"
     wanted = begin.checkpoint.modal.collet_closed
@@ -244,19 +248,20 @@ def _changed_for_restart(status: ControlStatus, job: Job, begin: Begin, now: Mod
     return unproved(status.job, status.proof)
 
 
-# --- what a start will start ----------------------------------------------------------------------------
+# --- announcements of a start ---------------------------------------------------------------------------
 
 
 SPINDLE = "spindle"
-TIME_TO_READ = 0.3  # s that it must have stood in the snapshot before a start may do it
-_FIGURE_CHANGED = 0.1  # of a figure: more, and it counts from anew
+TIME_TO_READ = 0.3  # s for which an announcement must have been displayed before a start
+_FIGURE_CHANGED = 0.1  # relative change of a value that makes a new announcement
 
 
 class Starting(NamedTuple):
-    """Something that stands now and that a start sets going. ``what`` names it; the operator reads ``text``.
+    """A function that the next start would turn on.
 
-    ``figure`` is how much of it, rpm for a spindle: one that has changed much is another announcement.
-    ``begin`` lets it start; it is called with the start that was announced.
+    ``what`` identifies the function, and the operator reads ``text``. ``figure`` is its value, such as the
+    rpm of a spindle. A large change of the value makes a new announcement. ``begin`` turns the function on
+    after the announced start.
     """
 
     what: str
@@ -266,20 +271,26 @@ class Starting(NamedTuple):
 
 
 class Announcement:
-    """What a start would set going, asked of ``sources`` every tick. On the executor's thread alone."""
+    """The functions that a start would turn on, read from ``sources`` in every tick.
+
+    Used on the executor's thread only.
+    """
 
     def __init__(self) -> None:
         self.sources: list[Callable[[], Iterable[Starting]]] = []
-        self._since: dict[str, tuple[float, float]] = {}  # what: when it was first published, its figure
+        self._since: dict[str, tuple[float, float]] = {}  # by key: time of the first display, and the value
 
     def publish(self, now: float) -> tuple[str, ...]:
-        """The texts for the snapshot of this tick."""
+        """Return the texts for the snapshot of this tick and record when each first appeared."""
         items, before = self._items(), self._since
         self._since = {item.what: self._counted(item, before, now) for item in items}
         return tuple(item.text for item in items)
 
     def refusal(self, now: float, what: str = "") -> str:
-        """Why a start, of ``what`` or of all, is refused: nobody has had the time to read what it starts."""
+        """Return why a start is refused because the operator had no time to read an announcement.
+
+        ``what`` limits the check to one function. The result is empty if the start is permitted.
+        """
         for item in self._items(what):
             since, figure = self._since.get(item.what, (math.inf, 0.0))
             if now - since < TIME_TO_READ - 1e-9 or _differ(item.figure, figure):
@@ -287,7 +298,7 @@ class Announcement:
         return ""
 
     def begin(self, what: str = "") -> None:
-        """Set ``what`` going, or all, by a start that was not refused."""
+        """Turn on the function ``what``, or all functions, after a permitted start."""
         for item in self._items(what):
             item.begin()
 

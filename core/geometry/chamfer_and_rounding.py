@@ -1,7 +1,7 @@
-"""Chamfer and rounding of the corner between two elements of a contour.
+"""Chamfers and roundings of the corner between two elements of a contour.
 
-Between two lines a chamfer, or a fillet tangent to both. Beside an arc the leg of a chamfer is straight too:
-a chord, as controls measure it that say how (G301 of Beckhoff's). Roundings lie between lines and arcs.
+Between two lines, the corner is a chamfer or a tangent fillet. The leg of a chamfer is straight, even along
+an arc, where it is a chord (as in Beckhoff's G301). A rounding may be between lines and arcs.
 """
 
 from __future__ import annotations
@@ -12,21 +12,24 @@ from core.geometry.contour_offset import GougeError, offset_element
 from core.geometry.lines_and_arcs import SAME_POINT, Arc, Element, Line, left_of, meetings, turn
 from core.message import CodedError, Message
 
-# Lines that turn by less than this go on in one direction, or straight back: a corner of any size that
-# fits a machine would be smaller, or farther off, than the last place of its numbers. rad.
+# Lines that turn by less than this angle (rad) have the same or the opposite direction. The corner point
+# would be inaccurate by more than any machine can move.
 STRAIGHT = 1e-6
 
 
 class CornerError(CodedError):
-    """There is no such corner between two lines; ``str()`` says why in a clause."""
+    """Raised when the corner between two moves is not possible. ``str()`` gives the reason as a clause."""
 
 
 class NoCornerError(CornerError):
-    """The lines go on in one direction."""
+    """Raised when the two moves have the same direction."""
 
 
 class CornerTooLargeError(CornerError):
-    """The corner takes more of a line than there is. ``needed`` mm of it, and ``first`` tells which line."""
+    """Raised when the corner needs more of a move than its length.
+
+    ``needed`` is the required length in mm. ``first`` is True if the first of the two moves is too short.
+    """
 
     def __init__(self, needed: float, *, first: bool) -> None:
         super().__init__(
@@ -37,10 +40,10 @@ class CornerTooLargeError(CornerError):
 
 
 def chamfer(before: Element, after: Element, leg: float) -> tuple[Element, Line, Element]:
-    """Both elements ended ``leg`` mm from the point where they meet, with a line between: in order.
+    """Return both elements shortened by ``leg`` mm at their corner, with the chamfer between them.
 
-    Raises NoCornerError, CornerTooLargeError, or CornerError where they run back on themselves or the line
-    would cross one of them.
+    Raises NoCornerError, CornerTooLargeError, or CornerError if the second element reverses the direction of
+    the first or the chamfer would cross one of them.
     """
     angle = _turned(before, after)
     first, last = _shortened(before, after, leg)
@@ -54,7 +57,7 @@ def chamfer(before: Element, after: Element, leg: float) -> tuple[Element, Line,
 
 
 def _turned(before: Element, after: Element) -> float:
-    """The angle by which the way turns from one to the other, rad."""
+    """Return the angle in radians by which the direction changes between the elements."""
     for element in (before, after):
         if element.length < SAME_POINT:
             raise CornerTooLargeError(0.0, first=element is before)
@@ -73,17 +76,17 @@ def _turned(before: Element, after: Element) -> float:
 
 
 def _shortened(before: Element, after: Element, leg: float) -> tuple[Element, Element]:
-    """What is left of both where each ends ``leg`` mm from the point where they meet."""
+    """Return both elements, each shortened by a chord of ``leg`` mm at their corner."""
     end, start = before.length - _taken(before, leg, first=True), _taken(after, leg, first=False)
     return before.part(before.start, before.point(max(end, 0.0))), after.part(after.point(start), after.end)
 
 
 def _taken(element: Element, leg: float, *, first: bool) -> float:
-    """mm along the element that the leg takes of it."""
+    """Return the length in mm that the leg removes from an element."""
     if isinstance(element, Arc) and leg > 2.0 * element.radius:
         raise CornerTooLargeError(leg, first=first)
     way = _way(element, leg)
-    # Of an arc something must be left: ends in one point would be a full circle.
+    # A part of an arc must remain, because an arc with equal ends would be a full circle.
     if way > element.length - _left(element):
         raise CornerTooLargeError(way, first=first)
     return min(way, element.length)
@@ -96,15 +99,19 @@ def _way(element: Element, leg: float) -> float:
 
 
 def _left(element: Element) -> float:
-    """What must be left of an element, mm: an arc whose ends are one point would be a full circle."""
+    """Return the length in mm that must remain of an element.
+
+    An arc with equal ends would be a full circle.
+    """
     return SAME_POINT if isinstance(element, Arc) else -SAME_POINT
 
 
 def rounding(before: Element, after: Element, radius: float) -> tuple[Element, Arc, Element]:
-    """An arc of ``radius`` mm that touches both, which end at it: in order.
+    """Return both elements shortened to the tangent points of an arc of ``radius`` mm, with the arc.
 
-    Between lines its set-back is radius·tan(turn/2); else its centre is where both, moved aside by
-    ``radius``, meet. Raises as ``chamfer``, and CornerError where no arc touches both between their ends.
+    Between two lines, each line is shortened by radius·tan(turn/2). Otherwise the center of the arc is the
+    intersection of both elements offset by ``radius``. Raises the errors of ``chamfer``, and CornerError if
+    no arc is tangent to both within their length.
     """
     if isinstance(before, Line) and isinstance(after, Line):
         return _fillet(before, after, radius)
@@ -144,17 +151,17 @@ def _fillet(before: Line, after: Line, radius: float) -> tuple[Element, Arc, Ele
     return first, Arc(first.end, last.start, centre, clockwise=angle < 0), last
 
 
-# --- the leg of a chamfer whose own length is given --------------------------------------------------------
+# --- chamfers given by their own length --------------------------------------------------------------------
 
 
-_STEPS = 256  # in which the first leg is looked for that is long enough
+_STEPS = 256  # steps of the search for the first leg that is long enough
 _HALVINGS = 60
 
 
 def leg_of(before: Element, after: Element, length: float) -> float:
-    """The leg of a chamfer that is itself ``length`` mm long. Raises as ``chamfer``."""
+    """Return the leg of a chamfer that is itself ``length`` mm long. Raises the errors of ``chamfer``."""
     if isinstance(before, Line) and isinstance(after, Line):
-        # The chamfer and its two legs are a triangle of two equal sides.
+        # The chamfer and its two legs are an isosceles triangle.
         return length / (2.0 * max(abs(cos(turn(before.end_direction, after.start_direction) / 2)), 1e-9))
     _turned(before, after)
     most = min(_longest(before), _longest(after))
@@ -172,13 +179,13 @@ def _found(before: Element, after: Element, length: float, short: float, long: f
 
 
 def _width(before: Element, after: Element, leg: float) -> float:
-    """How long the chamfer of this leg is."""
+    """Return the length of the chamfer with this leg."""
     one = before.point(before.length - _way(before, leg))
     return dist(one, after.point(_way(after, leg)))
 
 
 def _longest(element: Element) -> float:
-    """The longest leg that ends on the element."""
+    """Return the longest leg that ends on the element."""
     if isinstance(element, Line):
         return element.length
     return 2.0 * element.radius * sin(min(abs(element.sweep), pi) / 2.0)

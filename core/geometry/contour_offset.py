@@ -1,10 +1,11 @@
-"""A contour moved to one side by a distance, and the spans that roughing may run beside one.
+"""Offset of a contour by a distance, and the spans in which roughing may move next to a contour.
 
-``Offset`` refuses a contour that the distance does not fit into; ``trimmed_offset``, for roughing,
-does not: a fillet smaller than what is left on the part, or a groove narrower than twice that, is passed by.
+``Offset`` rejects a contour into which the distance does not fit. ``trimmed_offset``, for roughing, leaves
+out fillets smaller than the allowance and grooves narrower than twice the allowance.
 
-Points of roughing are (depth, way) as seen from the tool's start point: the depth grows along X towards the
-contour, the way along Z towards it; the contour runs so that the tool is on its left.
+Points of roughing are (depth, distance along Z) as seen from the start point of the tool. The depth grows
+along X toward the contour, and the second value along Z toward it. The contour runs with the tool on its
+left.
 """
 
 from __future__ import annotations
@@ -32,38 +33,39 @@ from core.geometry.lines_and_arcs import (
     turn,
 )
 
-# Elements whose offsets end nearer than this go on in one point half way. Programs round their numbers to
-# 1.27 µm, so what was meant as tangent is tangent no better, and no machine can take the step. mm.
+# mm. Offsets whose ends are closer than this are joined at their midpoint. Programs round their numbers to
+# 1.27 µm, so tangents are not more exact than that, and no machine can follow such a step.
 JOINED = 0.001
 
-# The offset may be this much nearer to the contour than its distance: half a join and rounding, and less
-# than the 2 µm that a workpiece can show. mm.
+# mm by which the offset may be closer to the contour than its distance. The value is half a join plus
+# rounding, and less than the 2 µm that are visible on a workpiece.
 NEARER = 0.0015
 
-# Turns nearer than this to half a circle run straight back on themselves: no side is the free one. rad.
+# rad. A turn closer than this to 180 degrees is a reversal, where neither side is free.
 STRAIGHT_BACK = 1e-6
 
-# So many elements back and forth are looked at for a second wall that the offset runs into. The offset
-# is held back by as many, so that it is not used before it has been looked at.
+# Number of elements before and after that are checked for a second wall. The output is delayed by the same
+# number, so that it is not used before it has been checked.
 WINDOW = 128
-# Offsets of tangent elements are joined over a rounding of the program; a path may be nearer by so much. mm.
+# mm by which a path may be closer, because offsets of tangent elements are joined across rounding errors.
 _NEARER = 0.0005
-# Pieces of the path follow each other where the end of one is this near to the start of the next: short arcs
-# in rounded words are tangent to some hundredths of a degree, and the path beside them steps by that. mm.
+# mm between the end of one piece and the start of the next. Short arcs in rounded words are tangent only to
+# some hundredths of a degree, which causes a step in the offset.
 _FOLLOWS = 5 * JOINED
-# What may be left over behind the end of the path: parts that are too near by less than _NEARER. mm.
+# mm of parts that may remain unused after the end of the path.
 _LOST = 0.02
 Span = tuple[float, float]
 """From where to where along the way, mm."""
-_SHORTEST = 0.001  # mm; half the width of what a workpiece can show
-_TOUCH = 1e-6  # mm; a line so little deeper than a wall lies on it
+_SHORTEST = 0.001  # mm; half of what is visible on a workpiece
+_TOUCH = 1e-6  # mm; a line that is deeper than a wall by less is on the wall
 _ENDLESS = float("inf")
 
 
 class GougeError(Exception):
-    """The offset of a contour cuts into it. ``index`` is the element that cannot be followed, from 0.
+    """Raised when the offset of a contour cuts into the contour.
 
-    ``why`` is a clause about it, in which the distance is "that".
+    ``index`` is the number of the element that cannot be offset, from 0. ``why`` is a clause about the
+    element.
     """
 
     def __init__(self, index: int, why: str) -> None:
@@ -73,7 +75,10 @@ class GougeError(Exception):
 
 
 class Piece(NamedTuple):
-    """A piece of an offset. ``corner``: an arc about the corner at the end of the element ``source``."""
+    """A piece of an offset contour.
+
+    ``corner`` is True for an arc around the corner at the end of the element ``source``.
+    """
 
     source: int  # index of the element, from 0
     element: Element
@@ -81,9 +86,9 @@ class Piece(NamedTuple):
 
 
 def offset_element(element: Element, distance_left: float) -> Element:
-    """The element moved to its left by ``distance_left`` mm, negative to the right; arcs stay concentric.
+    """Return the element offset by ``distance_left`` mm to its left; negative values offset to the right.
 
-    Raises GougeError (index 0) for an arc that has no radius left.
+    Arcs remain concentric. Raises GougeError (index 0) for an arc whose radius would vanish.
     """
     ax, az = left_of(element.start_direction)
     bx, bz = left_of(element.end_direction)
@@ -98,23 +103,25 @@ def offset_element(element: Element, distance_left: float) -> Element:
 
 
 class Offset:
-    """The path ``distance_left`` mm to the left of a contour (negative: right) that comes in by elements.
+    """The offset of a contour whose elements are added one by one.
 
-    It starts and ends square to the contour. Each element must start where the one before it ends, and have a
-    length. GougeError is raised where an inside arc is too small, an element vanishes or would be run
-    backwards, or a path comes nearer to any element than the distance (a second wall farther than WINDOW
-    elements away is not seen).
+    The path is ``distance_left`` mm to the left of the contour, or to the right if negative. It starts and
+    ends square to the contour. Each element must have a length and start at the end of the previous one.
+    GougeError is raised if an inside arc is too small, if an element vanishes or would be reversed, or if the
+    path is closer to any element than the distance. A second wall more than WINDOW elements away is not
+    detected.
     """
 
     def __init__(self, distance_left: float) -> None:
         self._distance = distance_left
         self._count = 0
-        self._last: tuple[Element, Element] | None = None  # contour and offset, its start where it will be
+        # the last contour element and its offset, which has its final start
+        self._last: tuple[Element, Element] | None = None
         self._ready: deque[Piece] = deque()
         self._guard = _Guard(abs(distance_left))
 
     def add(self, element: Element) -> Iterator[Piece]:
-        """Takes the next element; yields the pieces that are sure by now. Raises GougeError."""
+        """Add the next element and yield the pieces that are final. Raises GougeError."""
         index = self._count
         self._count += 1
         try:
@@ -129,7 +136,7 @@ class Offset:
             yield self._ready.popleft()
 
     def close(self) -> Iterator[Piece]:
-        """The rest of the pieces: no element comes any more. Raises GougeError."""
+        """Yield the remaining pieces after the last element. Raises GougeError."""
         if self._last is not None:
             self._keep(self._count - 1, self._last[1], corner=False)
             self._last = None
@@ -137,7 +144,7 @@ class Offset:
             yield self._ready.popleft()
 
     def _join(self, before: Element, ended: Element, after: Element, begun: Element, index: int) -> Element:
-        """Ends the offset of one element at that of the next, which is returned with its new start."""
+        """Join the offsets of two elements; return the second one with its new start."""
         corner = after.start
         angle = turn(before.end_direction, after.start_direction)
         if abs(angle) > pi - STRAIGHT_BACK and self._distance:
@@ -163,7 +170,7 @@ class Offset:
 
 
 def pieces_beside(elements: Iterable[Element], distance_left: float) -> list[Piece]:
-    """The whole path beside a contour that is known. Raises GougeError as ``Offset`` does."""
+    """Return the complete offset of a known contour. Raises GougeError like ``Offset``."""
     offset = Offset(distance_left)
     found = [piece for element in elements for piece in offset.add(element)]
     return [*found, *offset.close()]
@@ -174,7 +181,7 @@ def _middle(a: Point, b: Point) -> Point:
 
 
 def _inside(ended: Element, begun: Element, corner: Point, index: int) -> Point:
-    """Where two offsets meet at an inside corner: of two points the one nearer to the corner."""
+    """Return the intersection of two offsets at an inside corner that is closer to the corner."""
     found = intersections(ended, begun)
     if not found:
         shorter = index - 1 if ended.length < begun.length else index
@@ -183,15 +190,16 @@ def _inside(ended: Element, begun: Element, corner: Point, index: int) -> Point:
 
 
 def _cut(element: Element, start: Point, end: Point, index: int) -> Element:
-    """The part of an offset between two points. Raises GougeError where it vanishes or runs backwards."""
+    """Return the part of an offset between two points. Raises GougeError if it vanishes or reverses."""
     whole = start == element.start and end == element.end
-    if not whole and element.along(end) - element.along(start) < 2 * SAME_POINT:  # else an arc could close
+    # otherwise an arc could become a full circle
+    if not whole and element.along(end) - element.along(start) < 2 * SAME_POINT:
         raise GougeError(index, "the neighboring moves leave no room for the offset path of the move")
     return element.part(start, end)
 
 
 class _Guard:
-    """Watches that no piece of the offset comes nearer to any element of the contour than it should."""
+    """Checks that no piece of the offset is closer to an element of the contour than permitted."""
 
     def __init__(self, apart: float) -> None:
         self._least = apart - NEARER
@@ -217,28 +225,28 @@ class _Guard:
         x0, x1, z0, z1 = box[0] - least, box[1] + least, box[2] - least, box[3] + least
         for other, (low_x, high_x, low_z, high_z) in others:
             if low_x > x1 or high_x < x0 or low_z > z1 or high_z < z0:
-                continue  # nearly all; the rest takes a hundred times as long to tell
+                continue  # true for nearly all elements; the exact check takes a hundred times as long
             if clearance(element, other) < least:
                 return True
         return False
 
 
-# --- the offset with what is not reached left out -------------------------------------------------------
+# --- trimmed offsets ------------------------------------------------------------------------------------
 
 
 class TrimError(Exception):
-    """There is no unbroken way along the contour at this distance."""
+    """Raised when the offset of a contour is not a continuous path at this distance."""
 
 
 def around(element: Element, apart: float) -> list[Element]:
-    """Curves that hold the edge of all that lies within ``apart`` of an element; they lie in it or on it."""
+    """Return curves that contain the edge of the region within ``apart`` mm of an element."""
     return [*moved(element, apart), *moved(element, -apart), *(_ring(p, apart) for p in _ends(element))]
 
 
 def trimmed_offset(elements: Sequence[Element], apart: float) -> list[Element]:
-    """The path ``apart`` mm to the left of a contour, nowhere nearer to it than that by over 0.5 µm.
+    """Return the path ``apart`` mm to the left of a contour, closer to it by at most 0.5 µm.
 
-    Each element must start where the one before it ends. Raises TrimError where the path falls apart.
+    Each element must start at the end of the previous one. Raises TrimError if the path is not continuous.
     """
     if apart <= 0:
         return list(elements)
@@ -254,14 +262,14 @@ def trimmed_offset(elements: Sequence[Element], apart: float) -> list[Element]:
 
 
 class Boxed:
-    """Elements that are found by where they are."""
+    """Elements that can be searched by position."""
 
     def __init__(self, elements: Sequence[Element]) -> None:
         self._elements = elements
         self._boxes = np.array([element.box for element in elements])
 
     def near(self, box: Box, within: float) -> list[Element]:
-        """The elements whose boxes are no farther than ``within`` from another along either axis."""
+        """Return the elements whose bounding boxes are at most ``within`` mm from ``box`` along both axes."""
         x0, x1, z0, z1 = self._boxes.T
         hit = (x0 <= box[1] + within) & (x1 >= box[0] - within)
         hit &= (z0 <= box[3] + within) & (z1 >= box[2] - within)
@@ -269,7 +277,7 @@ class Boxed:
 
 
 def _pieces(elements: Sequence[Element], apart: float) -> list[Element]:
-    """The left offset of each element, and an arc about each corner that lies inwards of the path."""
+    """Return the left offset of each element, and an arc around each corner that turns right."""
     pieces = moved(elements[0], apart)
     for before, after in pairwise(elements):
         angle = turn(before.end_direction, after.start_direction)
@@ -280,7 +288,7 @@ def _pieces(elements: Sequence[Element], apart: float) -> list[Element]:
 
 
 def _corner(before: Element, after: Element, apart: float) -> list[Element]:
-    """Also beside a fillet that is smaller than the distance, which has no path of its own."""
+    """Return the arc around a corner, even next to a fillet whose own offset has vanished."""
     first, last = (
         (after.start[0] + side[0] * apart, after.start[1] + side[1] * apart)
         for side in (left_of(before.end_direction), left_of(after.start_direction))
@@ -289,7 +297,7 @@ def _corner(before: Element, after: Element, apart: float) -> list[Element]:
 
 
 def moved(element: Element, apart: float) -> list[Element]:
-    """The element that much to its left; none where an arc has no radius left."""
+    """Return the element offset to its left, or an empty list for an arc whose radius would vanish."""
     try:
         return [offset_element(element, apart)]
     except GougeError:
@@ -306,7 +314,7 @@ def _ring(centre: Point, radius: float) -> Arc:
 
 
 def split_at(piece: Element, edges: Boxed) -> list[Element]:
-    """The parts of a piece between the points where it meets any edge."""
+    """Return the parts of a piece between its intersections with the edges."""
     length = piece.length
     at = {0.0: piece.start, length: piece.end}
     for edge in edges.near(piece.box, SAME_POINT):
@@ -319,15 +327,16 @@ def split_at(piece: Element, edges: Boxed) -> list[Element]:
 
 
 def _far(part: Element, contour: Boxed, least: float) -> bool:
-    """Whether the middle of a part, and with it all of it, is far enough from every element."""
+    """Return whether the middle of a part, and so the whole part, is far enough from every element."""
     x, z = middle = part.point(part.length / 2)
     return all(distance(element, middle) >= least for element in contour.near((x, x, z, z), least))
 
 
 def _chained(parts: list[Element]) -> list[Element]:
-    """The parts that follow one another from the first one; what no way leads to is left out.
+    """Return the parts that form a continuous path from the first one.
 
-    Of several that begin in one point the last goes on: between them the offset went round where it may not.
+    If several parts start at one point, the last one is used, because the offset loops between them. Raises
+    TrimError if a part of relevant length is not reached.
     """
     if not parts:
         raise TrimError
@@ -346,10 +355,10 @@ def _chained(parts: list[Element]) -> list[Element]:
 
 
 class Area:
-    """What lies between the start point and the contour, less what is to be left on the contour.
+    """The area between the start point and the contour, without the allowance on the contour.
 
-    ``path`` is the way along the contour at the distance ``left`` (mm); it begins and ends the area.
-    Raises TrimError where there is no such path.
+    ``path`` is the path along the contour at the distance ``left`` (mm), from the start to the end of the
+    area. Raises TrimError if no such path exists.
     """
 
     def __init__(self, contour: Sequence[Element], left: float) -> None:
@@ -363,14 +372,17 @@ class Area:
 
     @property
     def turns_back(self) -> bool:
-        """Whether the path runs back along Z: behind such an edge no span reaches."""
+        """True if the path reverses along Z. No span can reach the region after such an edge."""
         return any(
             element.box[2] < element.start[1] - _TOUCH or element.box[3] > element.end[1] + _TOUCH
             for element in self.path
         )
 
     def spans(self, depth: float) -> list[Span]:
-        """Where a tool at ``depth`` may run: above it, to depth 0, there is no contour either."""
+        """Return the spans along Z in which a tool may move at ``depth``.
+
+        Above each span, up to depth 0, there is also no contour.
+        """
         met = [wall for least, wall in self._walls if least <= depth - _TOUCH]
         walls = [reach for wall in met if (reach := _reach(wall, depth - _TOUCH)) is not None]
         if depth > self._front[0] + _TOUCH:
@@ -386,7 +398,7 @@ class Area:
 
 
 def _rising(element: Element) -> list[Element]:
-    """An element in parts along which the depth only grows or only falls."""
+    """Return the parts of an element along which the depth only increases or only decreases."""
     if isinstance(element, Line):
         return [element]
     (cx, cz), radius = element.centre, element.radius
@@ -401,13 +413,13 @@ def _rising(element: Element) -> list[Element]:
 
 
 def _reach(wall: Sequence[Element], depth: float) -> Span | None:
-    """From where to where the part of a wall that is not as deep as ``depth`` reaches."""
+    """Return the span along Z of the part of a wall that is not deeper than ``depth``, or None."""
     places = [place for edge in wall for place in _places(edge, depth)]
     return (min(places), max(places)) if places else None
 
 
 def _places(edge: Element, depth: float) -> list[float]:
-    """Ways among which are the least and the greatest of the part of an edge down to ``depth``."""
+    """Return positions along Z that include both extremes of the part of an edge down to ``depth``."""
     if isinstance(edge, Line):
         return _places_of_line(edge, depth)
     candidates = [edge.start, edge.end, *_inner_extremes(edge)]

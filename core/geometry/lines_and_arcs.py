@@ -1,7 +1,7 @@
-"""Lines and arcs in X and Z, contours of them, and where two of them meet: mm, X a radius.
+"""Lines and arcs in X and Z, in mm with X as a radius, and their intersections.
 
-Angles count from Z+ towards X+. Seen from above (Z+ right, X+ down) that sense is clockwise, so a clockwise
-arc has a positive sweep. The left of a way X+ is Z+, the left of a way Z- is X+.
+Angles are measured from Z+ toward X+. Seen from above (Z+ right, X+ down), this is clockwise, so a clockwise
+arc has a positive sweep. Z+ is to the left of the direction X+, and X+ is to the left of the direction Z-.
 """
 
 from __future__ import annotations
@@ -12,27 +12,28 @@ from math import acos, atan2, cos, dist, hypot, pi, sin, sqrt
 
 FULL_TURN = 2 * math.pi
 
-# Two ends closer than this on a circle are one point: a full turn. Well under the control's step of 1.27 µm.
+# mm. Ends of an arc that are closer than this are one point and make a full circle. The value is far below
+# the control's resolution of 1.27 µm.
 SAME_POINT = 1e-6
 Point = tuple[float, float]
 """X as a radius, Z; mm."""
 Box = tuple[float, float, float, float]
 """Least x, greatest x, least z, greatest z; mm."""
-# Curves that miss each other by less than this touch: the offsets of tangent elements are that exact, and a
-# thousandth of a micrometre is nothing to a machine. mm.
+# mm. Curves that are closer than this touch. Offsets of tangent elements have this accuracy, and a machine
+# cannot show a nanometer.
 TOUCH = 1e-6
-# Sine of the angle under which two lines have no intersection worth the name: it would lie a thousand
-# times farther off than the lines are apart by their last binary place. rad.
+# Sine of the angle (rad) below which two lines count as parallel. Rounding errors would move their
+# intersection by a thousand times the distance between them.
 PARALLEL = 1e-9
 
 
 def arc_sweep(
     x0: float, z0: float, x: float, z: float, cx: float, cz: float, clockwise: bool
 ) -> tuple[float, float]:
-    """(start angle, signed sweep) of an arc in radians, measured from Z+ towards X+.
+    """Return (start angle, signed sweep) of an arc in radians, measured from Z+ toward X+.
 
-    Seen from above (X+ down, Z+ right) that is the clockwise sense, so a G02 has a positive sweep.
-    Start and end in one point make a full circle.
+    Seen from above (X+ down, Z+ right), this is clockwise, so a G02 has a positive sweep. Equal start and end
+    points give a full circle.
     """
     start = math.atan2(x0 - cx, z0 - cz)
     if math.hypot(x - x0, z - z0) < SAME_POINT:
@@ -44,7 +45,7 @@ def arc_sweep(
 def arc_extent(
     x0: float, z0: float, x: float, z: float, cx: float, cz: float, clockwise: bool
 ) -> tuple[float, float, float, float]:
-    """(least x, greatest x, least z, greatest z) of an arc, mm."""
+    """Return (least x, greatest x, least z, greatest z) of an arc, in mm."""
     start, sweep = arc_sweep(x0, z0, x, z, cx, cz, clockwise)
     radius = math.hypot(x0 - cx, z0 - cz)
     low, high = sorted((start, start + sweep))
@@ -57,21 +58,21 @@ def arc_extent(
 
 
 def centre_from_radius(start: Point, end: Point, radius: float, *, clockwise: bool) -> Point:
-    """Centre of the arc of at most 180 degrees from start to end.
+    """Return the center of the arc of at most 180 degrees from start to end.
 
-    A chord longer than the diameter gives its middle. Raises ValueError for a chord of no length.
+    A chord longer than the diameter gives its midpoint. Raises ValueError if start and end are equal.
     """
     dx, dz = end[0] - start[0], end[1] - start[1]
     chord = hypot(dx, dz)
     if chord == 0.0:
         raise ValueError("an arc given by its radius needs two different ends")
     rise = sqrt(max(radius * radius - chord * chord / 4, 0.0)) / chord
-    side = rise if clockwise else -rise  # the centre of a clockwise arc is to the right of the way
+    side = rise if clockwise else -rise  # the center of a clockwise arc is to the right of its direction
     return (start[0] + end[0]) / 2 + side * dz, (start[1] + end[1]) / 2 - side * dx
 
 
 def arc_length(start: Point, end: Point, centre: Point, *, clockwise: bool) -> float:
-    """Length of an arc; where the radii at its ends differ a little, of the spiral between them."""
+    """Return the length of an arc, or of the spiral between slightly different radii at its ends."""
     first = hypot(start[0] - centre[0], start[1] - centre[1])
     last = hypot(end[0] - centre[0], end[1] - centre[1])
     _, sweep = arc_sweep(*start, *end, *centre, clockwise)
@@ -80,56 +81,59 @@ def arc_length(start: Point, end: Point, centre: Point, *, clockwise: bool) -> f
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """A straight element of some length."""
+    """A straight element with a length greater than 0."""
 
     start: Point
     end: Point
 
     @property
     def length(self) -> float:
-        """mm."""
+        """Length of the line, in mm."""
         return dist(self.start, self.end)
 
     @property
     def start_direction(self) -> Point:
-        """Unit vector of the way at the start."""
+        """Unit vector of the direction at the start."""
         dx, dz = self.end[0] - self.start[0], self.end[1] - self.start[1]
         size = hypot(dx, dz)
         return dx / size, dz / size
 
     @property
     def end_direction(self) -> Point:
-        """Unit vector of the way at the end."""
+        """Unit vector of the direction at the end."""
         return self.start_direction
 
     @property
     def box(self) -> Box:
-        """How far the element reaches."""
+        """Bounding box of the line."""
         (x0, z0), (x1, z1) = self.start, self.end
         return min(x0, x1), max(x0, x1), min(z0, z1), max(z0, z1)
 
     def point(self, at: float) -> Point:
-        """The point ``at`` mm from the start, on the endless line."""
+        """Return the point ``at`` mm from the start, on the infinite line."""
         dx, dz = self.start_direction
         return self.start[0] + dx * at, self.start[1] + dz * at
 
     def along(self, point: Point) -> float:
-        """How far from the start, mm, the foot of ``point`` lies on the endless line; may be negative."""
+        """Return the distance in mm from the start to the projection of ``point`` on the infinite line.
+
+        The distance is negative before the start.
+        """
         dx, dz = self.start_direction
         return (point[0] - self.start[0]) * dx + (point[1] - self.start[1]) * dz
 
     def part(self, start: Point, end: Point) -> Line:
-        """The element between two of its points."""
+        """Return the part of the line between two of its points."""
         return Line(start, end)
 
     def reversed(self) -> Line:
-        """The same element, run the other way."""
+        """Return the line in the opposite direction."""
         return Line(self.end, self.start)
 
 
 @dataclass(frozen=True, slots=True)
 class Arc:
-    """An arc of a circle; start and end in one point make a full circle. See ``arc_between``."""
+    """An arc of a circle. Equal start and end points make a full circle. See ``arc_between``."""
 
     start: Point
     end: Point
@@ -138,44 +142,47 @@ class Arc:
 
     @property
     def radius(self) -> float:
-        """mm."""
+        """Radius of the arc, in mm."""
         return dist(self.start, self.centre)
 
     @property
     def sweep(self) -> float:
-        """Signed angle, rad: positive where clockwise."""
+        """Signed angle of the arc in radians, positive for a clockwise arc."""
         return arc_sweep(*self.start, *self.end, *self.centre, self.clockwise)[1]
 
     @property
     def length(self) -> float:
-        """mm."""
+        """Length of the arc, in mm."""
         return self.radius * abs(self.sweep)
 
     @property
     def start_direction(self) -> Point:
-        """Unit vector of the way at the start."""
+        """Unit vector of the direction at the start."""
         return self._direction(self.start)
 
     @property
     def end_direction(self) -> Point:
-        """Unit vector of the way at the end."""
+        """Unit vector of the direction at the end."""
         return self._direction(self.end)
 
     @property
     def box(self) -> Box:
-        """How far the element reaches."""
+        """Bounding box of the arc."""
         return arc_extent(*self.start, *self.end, *self.centre, self.clockwise)
 
     def point(self, at: float) -> Point:
-        """The point ``at`` mm from the start, on the whole circle."""
+        """Return the point ``at`` mm from the start, on the full circle."""
         radius = self.radius
         angle = atan2(self.start[0] - self.centre[0], self.start[1] - self.centre[1])
         angle += at / radius if self.clockwise else -at / radius
         return self.centre[0] + radius * sin(angle), self.centre[1] + radius * cos(angle)
 
     def along(self, point: Point) -> float:
-        """How far from the start, mm, ``point`` lies along the circle; what lies off the arc counts from
-        its nearer end: negative before the start, over the length after the end."""
+        """Return the distance in mm from the start to ``point`` along the circle.
+
+        A point outside the arc is measured from the nearer end. Its distance is negative before the start,
+        and greater than the length after the end.
+        """
         angle = atan2(point[0] - self.centre[0], point[1] - self.centre[1])
         first = atan2(self.start[0] - self.centre[0], self.start[1] - self.centre[1])
         turned = (angle - first if self.clockwise else first - angle) % FULL_TURN
@@ -185,11 +192,11 @@ class Arc:
         return turned * self.radius
 
     def part(self, start: Point, end: Point) -> Arc:
-        """The element between two of its points."""
+        """Return the part of the arc between two of its points."""
         return Arc(start, end, self.centre, self.clockwise)
 
     def reversed(self) -> Arc:
-        """The same element, run the other way."""
+        """Return the arc in the opposite direction."""
         return Arc(self.end, self.start, self.centre, not self.clockwise)
 
     def _direction(self, at: Point) -> Point:
@@ -202,9 +209,10 @@ Element = Line | Arc
 
 
 def arc_between(start: Point, end: Point, centre: Point, *, clockwise: bool) -> Arc:
-    """An arc whose centre is moved onto the perpendicular bisector of the chord: both ends get one radius.
+    """Return an arc whose center is moved to the perpendicular bisector of the chord.
 
-    Programs round centres to the control's step; the planner settles them in the same way.
+    Both ends then have the same radius. Programs round centers to the resolution, and the motion planner
+    corrects them in the same manner.
     """
     dx, dz = end[0] - start[0], end[1] - start[1]
     chord = hypot(dx, dz)
@@ -216,7 +224,7 @@ def arc_between(start: Point, end: Point, centre: Point, *, clockwise: bool) -> 
 
 
 def shifted(element: Element, x: float, z: float) -> Element:
-    """A line or an arc so much further on, mm."""
+    """Return a line or an arc shifted by ``x`` and ``z`` mm."""
     if not x and not z:
         return element
     start, end = (element.start[0] + x, element.start[1] + z), (element.end[0] + x, element.end[1] + z)
@@ -226,20 +234,20 @@ def shifted(element: Element, x: float, z: float) -> Element:
 
 
 def left_of(direction: Point) -> Point:
-    """The unit vector to the left of a way, seen from above."""
+    """Return the unit vector to the left of a direction, seen from above."""
     return -direction[1], direction[0]
 
 
 def touching(point: Point, centre: Point, radius: float, *, clockwise: bool) -> Point:
-    """Where a line from a point outside a circle touches it, to go on round it in this sense."""
+    """Return the tangent point of a line from an outside point to a circle that it then follows."""
     half = acos(min(1.0, radius / dist(point, centre)))
-    # In its sense the circle is met half an angle further on than where the point is seen from its centre.
+    # In the direction of the circle, the tangent point is ``half`` after the direction of the point.
     angle = atan2(point[0] - centre[0], point[1] - centre[1]) + (half if clockwise else -half)
     return centre[0] + radius * sin(angle), centre[1] + radius * cos(angle)
 
 
 def turn(before: Point, after: Point) -> float:
-    """Angle from one direction to the next, rad: positive to the left, -pi < turn <= pi."""
+    """Return the angle in radians from one direction to the next, positive to the left, in (-pi, pi]."""
     cross = before[0] * after[1] - before[1] * after[0]
     dot = before[0] * after[0] + before[1] * after[1]
     angle = atan2(cross, dot)
@@ -247,9 +255,9 @@ def turn(before: Point, after: Point) -> float:
 
 
 def meetings(a: Element, b: Element) -> list[Point]:
-    """Where the endless line or whole circle of one meets that of the other; at most two points.
+    """Return the intersections of the infinite lines or full circles of two elements, at most two points.
 
-    Touching counts once. Elements on one line or one circle have none.
+    A tangent point counts once. Elements on the same line or circle have no intersection.
     """
     if isinstance(a, Line):
         return _lines(a, b) if isinstance(b, Line) else _line_circle(a, b)
@@ -257,12 +265,15 @@ def meetings(a: Element, b: Element) -> list[Point]:
 
 
 def intersections(a: Element, b: Element) -> list[Point]:
-    """The points that both elements share, their ends included; none for elements on one line or circle."""
+    """Return the points that both elements share, including their ends.
+
+    Elements on the same line or circle give an empty list.
+    """
     return [point for point in meetings(a, b) if holds(a, point) and holds(b, point)]
 
 
 def holds(element: Element, point: Point) -> bool:
-    """Whether a point of the endless line or whole circle lies within the element."""
+    """Return whether a point of the infinite line or full circle is within the element."""
     return -SAME_POINT <= element.along(point) <= element.length + SAME_POINT
 
 
@@ -297,7 +308,7 @@ def _circles(a: Arc, b: Arc) -> list[Point]:
 
 
 def distance(element: Element, point: Point) -> float:
-    """How far a point is from the nearest point of an element, mm."""
+    """Return the distance from a point to the nearest point of an element, in mm."""
     at = element.along(point)
     if 0.0 <= at <= element.length:
         if isinstance(element, Arc):
@@ -307,9 +318,10 @@ def distance(element: Element, point: Point) -> float:
 
 
 def clearance(a: Element, b: Element) -> float:
-    """The least distance between two elements, mm: 0 where they cross.
+    """Return the least distance between two elements in mm; 0 if they intersect.
 
-    It is reached at an end of one of them or on a common normal, which runs through the centres of arcs.
+    The distance is reached at an end of an element or on a common normal, which passes through the centers of
+    arcs.
     """
     if intersections(a, b):
         return 0.0
@@ -318,7 +330,7 @@ def clearance(a: Element, b: Element) -> float:
 
 
 def _facing(element: Element, other: Element) -> list[Point]:
-    """Inner points of an element at which its normal runs through the centre of the other."""
+    """Return the inner points of an element whose normal passes through the center of the other."""
     if isinstance(other, Line):
         return []
     if isinstance(element, Line):

@@ -1,15 +1,16 @@
-"""Areas of pockets with islands, the area a distance inside of them, and how a level is cleared.
+"""Areas of pockets with islands, their insets, and the rings that clear one level.
 
-A boundary is a list of closed loops, each a list of elements that follow one another; the area lies to the
-left of the way along them: round a pocket counter-clockwise, round an island clockwise. X and Y, mm.
+A boundary is a list of closed loops, and each loop is a list of consecutive elements. The area is to the left
+of each loop: counterclockwise around a pocket, clockwise around an island. Coordinates are X and Y in mm.
 
-The offset is exact: lines stay lines and arcs arcs. A point belongs to the offset area when no point of the
-boundary is nearer than the distance, so every part of a moved element that comes nearer to any other element
-is left out (`moved`, `split_at`), wherever the area falls apart or an island grows into a wall.
+The offset is exact, because lines remain lines and arcs remain arcs. A point belongs to the inset area if no
+point of the boundary is closer than the distance. Every part of an offset element that is closer to any other
+element is therefore left out (``moved``, ``split_at``), even if the area falls apart or an island merges with
+a wall.
 
-The rings are offsets of the boundary no farther apart than the tool's radius. That clears every point: one
-that lies between two rings is nearer to the outer one than their distance, in corners, too, where the ways
-of an overlap over the radius would leave peaks standing.
+The rings are offsets of the boundary that are at most one tool radius apart. This clears every point, because
+a point between two rings is closer to the outer ring than their distance. A larger overlap would leave stock
+in corners.
 """
 
 from __future__ import annotations
@@ -40,23 +41,23 @@ from core.message import Message
 Loop = list[Element]
 Inside = Callable[[Point], bool]
 
-_NEARER = 0.0005  # mm by which an offset may be nearer to its boundary: programs round their corners
-_JOINED = 0.005  # mm between the end of one part and the start of the next: tangents are rounded, too
-_TOO_SHORT = 0.002  # mm: shorter parts of an offset are what two rounded tangents overlap by
-_TAIL = 0.5  # mm: a longer part that leads nowhere is a fault
-_ASIDE = 1e-5  # mm off a part, on either side, where it is asked whether a point lies in the area
+_NEARER = 0.0005  # mm by which an offset may be closer to its boundary, because programs round their corners
+_JOINED = 0.005  # mm between the end of one part and the start of the next, because tangents are rounded too
+_TOO_SHORT = 0.002  # mm; shorter parts of an offset are overlaps of two rounded tangents
+_TAIL = 0.5  # mm; a longer dead end is an error
+_ASIDE = 1e-5  # mm from a part, on either side, at which the area is tested
 _HALF = pi - 1e-9
 _MOST_RINGS = 2000
-_LINK = 4.0  # tool radii: a farther ring is gone to above the workpiece
-_ROOM = 4.0  # tool radii of way that a ramp should have
+_LINK = 4.0  # tool radii; the tool moves to a ring farther away above the workpiece
+_ROOM = 4.0  # tool radii that a ramp should be long
 
 
 class AreaError(Exception):
-    """Contours that enclose no area, or whose offset cannot be followed; a clause about them."""
+    """Raised when contours enclose no area or cannot be offset. The message is a clause."""
 
 
 def follows(elements: Sequence[Element]) -> Loop:
-    """Elements as a closed loop: the end is led to the start by a line where it stops short of it."""
+    """Return the elements as a closed loop, with a line from the end to the start if needed."""
     loop = list(elements)
     if loop and dist(loop[-1].end, loop[0].start) > SAME_POINT:
         loop.append(Line(loop[-1].end, loop[0].start))
@@ -67,7 +68,7 @@ def follows(elements: Sequence[Element]) -> Loop:
 
 
 class Winding:
-    """How often a loop goes round a point, counter-clockwise positive; for points off the loop."""
+    """The winding number of a loop around points that are not on the loop; counterclockwise is positive."""
 
     def __init__(self, loop: Sequence[Element]) -> None:
         halves = [part for element in loop for part in _halves(element)]
@@ -79,18 +80,22 @@ class Winding:
                                 for part in halves])  # fmt: skip
 
     def round(self, point: Point) -> int:
-        """The angle under which the chords pass the point, and a turn for an arc that passes it beyond."""
+        """Return the winding number around ``point``.
+
+        The method adds the angles of the chords as seen from the point, and a full turn for an arc that
+        passes beyond it.
+        """
         a, b = self._start - point, self._end - point
         cross = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
         angle = np.arctan2(cross, (a * b).sum(axis=1))
         off = np.hypot(*(self._centre - point).T)
-        # Within an arc of up to half a turn: in its circle, and on the arc's side of its chord.
+        # The point is inside the circle of an arc of up to 180 degrees, on the arc's side of its chord.
         beyond = (off < self._radius) & (cross * self._sense < 0.0)
         return round(float(angle.sum() + 2.0 * pi * (self._sense * beyond).sum()) / (2.0 * pi))
 
 
 def _halves(element: Element) -> Iterator[Element]:
-    """Arcs of more than half a turn in pieces of less."""
+    """Yield the element, with an arc of more than half a circle divided into shorter arcs."""
     if isinstance(element, Line) or abs(element.sweep) <= _HALF:
         yield element
         return
@@ -101,13 +106,13 @@ def _halves(element: Element) -> Iterator[Element]:
 
 
 def enclosed(loop: Sequence[Element]) -> float:
-    """The area within a closed loop, mm^2; negative where it runs clockwise."""
+    """Return the area within a closed loop in mm²; negative for a clockwise loop."""
     total = 0.0
     for element in loop:
         (x0, y0), (x1, y1) = element.start, element.end
         total += x0 * y1 - x1 * y0
         if isinstance(element, Arc):
-            sweep = -element.sweep  # counter-clockwise positive
+            sweep = -element.sweep  # counterclockwise is positive
             chord = (x0 - element.centre[0], y0 - element.centre[1])
             last = (x1 - element.centre[0], y1 - element.centre[1])
             total += element.radius**2 * sweep - (chord[0] * last[1] - chord[1] * last[0])
@@ -115,7 +120,7 @@ def enclosed(loop: Sequence[Element]) -> float:
 
 
 def goes_round(loop: Sequence[Element]) -> bool:
-    """Whether it runs counter-clockwise; a way there and back, which encloses nothing, does too."""
+    """Return whether the loop is counterclockwise or encloses no area."""
     return enclosed(loop) > -_JOINED * sum(element.length for element in loop)
 
 
@@ -123,7 +128,10 @@ def goes_round(loop: Sequence[Element]) -> bool:
 
 
 def boundary(curves: Sequence[Loop], inside: Inside) -> list[Loop]:
-    """The boundary of the area of which ``inside`` tells, all of it on these curves. Raises AreaError."""
+    """Return the boundary of the area that ``inside`` describes, with elements of the given curves.
+
+    Raises AreaError if the boundary is not closed.
+    """
     elements = [part for loop in curves for element in loop for part in _halves(element)]
     if not elements:
         return []
@@ -134,7 +142,7 @@ def boundary(curves: Sequence[Loop], inside: Inside) -> list[Loop]:
 
 
 def _divided(element: Element, every: Boxed) -> list[Element]:
-    """The parts of an element between all points where another meets it or ends on it."""
+    """Return the parts of an element between all points where other elements meet it or end on it."""
     parts = split_at(element, every)
     ends = {end for other in every.near(element.box, SAME_POINT) for end in (other.start, other.end)}
     for end in ends:
@@ -149,7 +157,7 @@ def _cut(part: Element, at: Point) -> list[Element]:
 
 
 def _bounding(part: Element, inside: Inside) -> Element | None:
-    """The part with the area on its left; None where both sides are in it, or none is."""
+    """Return the part with the area on its left, or None if the area is on both sides or on neither."""
     x, y = part.point(part.length / 2.0)
     dx, dy = left_of(_direction_halfway(part))
     left = inside((x + dx * _ASIDE, y + dy * _ASIDE))
@@ -165,7 +173,10 @@ def _direction_halfway(part: Element) -> Point:
 
 
 def inset(loops: Sequence[Loop], apart: float) -> list[Loop]:
-    """The boundary of the points that lie ``apart`` mm or more inside of these loops. Raises AreaError."""
+    """Return the boundary of the points that are at least ``apart`` mm inside the loops.
+
+    Raises AreaError if the boundary is not closed.
+    """
     if apart <= 0.0 or not loops:
         return [list(loop) for loop in loops]
     contour = Boxed([element for loop in loops for element in loop])
@@ -181,7 +192,7 @@ def inset(loops: Sequence[Loop], apart: float) -> list[Loop]:
 
 
 def _moved_inwards(loop: Loop, apart: float) -> Iterator[Element]:
-    """Each element moved to its left, and an arc about each corner that the area goes round."""
+    """Yield each element offset to its left, and an arc around each corner that turns right."""
     for before, after in zip(loop, [*loop[1:], loop[0]], strict=True):
         first, last = moved(before, apart), moved(after, apart)
         for each in first:
@@ -200,7 +211,7 @@ def _apart(part: Element, contour: Boxed, least: float, within: Sequence[Winding
 
 
 def _single(parts: Sequence[Element]) -> list[Element]:
-    """Each part once: two that lie on one another and run the same way are one."""
+    """Return the parts without duplicates that cover each other in the same direction."""
     found: dict[tuple[int, ...], Element] = {}
     for part in parts:
         if part.length < SAME_POINT:
@@ -212,7 +223,7 @@ def _single(parts: Sequence[Element]) -> list[Element]:
 
 
 def _chained(parts: Sequence[Element]) -> list[Loop]:
-    """The parts as closed loops, the longest first. Raises AreaError where one has no other behind it."""
+    """Return the parts as closed loops, the longest first. Raises AreaError if a loop is not closed."""
     parts = _without_tails(parts)
     starts = np.array([part.start for part in parts]).reshape(-1, 2)
     free = np.ones(len(parts), dtype=bool)
@@ -222,7 +233,7 @@ def _chained(parts: Sequence[Element]) -> list[Loop]:
 
 
 def _without_tails(parts: Sequence[Element]) -> list[Element]:
-    """Without short parts that lead nowhere: behind a crossing at a small angle they are far enough off."""
+    """Return the parts without short dead ends, which occur after crossings at a small angle."""
     left = list(parts)
     while left:
         starts, ends = np.array([part.start for part in left]), np.array([part.end for part in left])
@@ -238,7 +249,10 @@ def _without_tails(parts: Sequence[Element]) -> list[Element]:
 
 def _loop(parts: Sequence[Element], starts: npt.NDArray[np.float64], free: npt.NDArray[np.bool_],
           first: int) -> Loop:  # fmt: skip
-    """The loop that begins with a part, closed; its parts are taken. Empty for less than is worth a way."""
+    """Return the closed loop that starts with a part, and mark its parts as used.
+
+    A loop that is too short returns an empty list.
+    """
     loop: Loop = [parts[first]]
     free[first] = False
     while dist(loop[-1].end, loop[0].start) > SAME_POINT:
@@ -260,13 +274,16 @@ def _loop(parts: Sequence[Element], starts: npt.NDArray[np.float64], free: npt.N
 
 
 def _turned(before: Element, after: Element) -> float:
-    """The turn from one to the other: the sharpest to the left keeps loops apart that touch in a point."""
+    """Return the turn between two elements.
+
+    The sharpest left turn is selected, which separates loops that touch in a point.
+    """
     angle = turn(before.end_direction, after.start_direction)
-    return angle if angle < _HALF else -pi  # straight back comes last
+    return angle if angle < _HALF else -pi  # a reversal comes last
 
 
 def _closed(loop: Loop) -> Loop:
-    """The same with every element beginning exactly where the one before it ends."""
+    """Return the loop with each element starting exactly at the end of the previous one."""
     made: Loop = []
     here = loop[-1].end
     for element in loop:
@@ -282,18 +299,18 @@ def _closed(loop: Loop) -> Loop:
     return made
 
 
-# --- ways within ------------------------------------------------------------------------------------------
+# --- moves within an area ---------------------------------------------------------------------------------
 
 
 class Within:
-    """Whether ways stay in an area."""
+    """Checks whether moves remain inside an area."""
 
     def __init__(self, loops: Sequence[Loop]) -> None:
         self._contour = Boxed([element for loop in loops for element in loop])
         self._windings = [Winding(loop) for loop in loops]
 
     def holds(self, element: Element, apart: float) -> bool:
-        """Whether all of an element lies inside, ``apart`` mm or more off the boundary (less rounding)."""
+        """Return whether the whole element is inside, at least ``apart`` mm from the boundary."""
         near = self._contour.near(element.box, apart)
         if any(clearance(other, element) < apart - 2 * _NEARER for other in near):
             return False
@@ -302,9 +319,11 @@ class Within:
 
 @dataclass(frozen=True, slots=True)
 class Cut:
-    """One ring, begun where the tool comes to it: ``straight`` at its depth, else from above.
+    """One ring, which starts where the tool reaches it.
 
-    ``ramp`` is the ring to go down along, where this one is too short; itself mostly.
+    ``straight`` is True if the tool moves to the ring at its depth, and False if it comes from above.
+    ``ramp`` is the ring along which the tool ramps down, usually the same ring. It is a wider one if this
+    ring is too short.
     """
 
     loop: Loop
@@ -314,7 +333,7 @@ class Cut:
 
 @dataclass(slots=True)
 class _Patch:
-    """A part of the area at one distance: its outer ring, those round islands, and what lies inside."""
+    """A connected part of the area at one distance: its outer ring, its islands, and the parts inside."""
 
     outer: Loop
     holes: list[Loop] = field(default_factory=list)
@@ -327,9 +346,10 @@ class _Patch:
 def clearing(
     area: Sequence[Loop], first: float, step: float, radius: float, *, against: bool, here: Point
 ) -> list[Cut]:
-    """The rings that clear an area, the outermost ``first`` mm inside of it, ``step`` mm apart.
+    """Return the rings that clear an area, the outermost ``first`` mm inside and ``step`` mm apart.
 
-    ``against`` runs them clockwise (up-cut milling with M3). Raises AreaError where the tool finds no place.
+    ``against`` makes the rings clockwise (conventional milling with M3). Raises AreaError if the tool does
+    not fit.
     """
     outmost = _patches(inset(area, first))
     if not outmost:
@@ -352,7 +372,7 @@ def clearing(
 
 
 def _patches(loops: Sequence[Loop]) -> list[_Patch]:
-    """The parts of an area, each with the islands in it."""
+    """Return the connected parts of an area, each with its islands."""
     outers = sorted((loop for loop in loops if goes_round(loop)), key=_size)
     found = [_Patch(loop) for loop in outers]
     for hole in loops:
@@ -372,7 +392,7 @@ def _size(loop: Loop) -> float:
 def _cuts(
     outmost: Sequence[_Patch], room: Within, apart: float, radius: float, *, against: bool, here: Point
 ) -> list[Cut]:
-    """The rings in their order, each from where the tool comes to it."""
+    """Return the rings in their order, each starting where the tool reaches it."""
     made: list[Cut] = []
     for index, (ring, around) in enumerate(_inside_out(outmost, [])):
         loop = begun_near(_sense(ring, against=against), here)
@@ -392,7 +412,7 @@ def _cuts(
 
 
 def _inside_out(patches: Sequence[_Patch], around: list[Loop]) -> Iterator[tuple[Loop, list[Loop]]]:
-    """Each ring behind those inside of it, with the outer rings that it lies in."""
+    """Yield each ring after the rings inside it, with the outer rings around it."""
     for patch in patches:
         yield from _inside_out(patch.inner, [*around, patch.outer])
         for ring in (*patch.holes, patch.outer):
@@ -404,7 +424,7 @@ def _sense(loop: Loop, *, against: bool) -> Loop:
 
 
 def begun_near(loop: Loop, point: Point) -> Loop:
-    """The loop begun at that end or middle of an element that is nearest to a point."""
+    """Return the loop starting at the end or the middle of an element that is nearest to a point."""
     best, cut = min(
         (dist(place, point), (index, half))
         for index, element in enumerate(loop)
@@ -416,7 +436,7 @@ def begun_near(loop: Loop, point: Point) -> Loop:
 
 
 def begun_at(loop: Loop, index: int, along: float) -> Loop:
-    """The loop begun ``along`` mm behind the start of one of its elements."""
+    """Return the loop starting ``along`` mm after the start of one of its elements."""
     element = loop[index]
     turned = [*loop[index + 1 :], *loop[:index]]
     if along <= SAME_POINT or along >= element.length - SAME_POINT:
@@ -426,7 +446,10 @@ def begun_at(loop: Loop, index: int, along: float) -> Loop:
 
 
 def walked(loop: Loop, length: float) -> tuple[list[Element], Loop]:
-    """The first ``length`` mm of a way round a loop, as often as it takes, and the loop from its end on."""
+    """Return the first ``length`` mm around a loop, and the loop from that point on.
+
+    A length greater than the loop repeats the loop.
+    """
     way: list[Element] = []
     left, at = length, 0
     while left > SAME_POINT:

@@ -1,9 +1,9 @@
-"""Rotary axes of a mill in their chain from the workpiece to the tool, and where programmed points then lie.
+"""Rotary axes of a mill as a chain from workpiece to tool, and the machine positions of programmed points.
 
-One rule holds for heads and tables: a frame seen from the workpiece is the product of Rot(axis, +angle) over
-the chain from the workpiece to the tool. A head at +t turns the tool by +t; a table at +t turns the workpiece
-by -t in the machine, so that the tool, seen from the workpiece, turns by +t as well. With ``PivotMove`` the
-slides follow a turn, so that a point keeps its place on the workpiece (MOVE).
+The same rule applies to heads and tables: a frame as seen from the workpiece is the product of Rot(axis,
++angle) over the chain from the workpiece to the tool. A head at +t rotates the tool by +t. A table at +t
+rotates the workpiece by -t in the machine, so the tool, as seen from the workpiece, also rotates by +t. In a
+``PivotMove``, the linear axes follow a rotation, so that a point remains fixed on the workpiece (MOVE).
 """
 
 from __future__ import annotations
@@ -31,12 +31,12 @@ from core.geometry.rotation_frames import (
 )
 
 TURN = 360.0
-RANGE_END = 1e-9  # degrees by which rounding may leave a range whose ends count as inside
+RANGE_END = 1e-9  # degrees of tolerance at the ends of a range
 
 
 @dataclass(frozen=True, slots=True)
 class Slide:
-    """A linear axis: travel in mm from home, greatest speed in mm/s."""
+    """A linear axis, with its travel in mm from home and its maximum speed in mm/s."""
 
     name: str
     low: float = -math.inf
@@ -46,10 +46,11 @@ class Slide:
 
 @dataclass(frozen=True, slots=True)
 class Rotary:
-    """A rotary axis. ``direction`` (unit vector) and ``point`` (mm) of its line hold with all axes at 0.
+    """A rotary axis. ``direction`` (unit vector) and ``point`` (mm) of its line are given with all axes at 0.
 
-    A table's point counts in the machine, a head's from the nose of the spindle, where the tool begins.
-    ``modulo``: turns without end and shows 0 to 360; ``low high`` otherwise bound it, ends inside.
+    The point of a table is in machine coordinates. The point of a head is measured from the spindle nose.
+    With ``modulo`` the axis turns endlessly and displays 0 to 360 degrees. Otherwise ``low`` and ``high``
+    limit it, both inclusive.
     """
 
     name: str
@@ -62,18 +63,18 @@ class Rotary:
     vmax: float = math.inf  # degrees/s
 
     def inside(self, angle: float) -> bool:
-        """Whether the axis can stand there."""
+        """Return whether the angle is within the range of the axis."""
         return self.modulo or self.low - RANGE_END <= angle <= self.high + RANGE_END
 
     def displayed(self, angle: float) -> float:
-        """The angle as displayed: 0 to 360 on a modulo axis."""
+        """Return the angle as displayed: 0 to 360 degrees on a modulo axis."""
         if not self.modulo:
             return angle + 0.0
         rest = angle % TURN
         return 0.0 if TURN - rest < RANGE_END else rest
 
     def travel(self, start: float, target: float) -> float:
-        """Degrees to travel; a modulo axis goes the short way, exactly half a turn goes positive."""
+        """Return the travel in degrees. A modulo axis takes the shorter direction; 180 is positive."""
         way = target - start
         if not self.modulo:
             return way
@@ -83,25 +84,31 @@ class Rotary:
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """machine = turn · q + shift: machine positions of the points of a system, mm; the rotary axes stand."""
+    """The transformation machine = turn · q + shift from points of a system to machine positions, in mm.
+
+    It is valid for fixed rotary axes.
+    """
 
     turn: Matrix
     shift: Vector
 
     def machine(self, q: Vector) -> Vector:
-        """Machine position of the slides for the point ``q``."""
+        """Return the machine position of the linear axes for the point ``q``."""
         return plus(applied(self.turn, q), self.shift)
 
     def point(self, machine: Vector) -> Vector:
-        """The point whose machine position this is."""
+        """Return the point with this machine position."""
         return applied(transposed(self.turn), minus(machine, self.shift))
 
 
 @dataclass(frozen=True, slots=True)
 class DatumPreset:
-    """A row of the preset table: ``origin`` is the machine position of the workpiece's zero, mm, ``rotation``
-    the angle by which the workpiece lies turned about Z (basic rotation), degrees. Rotary axes read 0 at
-    ``zeros`` (by name, degrees in the machine), where ``origin`` and ``rotation`` hold; absent ones at 0."""
+    """A row of the preset table.
+
+    ``origin`` is the machine position of the workpiece zero in mm. ``rotation`` is the basic rotation of the
+    workpiece about Z in degrees. ``zeros`` are the machine angles at which the rotary axes read 0, by name.
+    ``origin`` and ``rotation`` apply at these angles. An axis that is not listed has the angle 0.
+    """
 
     origin: Vector
     rotation: float = 0.0
@@ -110,12 +117,12 @@ class DatumPreset:
 
 @dataclass(frozen=True)
 class Kinematics:
-    """A mill: slides X Y Z and rotary axes from the workpiece to the tool, tables before heads.
+    """A mill with X, Y, Z and its rotary axes from the workpiece to the tool, tables before heads.
 
-    ``origin`` is the machine position of the workpiece's zero with all rotary axes at 0; ``basic_rotation``
-    the angle by which the workpiece system is turned about Z against the machine, with the rotary axes at
-    ``zeros``, where they read 0. ``order`` names all axes in the machine's own order. Angles are the
-    machine's where nothing else is said.
+    ``origin`` is the machine position of the workpiece zero with all rotary axes at 0. ``basic_rotation`` is
+    the angle of the workpiece system about Z relative to the machine, with the rotary axes at ``zeros``,
+    where they read 0. ``order`` lists all axes in the machine's order. Angles are machine angles unless noted
+    otherwise.
     """
 
     slides: tuple[Slide, Slide, Slide]
@@ -127,47 +134,49 @@ class Kinematics:
 
     @cached_property
     def basic(self) -> Matrix:
-        """The workpiece system as it stands in the machine with all rotary axes at 0."""
+        """The workpiece system in machine coordinates with all rotary axes at 0."""
         turn, _ = self._tables(self.zero)
         return product(transposed(turn), turned(Z_AXIS, self.basic_rotation))
 
     @cached_property
     def zero(self) -> Mapping[str, float]:
-        """Where each rotary axis reads 0, by name."""
+        """The machine angle at which each rotary axis reads 0, by name."""
         return {axis.name: 0.0 for axis in self.rotaries} | dict(self.zeros)
 
     def with_preset(self, preset: DatumPreset) -> Kinematics:
-        """The same machine with the workpiece there."""
+        """Return the machine with the workpiece of a preset."""
         zeros = tuple(each for each in preset.zeros if self.rotary(each[0]) is not None and each[1])
         moved = replace(self, basic_rotation=preset.rotation, zeros=zeros)
         return replace(moved, origin=moved.at_home(preset.origin))
 
     def at_home(self, spot: Vector) -> Vector:
-        """Where a point of the workpiece lies with the tables at 0 that lies at ``spot`` with them at their
-        zeros; mm in the machine."""
+        """Return a workpiece point with the tables at 0 that is at ``spot`` with the tables at their zeros.
+
+        Both points are in machine mm.
+        """
         turn, shift = self._tables(self.zero)
         return applied(transposed(turn), minus(spot, shift))
 
     def at_zeros(self, spot: Vector) -> Vector:
-        """The other way: from the tables at 0 to their zeros."""
+        """Return a workpiece point moved with the tables from 0 to their zeros, in machine mm."""
         turn, shift = self._tables(self.zero)
         return plus(applied(turn, spot), shift)
 
     def shown(self, axis: Rotary, angle: float) -> float:
-        """An angle of the machine as words and displays have it: from the axis' zero, modulo 0 to 360."""
+        """Return the displayed value of a machine angle, relative to the zero of the axis."""
         return axis.displayed(angle - self.zero[axis.name])
 
     @property
     def names(self) -> tuple[str, ...]:
-        """All axes in the machine's order."""
+        """The names of all axes in the machine's order."""
         return self.order or (*(s.name for s in self.slides), *(r.name for r in self.rotaries))
 
     def rotary(self, name: str) -> Rotary | None:
-        """The rotary axis of this name, None where the machine lacks it."""
+        """Return the rotary axis with this name, or None if the machine has no such axis."""
         return next((axis for axis in self.rotaries if axis.name == name), None)
 
     def frame(self, angles: Mapping[str, float]) -> Matrix:
-        """The tool's frame as the workpiece sees it, at these angles by name; absent ones are 0."""
+        """Return the tool's frame as seen from the workpiece at the given angles by name (default 0)."""
         return product(*(turned(axis.direction, angles.get(axis.name, 0.0)) for axis in self.rotaries))
 
     def place(
@@ -177,8 +186,11 @@ class Kinematics:
         datum: Vector = (0.0, 0.0, 0.0),
         tool_length: float = 0.0,
     ) -> Place:
-        """Where points of the system ``frame`` at ``datum`` (mm, both in the untilted machine-parallel system
-        at the workpiece's zero) bring the slides at these angles with a tool of this length.
+        """Return the transformation from points of a system to positions of the linear axes.
+
+        The system has the axes ``frame`` and the origin ``datum`` (mm). Both are given in the
+        machine-parallel system at the workpiece zero, without tilt. The transformation is valid for these
+        angles and this tool length.
         """
         turn, shift = self._tables(angles)
         spot = applied(turn, plus(self.origin, datum))
@@ -186,11 +198,11 @@ class Kinematics:
         return Place(product(turn, frame), minus(plus(spot, shift), nose))
 
     def tool_axis(self, angles: Mapping[str, float]) -> Vector:
-        """The direction from the tip to the spindle, in the machine."""
+        """Return the direction from the tip to the spindle, in machine coordinates."""
         return applied(product(*(turned(a.direction, angles.get(a.name, 0.0)) for a in self._heads)), Z_AXIS)
 
     def tip(self, angles: Mapping[str, float], slides: Vector, tool_length: float = 0.0) -> Vector:
-        """Where the tip is in the machine, mm, with the slides there and a tool of this length."""
+        """Return the machine position of the tip in mm for positions of the linear axes."""
         return plus(slides, self._nose(angles, tool_length))
 
     @property
@@ -198,7 +210,7 @@ class Kinematics:
         return [axis for axis in self.rotaries if not axis.table]
 
     def _tables(self, angles: Mapping[str, float]) -> tuple[Matrix, Vector]:
-        """Rotation and shift that take a point of the machine-parallel system at 0 along with the tables."""
+        """Return rotation and shift that move a point with the tables from 0 to these angles."""
         turn, shift = IDENTITY, (0.0, 0.0, 0.0)
         for axis in self.rotaries:
             if axis.table:
@@ -208,7 +220,7 @@ class Kinematics:
         return turn, shift
 
     def _nose(self, angles: Mapping[str, float], tool_length: float) -> Vector:
-        """From the spindle nose at 0, which machine positions count, to the tip; mm in the machine."""
+        """Return the vector from the spindle nose with the heads at 0 to the tip, in machine mm."""
         tip = scaled(Z_AXIS, -tool_length)
         for axis in reversed(self._heads):
             turn = turned(axis.direction, angles.get(axis.name, 0.0))
@@ -221,9 +233,11 @@ FloatArray = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class PivotMove:
-    """From the angles ``start`` to ``end`` in proportion; ``pivot`` stays (mm, machine-parallel system at the
-    workpiece's zero), ``distance`` mm below the tip along the tool, and ``length`` is in degrees. With
-    ``pivot_end`` it goes straight there, and ``length`` is in mm.
+    """A move of the rotary axes from the angles ``start`` to ``end`` around a fixed point.
+
+    ``pivot`` is the fixed point in mm, in the machine-parallel system at the workpiece zero. It is
+    ``distance`` mm below the tip along the tool. ``length`` is in degrees. With ``pivot_end``, the point
+    moves there in a straight line, and ``length`` is in mm.
     """
 
     kinematics: Kinematics
@@ -237,16 +251,16 @@ class PivotMove:
 
     @property
     def in_degrees(self) -> bool:
-        """Whether the feed counts degrees: the pivot stands."""
+        """True if the feed is in degrees because the pivot is fixed."""
         return self.pivot_end is None
 
     @property
     def straight(self) -> bool:
-        """The slides never run in proportion to the angles."""
+        """Always False, because linear axes and angles are not proportional."""
         return False
 
     def machine(self, share: FloatArray) -> FloatArray:
-        """Machine positions (k, axes), in the machine's order, at fractions (k,) of the way."""
+        """Return machine positions (k, axes), in the machine's order, at fractions (k,) of the move."""
         at: dict[str, FloatArray] = {
             name: start + share * (self.end[name] - start) for name, start in self.start.items()
         }
@@ -259,12 +273,12 @@ class PivotMove:
         return rows
 
     def goals(self) -> dict[str, float]:
-        """Machine positions of all axes at the end, by name."""
+        """Return the machine positions of all axes at the end, by name."""
         there = dict(zip(self.kinematics.names, self.machine(np.ones(1))[0].tolist(), strict=True))
         return {**there, **self.end}
 
     def part(self, points: FloatArray) -> FloatArray:
-        """Where the tip is on the workpiece (k, 3), mm, at machine positions (k, axes)."""
+        """Return the tip on the workpiece (k, 3) in mm at machine positions (k, axes)."""
         at = dict(zip(self.kinematics.names, points.T, strict=True))
         spots: FloatArray = np.stack([at[name] for name in "XYZ"], axis=1)
         spots = spots + _noses(self.kinematics, at, self.tool_length)
@@ -275,12 +289,12 @@ class PivotMove:
         return spots
 
     def nearest(self) -> float:
-        """The middle: no fraction is harder than another."""
+        """Return 0.5, because no fraction of the move is more critical than another."""
         return 0.5
 
 
 def _carried_by_tables(machine: Kinematics, at: Mapping[str, FloatArray], spots: FloatArray) -> FloatArray:
-    """Where the tables at these angles (k,) bring machine-parallel points (k, 3) at 0: (k, 3), mm."""
+    """Return points (k, 3) in mm moved by the tables from 0 to these angles (k,)."""
     for axis in machine.rotaries:
         if axis.table:
             spots = _carried(axis, -at[axis.name], spots)
@@ -288,7 +302,10 @@ def _carried_by_tables(machine: Kinematics, at: Mapping[str, FloatArray], spots:
 
 
 def _noses(machine: Kinematics, at: Mapping[str, FloatArray], tool_length: float) -> FloatArray:
-    """From the spindle nose at 0 to the tip with the heads at these angles (k,): (k, 3) or one row, mm."""
+    """Return vectors from the spindle nose at 0 to the tip with the heads at these angles (k,), in mm.
+
+    The result has the shape (k, 3), or one row without heads.
+    """
     tips: FloatArray = np.array([[0.0, 0.0, -tool_length]])
     for axis in reversed(machine.rotaries):
         if not axis.table:
@@ -297,7 +314,7 @@ def _noses(machine: Kinematics, at: Mapping[str, FloatArray], tool_length: float
 
 
 def _carried(axis: Rotary, degrees: FloatArray, points: FloatArray) -> FloatArray:
-    """Points (k, 3), or one for all, turned about the axis' line by the angles (k,) (Rodrigues' formula)."""
+    """Return points (k, 3), or one point, rotated about the axis by the angles (k,) (Rodrigues' formula)."""
     line, along, aside = _turning(axis)
     angle = np.radians(degrees)[:, np.newaxis]
     cosine = np.cos(angle)
@@ -311,7 +328,7 @@ def _carried(axis: Rotary, degrees: FloatArray, points: FloatArray) -> FloatArra
 
 @lru_cache(maxsize=64)
 def _turning(axis: Rotary) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """A point of the axis' line, and what takes rows of points onto its direction and square to both."""
+    """Return a point of the axis, the projection onto its direction, and the cross-product matrix."""
     x, y, z = axis.direction
     aside = np.array([[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]])
     return np.array(axis.point), np.outer(axis.direction, axis.direction), aside

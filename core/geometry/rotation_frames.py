@@ -1,7 +1,7 @@
-"""Frames of tilted working planes: rotations, and the plane through three points.
+"""Frames of tilted working planes: rotations, vector operations, and the plane through three points.
 
-A frame is a rotation matrix by rows; its columns are the axes X' Y' Z' of the working plane, written in the
-system that the frame stands in. Angles in degrees.
+A frame is a rotation matrix by rows. Its columns are the axes X' Y' Z' of the working plane in the
+surrounding system. Angles are in degrees.
 """
 
 from __future__ import annotations
@@ -18,18 +18,21 @@ X_AXIS: Vector = (1.0, 0.0, 0.0)
 Y_AXIS: Vector = (0.0, 1.0, 0.0)
 Z_AXIS: Vector = (0.0, 0.0, 1.0)
 
-SHORTEST = 1e-6  # mm; nearer points give no direction
-SMALLEST_SINE = 1e-6  # of the angle at the first point; a flatter triangle gives no plane
+SHORTEST = 1e-6  # mm; closer points do not define a direction
+SMALLEST_SINE = 1e-6  # sine of the angle at the first point, below which three points do not define a plane
 
 _QUARTERS = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))
 
 
 class NoFrameError(CodedError, ValueError):
-    """Points that define no plane; ``str()`` says why."""
+    """Raised when values do not define a plane. ``str()`` gives the reason."""
 
 
 def cos_sin(degrees: float) -> tuple[float, float]:
-    """Cosine and sine, exact at whole quarter turns: a table at 90 degrees must not lean by 6e-17."""
+    """Return cosine and sine, exact at multiples of 90 degrees.
+
+    Without exact values, a table at 90 degrees would be tilted by 6e-17.
+    """
     quarter, rest = divmod(degrees, 90.0)
     if rest == 0.0:
         return _QUARTERS[int(quarter) % 4]
@@ -38,43 +41,43 @@ def cos_sin(degrees: float) -> tuple[float, float]:
 
 
 def plus(a: Vector, b: Vector) -> Vector:
-    """a + b."""
+    """Return the sum of two vectors."""
     return a[0] + b[0], a[1] + b[1], a[2] + b[2]
 
 
 def minus(a: Vector, b: Vector) -> Vector:
-    """a - b."""
+    """Return the difference of two vectors."""
     return a[0] - b[0], a[1] - b[1], a[2] - b[2]
 
 
 def scaled(a: Vector, factor: float) -> Vector:
-    """a times a number."""
+    """Return a vector multiplied by a number."""
     return a[0] * factor, a[1] * factor, a[2] * factor
 
 
 def dot(a: Vector, b: Vector) -> float:
-    """The scalar product."""
+    """Return the scalar product of two vectors."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 def cross(a: Vector, b: Vector) -> Vector:
-    """The vector product."""
+    """Return the vector product of two vectors."""
     return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
 def applied(m: Matrix, v: Vector) -> Vector:
-    """m v."""
+    """Return the product of a matrix and a vector."""
     return dot(m[0], v), dot(m[1], v), dot(m[2], v)
 
 
 def transposed(m: Matrix) -> Matrix:
-    """Rows for columns; of a rotation, its inverse."""
+    """Return the transposed matrix, which is the inverse of a rotation."""
     (a, b, c), (d, e, f), (g, h, i) = m
     return (a, d, g), (b, e, h), (c, f, i)
 
 
 def product(*factors: Matrix) -> Matrix:
-    """Matrix product, from left to right; the identity of none."""
+    """Return the matrix product from left to right; the identity without factors."""
     made = IDENTITY
     for factor in factors:
         columns = transposed(factor)
@@ -86,7 +89,7 @@ def product(*factors: Matrix) -> Matrix:
 
 
 def turned(axis: Vector, degrees: float) -> Matrix:
-    """Rotation about a unit vector by the right hand (Rodrigues)."""
+    """Return the right-handed rotation about a unit vector by an angle (Rodrigues' formula)."""
     x, y, z = axis
     c, s = cos_sin(degrees)
     d = 1.0 - c
@@ -98,9 +101,9 @@ def turned(axis: Vector, degrees: float) -> Matrix:
 
 
 def from_points(p1: Vector, p2: Vector, p3: Vector) -> Matrix:
-    """X' from the first point to the second, the third on the side of +Y', Z' by the right hand.
+    """Return the frame with X' from the first point to the second and the third on the side of +Y'.
 
-    Only directions count. Raises NoFrameError where two points are one, or all three on one line.
+    Only directions matter. Raises NoFrameError if two points are equal or all three are on one line.
     """
     u, v = minus(p2, p1), minus(p3, p1)
     along, aside = math.hypot(*u), math.hypot(*v)
@@ -118,19 +121,19 @@ def from_points(p1: Vector, p2: Vector, p3: Vector) -> Matrix:
 
 
 def from_spatial(a: float, b: float, c: float) -> Matrix:
-    """Turned by ``a`` about X, then ``b`` about Y, then ``c`` about Z, all of them the fixed axes."""
+    """Return the rotation by ``a`` about X, then ``b`` about Y, then ``c`` about Z, with fixed axes."""
     return product(turned(Z_AXIS, c), turned(Y_AXIS, b), turned(X_AXIS, a))
 
 
 def from_euler(precession: float, nutation: float, rotation: float) -> Matrix:
-    """Turned about Z, then about the turned X', then about the tilted Z'."""
+    """Return the rotation about Z, then about the rotated X', then about the tilted Z'."""
     return product(turned(Z_AXIS, precession), turned(X_AXIS, nutation), turned(Z_AXIS, rotation))
 
 
 def from_vectors(base: Vector, normal: Vector) -> Matrix:
-    """Z' along ``normal``, X' along what of ``base`` is square to it.
+    """Return the frame with Z' along ``normal`` and X' along the component of ``base`` square to it.
 
-    Raises NoFrameError where one of them has no length, or both have one direction.
+    Raises NoFrameError if a vector has no length or the vectors are parallel.
     """
     long, wide = math.hypot(*normal), math.hypot(*base)
     if long < SHORTEST or wide < SHORTEST:
@@ -145,9 +148,10 @@ def from_vectors(base: Vector, normal: Vector) -> Matrix:
 
 
 def from_projections(first: float, second: float, rotation: float) -> Matrix:
-    """The plane that shows the angle ``first`` in Z X and ``second`` in Y Z, turned by ``rotation`` about Z'.
+    """Return the plane that has the angle ``first`` in Z X and ``second`` in Y Z.
 
-    X' lies in Z X before that. Angles count upwards from X and from Y. Raises NoFrameError at 90 degrees.
+    X' is in the plane Z X before the plane is rotated by ``rotation`` about Z'. Angles are measured upward
+    from X and from Y. Raises NoFrameError at 90 degrees.
     """
     (c1, s1), (c2, s2) = cos_sin(first), cos_sin(second)
     if min(abs(c1), abs(c2)) < SMALLEST_SINE:
@@ -157,5 +161,5 @@ def from_projections(first: float, second: float, rotation: float) -> Matrix:
 
 
 def about_z(frame: Matrix) -> float:
-    """The angle of a frame that is turned about Z alone, in degrees, -180 to 180."""
+    """Return the angle of a frame that is rotated about Z only, in degrees from -180 to 180."""
     return math.degrees(math.atan2(frame[1][0] - frame[0][1], frame[0][0] + frame[1][1]))

@@ -1,4 +1,4 @@
-"""Spindle speed from surface speed."""
+"""Spindle speed for a surface speed."""
 
 from __future__ import annotations
 
@@ -6,9 +6,10 @@ import math
 
 
 def surface_rpm(speed: float, radius: float, lo: float, hi: float) -> float:
-    """Rpm, unsigned, at which a point ``radius`` mm off the axis passes the tool with ``speed`` mm/s.
+    """Return the unsigned rpm for the surface speed ``speed`` (mm/s) at ``radius`` mm from the centerline.
 
-    rpm = 60·speed / (2·pi·|radius|), at least ``lo`` and never above ``hi``; on the axis it is ``hi``.
+    rpm = 60·speed / (2·pi·|radius|), at least ``lo`` and at most ``hi``. The result on the centerline is
+    ``hi``.
     """
     path = 2.0 * math.pi * abs(radius)
     rpm = math.inf if path == 0.0 else 60.0 * speed / path

@@ -1,9 +1,9 @@
-"""From the frame of a working plane to the angles of the rotary axes, and which of two solutions is taken.
+"""Angles of the rotary axes for the frame of a working plane, and the choice between two solutions.
 
-Right-angled machines: every rotary axis is parallel to X, Y or Z at 0, and the one next to the tool that
-tilts it is square to the tool. Angles in degrees. The two solutions follow from Rot(a1, t1) Rot(a2, t2) z = n
-(the second of the subproblems of Paden and Kahan); atan2 throughout, since acos loses half of the digits
-where the tool stands nearly along a1.
+The machine is right-angled: every rotary axis is parallel to X, Y or Z at 0, and the axis next to the tool
+that tilts it is square to the tool. Angles are in degrees. The two solutions follow from Rot(a1, t1) Rot(a2,
+t2) z = n (the second subproblem of Paden and Kahan). Only atan2 is used, because acos loses half of the
+digits if the tool is nearly parallel to a1.
 """
 
 from __future__ import annotations
@@ -29,13 +29,13 @@ from core.geometry.rotation_frames import (
     turned,
 )
 
-FREE = math.radians(1e-9)  # sine of the angle below which the first axis is parallel to the tool
-UNREACHED = 1e-9  # sine of the angle to a tool direction below which it counts as reached
-TIE = 1e-6  # degrees by which two ways must differ to count as different
+FREE = math.radians(1e-9)  # =
+UNREACHED = 1e-9  # sine of the angle below which a tool direction counts as reached
+TIE = 1e-6  # degrees by which two travels must differ to count as different
 
 
 class SolutionSide(StrEnum):
-    """The solution asked for: a side of the primary axis' symmetry point (SYM) or basic position (SEQ)."""
+    """The requested side of the symmetry point (SYM) or basic position (SEQ) of the primary axis."""
 
     SYM_PLUS = "SYM+"
     SYM_MINUS = "SYM-"
@@ -45,9 +45,10 @@ class SolutionSide(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Solution:
-    """Angles by axis name. ``spin`` is what is left to turn mathematically about the tool axis.
+    """Angles by axis name. ``spin`` is the remaining mathematical rotation about the tool axis.
 
-    ``symmetry`` is the primary axis' angle from its symmetry point, ``primary`` from its basic position 0.
+    ``symmetry`` is the angle of the primary axis from its symmetry point, and ``primary`` from its basic
+    position 0.
     """
 
     angles: Mapping[str, float]
@@ -56,7 +57,7 @@ class Solution:
     primary: float = 0.0
 
     def on(self, side: SolutionSide | None) -> bool:
-        """Whether it lies on that side; the point itself lies on both."""
+        """Return whether the solution is on this side. The point itself is on both sides."""
         if side is None:
             return True
         angle = self.symmetry if side in {SolutionSide.SYM_PLUS, SolutionSide.SYM_MINUS} else self.primary
@@ -64,10 +65,10 @@ class Solution:
 
 
 def solutions(machine: Kinematics, frame: Matrix, *, table_rot: bool = False) -> list[Solution]:
-    """Every way to stand square to ``frame`` (in the machine-parallel system), ranges not looked at.
+    """Return all solutions square to ``frame`` (in the machine-parallel system), without axis ranges.
 
-    A rotary axis that is free, the first of the chain and parallel to the tool, goes to its zero, with
-    ``table_rot`` to where no turn about the tool is left.
+    If the first axis of the chain is parallel to the tool, it is free and goes to its zero. With
+    ``table_rot`` it goes to the angle that leaves no rotation about the tool.
     """
     normal = applied(frame, Z_AXIS)
     found: list[Solution] = []
@@ -91,10 +92,10 @@ def choose(
     *,
     table_rot: bool = False,
 ) -> Solution | None:
-    """The solution inside the axis ranges on ``side``, or the one with the shorter way from ``present``.
+    """Return the solution on ``side`` within the axis ranges that has the shortest travel from ``present``.
 
-    The sum of the ways counts; ways that differ by less than TIE are equal, and the positive side is taken.
-    None where no solution is possible.
+    The travel is the sum over all axes. If two travels differ by less than TIE, the positive side is
+    selected. Returns None if no solution is possible.
     """
     best: Solution | None = None
     for made in fitting(machine, frame, present, side, table_rot=table_rot):
@@ -111,18 +112,18 @@ def fitting(
     *,
     table_rot: bool = False,
 ) -> list[Solution]:
-    """The solutions inside the axis ranges on ``side``, the positive side first."""
+    """Return the solutions on ``side`` within the axis ranges, the positive side first."""
     near = [_nearest(machine, made, present) for made in solutions(machine, frame, table_rot=table_rot)]
     fits = [made for made in near if made is not None and made.on(side)]
     return sorted(fits, key=lambda each: -each.symmetry)
 
 
 def _tilts(machine: Kinematics, normal: Vector) -> Iterator[tuple[dict[str, float], float, float]]:
-    """Angles that bring the tool to ``normal``, with the primary axis' angle from symmetry and from 0."""
+    """Yield angles that bring the tool to ``normal``, with the primary angle from symmetry and from 0."""
     angles = dict(machine.zero)
     tilting = list(machine.rotaries)
     while tilting and math.hypot(*cross(tilting[-1].direction, Z_AXIS)) < UNREACHED:
-        tilting.pop()  # it spins about the tool and tilts nothing
+        tilting.pop()  # the axis rotates about the tool and does not tilt it
     if not tilting:
         if math.hypot(*cross(Z_AXIS, normal)) < UNREACHED and normal[2] > 0.0:
             yield angles, 0.0, 0.0
@@ -141,9 +142,9 @@ def _tilts(machine: Kinematics, normal: Vector) -> Iterator[tuple[dict[str, floa
 
 
 def _second(a1: Vector, a2: Vector, normal: Vector) -> Iterator[tuple[float, float]]:
-    """Both angles of the axis next to the tool, the greater first, each with its distance from their mean.
+    """Yield both angles of the axis next to the tool, the greater first, with the offset from their mean.
 
-    The mean of the angles as the axis shows them, -180 to 180, whichever way the other axis counts.
+    The mean uses the displayed angles from -180 to 180, for either direction of the other axis.
     """
     middle = math.degrees(math.atan2(dot(a1, cross(a2, Z_AXIS)), dot(a1, Z_AXIS)))
     away = math.degrees(math.atan2(math.hypot(*cross(a1, normal)), dot(a1, normal)))
@@ -154,13 +155,13 @@ def _second(a1: Vector, a2: Vector, normal: Vector) -> Iterator[tuple[float, flo
 
 
 def _angle(axis: Vector, start: Vector, end: Vector) -> float:
-    """Degrees about ``axis`` from one direction to another, as seen along the axis."""
+    """Return the angle in degrees about ``axis`` from one direction to another, seen along the axis."""
     p, q = (minus(each, scaled(axis, dot(axis, each))) for each in (start, end))
     return math.degrees(math.atan2(dot(axis, cross(p, q)), dot(p, q)))
 
 
 def _wrapped(angle: float) -> float:
-    """Within -180 (left out) to 180."""
+    """Return the angle in the range (-180, 180]."""
     return angle - TURN * math.ceil((angle - TURN / 2.0) / TURN)
 
 
@@ -171,7 +172,10 @@ def _same(machine: Kinematics, one: Solution, other: Solution) -> bool:
 
 
 def _nearest(machine: Kinematics, made: Solution, present: Mapping[str, float]) -> Solution | None:
-    """The solution with each limited axis at the turn nearest to where it stands; None out of range."""
+    """Return the solution with each limited axis at the turn closest to its present angle.
+
+    Returns None if an axis is out of range.
+    """
     angles = {}
     for axis in machine.rotaries:
         angle, now = made.angles[axis.name], present.get(axis.name, 0.0)

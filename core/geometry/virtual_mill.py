@@ -1,8 +1,8 @@
-"""Plane switching: lines and arcs of a virtual mill, and where lathe X, Z and C stand along them.
+"""Plane switching: lines and arcs of a virtual mill, and the lathe positions X, Z and C along them.
 
-XC mills on the face of the part, ZC on its side, unrolled at a diameter. The live tool stands on the negative
-X side of the lathe, or ``far`` on the positive one; mill X is to the right and Y up for a tool that looks at
-the part from there.
+XC mills on the face of the part. ZC mills on its side, unrolled at a diameter. The live tool is on the
+negative X side of the lathe, or on the positive side if ``far`` is True. For a tool that looks at the part
+from there, mill X points to the right and Y up.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ FloatArray = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Face:
-    """XC, the face. ``c0`` (degrees) is C at the entry, ``h`` (mm) the tool's height above the axis.
+    """The face plane XC. ``c0`` (degrees) is C at the entry, ``h`` (mm) the tool's height above the axis.
 
-    A point (X, Y) of the part at the distance rho from the axis comes under the tool when X stands at
-    -sqrt(rho² - h²), far at plus that, and C has turned the point there.
+    A point (X, Y) of the part at the distance rho from the axis is under the tool if X is at -sqrt(rho² -
+    h²), or at the positive value on the far side, and C has rotated the point there.
     """
 
     c0: float
@@ -32,14 +32,14 @@ class Face:
 
     @property
     def heading(self) -> float:
-        """Where on the part, which counts from the negative X side at C0, mill X points: degrees."""
+        """The angle on the part at which mill X points, in degrees from the negative X side at C0."""
         return _heading(self.c0, far=self.far)
 
     def machine(self, points: FloatArray, theta: FloatArray) -> FloatArray:
-        """Lathe X (radius), Z, C (n, 3) of mill points X, Y, Z (n, 3); mm and degrees.
+        """Return lathe X (radius), Z, C (n, 3) of mill points X, Y, Z (n, 3), in mm and degrees.
 
-        ``theta`` (n,) is the polar angle of the points in radians, counted on without wrapping. A point
-        nearer to the axis than |h| cannot be reached; it is taken to be at |h|.
+        ``theta`` (n,) is the continuous polar angle of the points in radians. A point closer to the axis than
+        |h| cannot be reached and is treated as if it were at |h|.
         """
         rho = np.hypot(points[:, 0], points[:, 1])
         x = np.sqrt(np.maximum((rho - self.h) * (rho + self.h), 0.0))
@@ -47,7 +47,7 @@ class Face:
         return np.column_stack([x if self.far else -x, points[:, 2], self.c0 + np.degrees(lead - theta)])
 
     def mill(self, machine: FloatArray) -> FloatArray:
-        """Mill points X, Y, Z (n, 3) that stand under the tool at lathe X, Z, C (n, 3)."""
+        """Return the mill points X, Y, Z (n, 3) under the tool at lathe X, Z, C (n, 3)."""
         x = machine[:, 0] if self.far else -machine[:, 0]
         rho = np.hypot(x, self.h)
         theta = np.arctan2(self.h, x) - np.radians(machine[:, 2] - self.c0)
@@ -56,10 +56,10 @@ class Face:
 
 @dataclass(frozen=True, slots=True)
 class Side:
-    """ZC, the side. ``c0`` (degrees) and ``z0`` (mm) are C and lathe Z of X0 Y0; Y is measured at
-    ``diameter``.
+    """The side plane ZC, unrolled at ``diameter``.
 
-    Mill X is towards the spindle; Z is how far out the tip stands. mm.
+    ``c0`` (degrees) and ``z0`` (mm) are C and lathe Z of X0 Y0. Mill X points toward the spindle, Y is
+    measured at ``diameter``, and Z is the radius of the tip. Lengths are in mm.
     """
 
     c0: float
@@ -68,13 +68,13 @@ class Side:
     far: bool = False
 
     def machine(self, points: FloatArray) -> FloatArray:
-        """Lathe X (radius), Z, C (n, 3) of mill points X, Y, Z (n, 3), Z as a radius; mm and degrees."""
+        """Return lathe X (radius), Z, C (n, 3) of mill points X, Y, Z (n, 3), with mill Z as a radius."""
         x, y, z = points.T
         c = self.c0 - y * (360.0 / (math.pi * self.diameter))
         return np.column_stack([z if self.far else -z, self.z0 - x, c])
 
     def mill(self, machine: FloatArray) -> FloatArray:
-        """Mill points X, Y, Z (n, 3), Z as a radius, of lathe X, Z, C (n, 3)."""
+        """Return mill points X, Y, Z (n, 3), with Z as a radius, of lathe X, Z, C (n, 3)."""
         x, z, c = machine.T
         up = x if self.far else -x
         return np.column_stack([self.z0 - z, (self.c0 - c) * (math.pi * self.diameter / 360.0), up])
@@ -86,17 +86,17 @@ def _heading(c0: float, *, far: bool) -> float:
 
 Spot = tuple[float, float, float]
 
-CENTRE = 1e-4  # mm; what comes this near to the spindle's axis goes through it
-_SAMPLES = 721  # points of an arc at which its reach is read: half a degree of a full circle
+CENTRE = 1e-4  # mm; a path closer than this to the spindle axis passes through the axis
+_SAMPLES = 721  # points of an arc at which its extent is sampled: 0.5 degree of a full circle
 
 
 @dataclass(frozen=True, slots=True)
 class PlaneMove:
-    """A straight line, or with ``centre`` an arc, in the mill's frame; X, Y, Z in mm.
+    """A straight line, or with ``centre`` an arc, in the mill's frame, with X, Y, Z in mm.
 
-    On the side of the part Z is a radius. ``theta`` (radians) is the polar angle of the start as counted so
-    far, so that C never jumps by a turn; it matters on the face only, and where the start is the centre it
-    is the direction of departure. The end of an arc lies within the control's tolerance of its circle.
+    On the side of the part, Z is a radius. ``theta`` is the continuous polar angle of the start in radians,
+    so that C never jumps by a revolution. It matters only on the face. If the start is the center, it is the
+    direction of departure. The end of an arc is within the control's tolerance of its circle.
     """
 
     frame: Face | Side
@@ -108,7 +108,7 @@ class PlaneMove:
 
     @property
     def length(self) -> float:
-        """Length of the mill's path, mm."""
+        """Length of the mill's path, in mm."""
         if self.centre is None:
             return math.dist(self.start, self.end)
         _, sweep = self._circle()
@@ -116,26 +116,26 @@ class PlaneMove:
 
     @property
     def in_degrees(self) -> bool:
-        """Whether the feed counts degrees: it counts mm."""
+        """Always False, because the feed is in mm."""
         return False
 
     @property
     def radius(self) -> float:
-        """Radius of the arc, 0 for a line."""
+        """Radius of the arc in mm, or 0 for a line."""
         return 0.0 if self.centre is None else math.dist(self.start[:2], self._settled())
 
     @property
     def on_side(self) -> bool:
-        """Whether the mill stands on the side of the part."""
+        """True if the mill machines the side of the part."""
         return isinstance(self.frame, Side)
 
     @property
     def straight(self) -> bool:
-        """Whether lathe axes too move in proportion to each other."""
+        """True if the lathe axes move proportionally."""
         return self.centre is None and isinstance(self.frame, Side)
 
     def points(self, share: FloatArray) -> FloatArray:
-        """Mill points (n, 3) at fractions of the path (n,)."""
+        """Return mill points (n, 3) at fractions of the path (n,)."""
         start, end = np.array(self.start), np.array(self.end)
         points = np.asarray(start + share[:, None] * (end - start), dtype=np.float64)
         if self.centre is not None:
@@ -146,18 +146,18 @@ class PlaneMove:
         return points
 
     def machine(self, share: FloatArray) -> FloatArray:
-        """Lathe X (radius), Z, C (n, 3) at fractions of the path (n,); C goes on without a jump."""
+        """Return lathe X (radius), Z, C (n, 3) at fractions of the path (n,), with continuous C."""
         points = self.points(share)
         if isinstance(self.frame, Side):
             return self.frame.machine(points)
         return self.frame.machine(points, self.thetas(points, share))
 
     def part(self, points: FloatArray) -> FloatArray:
-        """Mill points (n, 3) of lathe X, Z, C (n, 3)."""
+        """Return mill points (n, 3) of lathe X, Z, C (n, 3)."""
         return self.frame.mill(points)
 
     def thetas(self, points: FloatArray, share: FloatArray) -> FloatArray:
-        """Polar angles (n,) of ``points`` of this path, counted on from ``theta``; radians."""
+        """Return continuous polar angles (n,) of ``points`` of this path, from ``theta`` on, in radians."""
         if self.centre is None:
             x0, y0, _ = self.start if math.hypot(*self.start[:2]) > CENTRE else self.end
             at_centre = np.hypot(points[:, 0], points[:, 1]) <= CENTRE
@@ -170,7 +170,7 @@ class PlaneMove:
         return wound
 
     def parts(self) -> list[PlaneMove]:
-        """The way as it is, or in two where it goes through the axis, at which C has to turn meanwhile."""
+        """Return the move, divided in two if it passes through the axis, where C must turn in between."""
         if isinstance(self.frame, Side) or self.length <= CENTRE:
             return [self]
         share = self.nearest()
@@ -180,7 +180,10 @@ class PlaneMove:
         return [replace(self, end=(0.0, 0.0, z)), replace(self, start=(0.0, 0.0, z))]
 
     def turn_at_start(self) -> float:
-        """By what the polar angle changes before a way that begins on the axis: radians, the short way."""
+        """Return the change of the polar angle before a move that starts on the axis, in radians.
+
+        The change is in the shorter direction.
+        """
         if isinstance(self.frame, Side) or math.hypot(*self.start[:2]) > CENTRE or self.length <= CENTRE:
             return 0.0
         x, y = self.points(np.array([0.0, 1.0]))[1][:2].tolist()
@@ -189,11 +192,12 @@ class PlaneMove:
             x, y = (-j, i) if self.clockwise else (j, -i)
         turn = (math.atan2(y, x) - self.theta + math.pi) % (2 * math.pi) - math.pi
         if abs(abs(turn) - math.pi) < 1e-6:
-            return abs(turn)  # straight through: C counts down, as it does beside a centre on the left
+            # The path passes straight through the axis. C decreases, as for a center on the left.
+            return abs(turn)
         return turn
 
     def nearest(self) -> float:
-        """Fraction of the path at which it is nearest to the axis."""
+        """Return the fraction of the path that is closest to the axis."""
         if self.centre is None:
             dx, dy = self.end[0] - self.start[0], self.end[1] - self.start[1]
             square = dx * dx + dy * dy
@@ -202,18 +206,21 @@ class PlaneMove:
         return self._at_angle(math.atan2(-self._settled()[1], -self._settled()[0]))
 
     def rho(self, share: float) -> float:
-        """Distance from the axis at a fraction of the path, mm."""
+        """Return the distance from the axis in mm at a fraction of the path."""
         x, y, _ = self.points(np.array([share]))[0].tolist()
         return math.hypot(x, y)
 
     def reach(self) -> tuple[FloatArray, FloatArray]:
-        """Least and greatest lathe X, Z, C (3,) along the path."""
+        """Return the least and greatest lathe X, Z, C (3,) along the path."""
         count = 2 if self.straight else _SAMPLES
         table = self.machine(np.append(np.linspace(0.0, 1.0, count), self.nearest()))
         return table.min(axis=0), table.max(axis=0)
 
     def _at_angle(self, angle: float) -> float:
-        """Fraction of the arc at this angle round its centre; the nearer end where the arc lacks it."""
+        """Return the fraction of the arc at this angle around its center.
+
+        If the arc does not contain the angle, the end closer to the axis is returned.
+        """
         first, sweep = self._circle()
         turn = 2.0 * math.pi
         way = (angle - first) % turn if sweep > 0.0 else (first - angle) % turn
@@ -223,7 +230,7 @@ class PlaneMove:
         return 0.0 if self.rho(0.0) <= self.rho(1.0) else 1.0
 
     def _settled(self) -> tuple[float, float]:
-        """The centre on the bisector of the chord, so that the arc meets its end exactly."""
+        """Return the center moved to the bisector of the chord, so that the arc meets its end exactly."""
         assert self.centre is not None
         (x0, y0, _), (x1, y1, _), (cx, cy) = self.start, self.end, self.centre
         dx, dy = x1 - x0, y1 - y0
@@ -234,17 +241,17 @@ class PlaneMove:
         return cx - off * dx, cy - off * dy
 
     def _circle(self) -> tuple[float, float]:
-        """Start angle, from X towards Y, and signed sweep in radians; clockwise is negative."""
+        """Return the start angle, from X toward Y, and the signed sweep in radians; clockwise is negative."""
         cx, cy = self._settled()
         (x0, y0, _), (x1, y1, _) = self.start, self.end
-        # Seen with Y up the angle from X towards Y is counter-clockwise.
+        # With Y up, the angle from X toward Y is counterclockwise.
         return arc_sweep(y0, x0, y1, x1, cy, cx, not self.clockwise)
 
     def _winding(self, points: FloatArray, share: FloatArray) -> FloatArray:
-        """Polar angles (n,) of points of the arc, continuous along it but for a constant.
+        """Return polar angles (n,) of points of the arc, continuous along it except for a constant.
 
-        With the axis inside the circle it is the angle round the arc's centre plus less than a quarter turn,
-        outside the direction of the centre plus less than a quarter turn.
+        If the axis is inside the circle, the result is the angle around the center of the arc plus less than
+        90 degrees. Otherwise it is the direction of the center plus less than 90 degrees.
         """
         cx, cy = self._settled()
         first, sweep = self._circle()

@@ -1,6 +1,7 @@
-"""Arcs, helices, mirroring and scaling in a mill's working plane, and what all axes do in a block.
+"""Arcs, helices, mirroring and scaling in a mill's working plane, and the motion of all axes in a block.
 
-A point of the program is scaled, mirrored, turned about the tool axis, whichever was programmed first.
+A point of the program is scaled, then mirrored, then rotated about the tool axis, in any order of
+programming.
 """
 
 from __future__ import annotations
@@ -27,12 +28,12 @@ _SAMPLES = 65
 
 
 def seen(order: Order, point: Vector) -> Vector:
-    """A point by the axes of a plane."""
+    """Return a point X Y Z in the order of the axes of a plane."""
     return point[order[0]], point[order[1]], point[order[2]]
 
 
 def unseen(order: Order, point: Vector) -> Vector:
-    """The point X Y Z of one that is told by the axes of a plane."""
+    """Return a point given in the order of the axes of a plane as X Y Z."""
     at = [0.0, 0.0, 0.0]
     for column, value in zip(order, point, strict=True):
         at[column] = value
@@ -41,7 +42,7 @@ def unseen(order: Order, point: Vector) -> Vector:
 
 @dataclass(frozen=True, slots=True)
 class Figure:
-    """Mirrored axes, rotation about Z in degrees, factor."""
+    """Mirrored axes, rotation about Z in degrees, and scale factor."""
 
     mirrored: str = ""
     rotation: float = 0.0
@@ -49,36 +50,36 @@ class Figure:
 
     @property
     def plain(self) -> bool:
-        """Whether the program's coordinates are those of the plane."""
+        """True if the program's coordinates are those of the plane."""
         return self == _PLAIN
 
     @property
     def reverses(self) -> bool:
-        """Whether an arc runs the other way: one of X and Y is mirrored."""
+        """True if arcs change their direction because either X or Y is mirrored."""
         return ("X" in self.mirrored) != ("Y" in self.mirrored)
 
     def plane(self, point: Vector) -> Vector:
-        """The point of the plane for a point of the program."""
+        """Return the point of the plane for a point of the program."""
         x, y, z = (at * self._sign(axis) * self.factor for axis, at in zip("XYZ", point, strict=True))
         c, s = cos_sin(self.rotation)
         return c * x - s * y, s * x + c * y, z
 
     def program(self, point: Vector) -> Vector:
-        """The point of the program for a point of the plane."""
+        """Return the point of the program for a point of the plane."""
         c, s = cos_sin(self.rotation)
         turned = c * point[0] + s * point[1], -s * point[0] + c * point[1], point[2]
         x, y, z = (at * self._sign(axis) / self.factor for axis, at in zip("XYZ", turned, strict=True))
         return x, y, z
 
     def arc(self, arc: Arc) -> Arc:
-        """The arc of the plane for an arc of the program."""
+        """Return the arc of the plane for an arc of the program."""
         if self.plain:
             return arc
         start, end, centre = (self._flat(at) for at in (arc.start, arc.end, arc.centre))
         return Arc(start, end, centre, arc.clockwise != self.reverses)
 
     def upright(self, arc: Arc, order: Order) -> tuple[Arc, Matrix]:
-        """An arc in another plane of the program, and the directions (rows of a matrix) of its axes."""
+        """Return an arc in another plane of the program, and its axis directions (rows of a matrix)."""
         start, end, centre = (
             (at[0] * self.factor, at[1] * self.factor) for at in (arc.start, arc.end, arc.centre)
         )
@@ -99,11 +100,11 @@ _PLAIN = Figure()
 
 @dataclass(frozen=True, slots=True)
 class HelixMove:
-    """``arc`` in X Y of the system that ``place`` takes to the machine, while Z goes from ``z0`` to ``z1``.
+    """A helix: ``arc`` in X Y of the system of ``place``, while Z moves from ``z0`` to ``z1``.
 
-    ``standing`` are the machine positions of all axes in the machine's order, of which X, Y and Z, at
-    ``columns``, move; mm, degrees. Of an upright arc ``frame`` (rows) holds the directions, in that system,
-    of the two axes that it lies in and of the third: X Y Z of the arc are those then.
+    ``standing`` are the machine positions of all axes in the machine's order; X, Y and Z, at ``columns``, are
+    replaced. Units are mm and degrees. For an upright arc, ``frame`` (rows) contains the directions of the
+    two axes of its plane and of the third axis. X Y Z of the arc then refer to these directions.
     """
 
     place: Place
@@ -116,21 +117,21 @@ class HelixMove:
 
     @property
     def length(self) -> float:
-        """Length of the path, mm."""
+        """Length of the path, in mm."""
         return math.hypot(self.arc.length, self.z1 - self.z0)
 
     @property
     def in_degrees(self) -> bool:
-        """Whether the feed counts degrees: it counts mm."""
+        """Always False, because the feed is in mm."""
         return False
 
     @property
     def straight(self) -> bool:
-        """The slides never run in proportion to each other."""
+        """Always False, because the linear axes do not move proportionally."""
         return False
 
     def machine(self, share: FloatArray) -> FloatArray:
-        """Machine positions (k, axes), in the machine's order, at fractions (k,) of the way."""
+        """Return machine positions (k, axes), in the machine's order, at fractions (k,) of the move."""
         (cx, cy), (x0, y0), radius = self.arc.centre, self.arc.start, self.arc.radius
         # A positive sweep is clockwise, seen with X to the right and Y up.
         angle = math.atan2(y0 - cy, x0 - cx) - self.arc.sweep * share
@@ -142,12 +143,12 @@ class HelixMove:
         return rows
 
     def part(self, points: FloatArray) -> FloatArray:
-        """Points (k, 3) of the working plane's system at machine positions (k, axes)."""
+        """Return points (k, 3) of the working plane's system at machine positions (k, axes)."""
         spots: FloatArray = (points[:, self.columns] - np.array(self.place.shift)) @ np.array(self.place.turn)
         return spots
 
     def nearest(self) -> float:
-        """The middle: no fraction is harder than another."""
+        """Return 0.5, because no fraction of the move is more critical than another."""
         return 0.5
 
 
@@ -162,10 +163,11 @@ machine positions, and the fraction ``nearest`` to where the axes turn most for 
 
 @dataclass(frozen=True, slots=True)
 class Travel:
-    """From ``start`` to ``end``: machine positions of all axes in the machine's order, slides first; mm and
-    degrees, rotary axes counted on without a jump. ``length`` is what the feed counts: mm, or degrees where
-    only rotary axes turn. ``way`` where the axes do not run in proportion; its length is ``length``.
-    ``slides`` tells whether any slide is meant to move.
+    """A move from ``start`` to ``end``, which are machine positions of all axes in the machine's order.
+
+    Linear axes come first, in mm. Rotary axes are in degrees and continuous. ``length`` is the length for the
+    feed: in mm, or in degrees if only rotary axes turn. ``way`` is given if the axes do not move
+    proportionally, and has the same length. ``slides`` is True if a linear axis is programmed to move.
     """
 
     start: tuple[float, ...]
@@ -175,7 +177,7 @@ class Travel:
     slides: bool = True
 
     def reach(self) -> tuple[FloatArray, FloatArray]:
-        """Least and greatest position of each axis (axes,) all along, the start left out of straight ways."""
+        """Return the least and greatest position of each axis (axes,); for straight moves, only the end."""
         if self.way is None:
             return np.array(self.end), np.array(self.end)
         points = self.way.machine(np.linspace(0.0, 1.0, _SAMPLES))

@@ -1,6 +1,6 @@
-"""``docs/klartext-codes.md`` and ``docs/sinumerik-codes.md`` from the code books.
+"""Generator of ``docs/klartext-codes.md`` and ``docs/sinumerik-codes.md`` from the code books.
 
-``python -m core.interpreter.code_book_page klartext > docs/klartext-codes.md`` writes one.
+``python -m core.interpreter.code_book_page klartext > docs/klartext-codes.md`` writes one page.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ Each code has an example. "Rejected" gives an example that is rejected, with a p
 
 
 def page(dialect: Dialect) -> str:
-    """The text of the page."""
+    """Return the text of the page."""
     book = code_book(dialect)
     chapters = "".join(
         f"\n## {title}\n\n" + "".join(map(_entry, entries)) for title, entries in book.chapters
@@ -41,7 +41,7 @@ def _frame(book: CodeBook) -> str:
 
 
 def _words(book: CodeBook) -> str:
-    """Return the table of the words of cycles, or nothing for a language without them."""
+    """Return the table of the cycle parameters, or an empty text for a language without them."""
     rows = "".join(f"| `{word}` | {what} |\n" for word, what in book.meanings.items())
     return f"\n## Cycle parameters\n\n| word | means |\n|---|---|\n{rows}" if rows else ""
 

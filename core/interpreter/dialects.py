@@ -1,4 +1,4 @@
-"""One door to the interpreters of all dialects: text and circumstances in, elementary blocks out."""
+"""Entry point to the interpreters of all dialects, from text and setup to elementary blocks."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def _omniturn(source: Source, strict: bool) -> PassFactory:
 
 
 class _OmniTurn:
-    """An OmniTurn text that has been read."""
+    """An OmniTurn program that has been read."""
 
     def __init__(self, program: Program) -> None:
         self.program = program
@@ -42,7 +42,7 @@ class _OmniTurn:
 
 
 def line_alone(source: Source, setup: Setup) -> Interpretation:
-    """One line of MDI in the machine's language, beginning with what ``setup.begin`` says."""
+    """Return a pass through one line of MDI in the machine's language, from the state of ``setup.begin``."""
     if refused := _refusal(source.dialect, setup):
         return refused
     return _LINES[source.dialect](source, setup)
@@ -65,7 +65,7 @@ def _klartext_line(source: Source, setup: Setup) -> Interpretation:
     from core.interpreter.klartext.klartext_interpreter import Interpreter
     from core.interpreter.klartext.klartext_program import read_single
 
-    assert setup.kinematics is not None  # else it was refused
+    assert setup.kinematics is not None  # otherwise, the pass was rejected
     return Interpreter(read_single(source, inch=not setup.metric), setup, setup.kinematics)
 
 
@@ -89,14 +89,14 @@ def _klartext(source: Source, _strict: bool) -> PassFactory:
     program = read_program(source)
 
     def begin(setup: Setup) -> Interpretation:
-        assert setup.kinematics is not None  # else it was refused
+        assert setup.kinematics is not None  # otherwise, the pass was rejected
         return Interpreter(program, setup, setup.kinematics)
 
     return begin
 
 
 def _refusal(dialect: Dialect, setup: Setup) -> RefusedPass | None:
-    """What this machine, or this start, cannot be asked."""
+    """Return a rejected pass if this machine cannot run the dialect; otherwise None."""
     lathe = len(setup.start) == _LATHE_AXES
     if dialect is Dialect.OMNITURN and not lathe:
         why = "An OmniTurn program needs a lathe with X, Z and C; this machine has other axes."
@@ -119,7 +119,7 @@ NAMES = {Dialect.OMNITURN: "OmniTurn", Dialect.SINUMERIK: "SINUMERIK", Dialect.K
 
 @cache
 def code_book(dialect: Dialect) -> CodeBook:
-    """All codes of a language, with examples; read from its files when it is first needed."""
+    """Return the code book of a language, which is read on first use."""
     if dialect is Dialect.OMNITURN:
         from core.interpreter.omniturn.codes.omniturn_book import book
 
@@ -129,7 +129,7 @@ def code_book(dialect: Dialect) -> CodeBook:
     return read_book(BOOKS / dialect)
 
 
-# A language is loaded when a program of it is: the others cost nothing.
+# The module of a language is imported when a program needs it.
 _READERS: Mapping[Dialect, Callable[[Source, bool], PassFactory]] = {
     Dialect.OMNITURN: _omniturn,
     Dialect.SINUMERIK: _sinumerik,
@@ -138,10 +138,10 @@ _READERS: Mapping[Dialect, Callable[[Source, bool], PassFactory]] = {
 
 
 class ReadProgram:
-    """A program's text, read with its first pass and kept for all others: to prove, to draw, to run.
+    """A program text that is read with its first pass and then shared by all passes.
 
-    Reading a million blocks takes the better part of a second, which whoever moves the slides has not.
-    Passes may be made on several threads at once.
+    Reading a million blocks takes almost a second, which the executor cannot wait. Passes can be created in
+    several threads at the same time.
     """
 
     def __init__(self, source: Source, *, strict: bool = False) -> None:
@@ -149,19 +149,19 @@ class ReadProgram:
         self._strict = strict
 
     def __reduce__(self) -> tuple[object, ...]:
-        """Return how another process makes it: from the text, which it reads again."""
+        """Return the pickle data: the text, which the other process reads again."""
         return _unread, (self.source, self._strict)
 
     def read(self) -> None:
-        """Read the text now, so that the first pass need not."""
+        """Read the text now, so that the first pass does not have to."""
         _ = self._begin
 
     def is_same(self, other: ReadProgram) -> bool:
-        """Return whether the other one is of the same text, read in the same way."""
+        """Return whether the other program has the same text, read in the same mode."""
         return self.source == other.source and self._strict == other._strict
 
     def begin(self, setup: Setup) -> Interpretation:
-        """One more pass under these circumstances."""
+        """Return a new pass with this setup."""
         dialect = self.source.dialect
         if refused := _refusal(dialect, setup):
             return refused
@@ -170,7 +170,7 @@ class ReadProgram:
         return self._begin(setup)
 
     def branching(self, setup: Setup, guide: Guide) -> Branching | None:
-        """A pass that ``guide`` can send both ways; None where the program asks no input."""
+        """Return a pass that ``guide`` can send to both branches; None if the program reads no input."""
         if _refusal(self.source.dialect, setup) or (setup.begin is not None and setup.begin.single):
             return None
         read = self._begin
@@ -182,7 +182,7 @@ class ReadProgram:
 
     @property
     def program(self) -> Program | None:
-        """The lines of an OmniTurn program ready to run; None for other languages."""
+        """The OmniTurn program ready for execution; None for other languages."""
         read = self._begin
         return read.program if isinstance(read, _OmniTurn) else None
 
@@ -196,5 +196,5 @@ def _unread(source: Source, strict: bool) -> ReadProgram:
 
 
 def interpretation(source: Source, setup: Setup) -> Interpretation:
-    """One pass through a program that is read for it alone."""
+    """Return one pass through a program that is read only for this pass."""
     return ReadProgram(source, strict=setup.strict).begin(setup)

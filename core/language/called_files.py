@@ -1,4 +1,7 @@
-"""Programs that a program calls, read from the folders where they lie: what was proved is what runs."""
+"""Loading of called programs together with the main program.
+
+The text that was proved is therefore the text that is executed.
+"""
 
 from __future__ import annotations
 
@@ -12,10 +15,10 @@ _MOST_FILES = 500
 
 
 def with_called_files(source: Source, folders: Sequence[Path]) -> Source:
-    """The source with the programs that it and they call, as far as the folders hold them.
+    """Return the source with all programs that it calls, directly or indirectly.
 
-    A file that is missing or no text is left out: the call that needs it is an error of the program. OmniTurn
-    programs call nothing outside themselves, and a source that has its programs already keeps them.
+    Files that are missing or not text are left out; the call then causes an error in the program. OmniTurn
+    programs do not call other files. A source that already has its programs is returned unchanged.
     """
     called = _calls_of(source.dialect)
     if called is None or source.subprograms:
@@ -31,7 +34,7 @@ def with_called_files(source: Source, folders: Sequence[Path]) -> Source:
 
 
 def _calls_of(dialect: Dialect) -> Callable[[Source], Iterator[str]] | None:
-    """What gives the names of files, in capitals, that a source of this language calls."""
+    """Return the function that yields the file names, in capitals, that a source of this dialect calls."""
     if dialect is Dialect.SINUMERIK:
         from core.language.sinumerik.subprogram_files import called_files
 
@@ -54,7 +57,10 @@ def _read(name: str, folders: Sequence[Path], dialect: Dialect) -> Source | None
 
 
 def _places(name: str, folders: Sequence[Path], dialect: Dialect) -> Iterator[Path]:
-    """Where a file of this name may lie, the likeliest first: no folder is listed without need."""
+    """Yield the possible paths of a file, the most likely one first.
+
+    Folders are therefore listed only if necessary.
+    """
     for each in (name, *_also(name, dialect)):
         for folder in folders:
             yield folder / each.lower()
@@ -62,12 +68,12 @@ def _places(name: str, folders: Sequence[Path], dialect: Dialect) -> Iterator[Pa
 
 
 def _also(name: str, dialect: Dialect) -> tuple[str, ...]:
-    """A main program of SINUMERIK may be called by its name, too."""
+    """Return other file names for a call; SINUMERIK can also call a main program by its name."""
     return (str(Path(name).with_suffix(".MPF")),) if dialect is Dialect.SINUMERIK else ()
 
 
 def _same_name(folder: Path, name: str) -> list[Path]:
-    """Files of this name in any case."""
+    """Return the files in the folder with this name in any case."""
     try:
         return [path for path in folder.iterdir() if path.name.upper() == name]
     except OSError:

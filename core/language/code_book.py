@@ -1,7 +1,7 @@
-"""The code book of a language: every code, word and cycle with its meaning, an example and a refusal.
+"""Code book of a language: all codes, words and cycles with their meanings, examples and error examples.
 
-The editor looks a word up in it and completes what is being typed; pages of
-``docs`` are printed from it, and its examples and refusals are proved.
+The editor uses the code book to explain and complete words. Pages of ``docs`` are generated from it, and
+tests prove its examples and error examples.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
-_CLOSE = ("", ".", ":", "=", "(", ",")  # such words stand close behind their head
+_CLOSE = ("", ".", ":", "=", "(", ",")  # These words follow the head without a blank.
 _NUMBER = re.compile(r"0*([0-9]+)")
 _WORD_BEGIN = re.compile(r"(?<![A-Z_$])[A-Z_$]|(?<=[0-9 ])[A-Z]")
 _NUMBERED = re.compile(r"(.*[A-Z ])0*([0-9]+)")  # a head that ends in a whole number
@@ -23,12 +23,13 @@ _NO_LETTER_BEFORE = r"(?<![A-Z_$])"
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """One code as a programmer writes it: ``head``, and behind it ``words`` as the book shows them.
+    """One code of the code book: its ``head`` and the ``words`` that follow it, as the book shows them.
 
-    ``example`` are lines that use it, between the book's ``head`` and ``tail`` or, where ``whole``, on their
-    own; ``behind`` follows the end of the program, ``files`` are programs beside it, name and text.
-    ``refused`` are lines in the place of the example that are no program, ``why`` a part of what is said.
-    ``insert`` is what completion writes where that is more than the head.
+    ``example`` are lines that use the code. They are a complete program if ``whole`` is True; otherwise they
+    are put between ``head`` and ``tail`` of the book. ``behind`` follows the end of the program, and
+    ``files`` are other programs in the same folder (name and text). ``refused`` are lines that cause an error
+    in place of the example, and ``why`` is part of the error message. ``insert`` is the completion if it is
+    longer than the head.
     """
 
     head: str
@@ -50,16 +51,16 @@ class Entry:
 
     @property
     def written(self) -> str:
-        """What completion writes."""
+        """The text that completion inserts."""
         return self.insert or self.head
 
 
 @dataclass(frozen=True)
 class CodeBook:
-    """Chapters of entries; ``head`` and ``tail`` stand around every example.
+    """Chapters of entries. ``head`` and ``tail`` are the lines before and after each example.
 
-    ``comment`` is the sign behind which no codes stand. ``meanings`` tells the words that stand behind codes,
-    alone or behind one: ``G83.R``; ``named`` finds them.
+    ``comment`` is the character that starts a comment. ``meanings`` explains the words of codes, for all
+    codes (``R``) or for one code (``G83.R``). The pattern ``named`` finds these words.
     """
 
     chapters: tuple[tuple[str, tuple[Entry, ...]], ...]
@@ -70,7 +71,7 @@ class CodeBook:
     named: str = r"[A-Z_][A-Z0-9_]*"
 
     def words_of(self, entry: Entry) -> tuple[tuple[str, str], ...]:
-        """Each word behind a code with what it means, as far as the book tells it."""
+        """Return each word of a code with its meaning, if the book has one."""
         found = dict.fromkeys(re.findall(self.named, f"{entry.words} {entry.insert}".strip()))
         said = (
             (word, self.meanings.get(f"{entry.head}.{word}", self.meanings.get(word, ""))) for word in found
@@ -79,13 +80,15 @@ class CodeBook:
 
     @cached_property
     def entries(self) -> tuple[Entry, ...]:
-        """All of them, in the order of the book."""
+        """All entries in the order of the book."""
         return tuple(entry for _, entries in self.chapters for entry in entries)
 
     def at(self, line: str, column: int) -> Entry | None:
-        """The code that the cursor stands on, else the nearest before it in the line, else the first of it.
+        """Return the entry of the code at the cursor.
 
-        ``column`` counts from 1 and may be one behind the line. None in a comment and where nothing is known.
+        Otherwise, return the entry of the nearest code to the left of the cursor, or of the first code in the
+        line. ``column`` counts from 1 and may be one past the end of the line. Returns None in a comment and
+        if the line has no known code.
         """
         code = line.upper().split(self.comment, 1)[0]
         if column - 1 > len(code):
@@ -95,7 +98,10 @@ class CodeBook:
         return before[-1][2] if before else found[0][2] if found else None
 
     def _found_in(self, code: str) -> Iterator[tuple[int, int, Entry]]:
-        """Begin, end and entry of each code of a line; of two that begin together the longer one."""
+        """Yield start, end and entry of each code in a line.
+
+        If two codes have the same start, the longer code counts.
+        """
         longest: dict[int, tuple[int, Entry]] = {}
         for pattern, by_number in self._patterns:
             for match in pattern.finditer(code):
@@ -111,7 +117,7 @@ class CodeBook:
 
     @cached_property
     def _patterns(self) -> tuple[tuple[re.Pattern[str], dict[str, Entry]], ...]:
-        """Return a pattern for all heads that differ only in their number, and their entries by number."""
+        """A pattern for each group of heads that differ only in their number, with its entries by number."""
         families: dict[tuple[str, bool], dict[str, Entry]] = {}
         for entry in self.entries:
             numbered = _NUMBERED.fullmatch(entry.head)
@@ -120,9 +126,10 @@ class CodeBook:
         return tuple((_pattern(*family), by_number) for family, by_number in families.items())
 
     def completions(self, line: str, column: int) -> tuple[int, tuple[Entry, ...]]:
-        """What the words before the cursor may become, by the order of the book, and where they begin.
+        """Return the column where the incomplete code starts, and the entries that can complete it.
 
-        The longest stretch that begins a code counts; none in a comment and behind a blank.
+        The entries are in book order. The longest matching text before the cursor is used. There are no
+        entries in a comment or after a blank.
         """
         typed = line[: column - 1].upper()
         if self.comment in typed or not typed or typed[-1].isspace():
@@ -147,22 +154,22 @@ class CodeBook:
         return tuple((each, _plain(each.head)) for each in self.entries)
 
     def chapter_of(self, entry: Entry | None) -> int:
-        """Index of the chapter that an entry stands in; the first for None."""
+        """Return the index of the chapter that contains an entry; 0 for None."""
         return next((n for n, (_, entries) in enumerate(self.chapters) if entry in entries), 0)
 
     def prepared(self) -> CodeBook:
-        """The book, ready to be asked without delay: its patterns take some milliseconds to be made."""
+        """Return the book after computing its patterns, which takes some milliseconds."""
         _ = self._patterns, self._heads
         return self
 
 
 def _plain(written: str) -> str:
-    """Codes as they are compared: capitals, one blank between words, no zeros before a number."""
+    """Return a code in its normal form: capitals, single blanks, and no leading zeros in numbers."""
     return _NUMBER.sub(r"\1", " ".join(written.upper().split()))
 
 
 def _pattern(stem: str, numbered: bool) -> re.Pattern[str]:
-    """Return what matches a code at any place in a line; its group is the number, empty without one."""
+    """Return a pattern that finds a code in a line. Its group is the number, or empty without one."""
     words = r"\s*".join(map(re.escape, stem.split()))
     last = _DIGITS_BEHIND if stem[-1].isdigit() else _LETTERS_BEHIND if stem[-1].isalpha() else ""
     before = _NO_LETTER_BEFORE if stem[0].isalpha() else ""

@@ -1,10 +1,12 @@
-"""Code books as files: ``code_books/LANGUAGE`` has ``book.toml`` and a TOML file for each of its subjects.
+"""Reader of code books.
 
-Each table ``[["Title of the chapter"]]`` is one entry, with the keys of ``Entry``; a chapter may continue in
-the next file. ``heads`` in the place of ``head`` makes one entry of each head. ``{name}`` in a text is the
-text with that name in ``[parts]``, or the text of that key of the entry. An entry has the texts of
-``[usual]`` for keys that it does not have. ``refused`` may be a table of replacements: the example with
-these texts replaced is rejected. ``[meanings]`` explains the words that follow codes.
+A folder ``code_books/LANGUAGE`` contains ``book.toml`` and one TOML file per subject.
+
+Each table ``[["Title of the chapter"]]`` is one entry, with the keys of ``Entry``. A chapter may continue in
+the next file. ``heads`` in place of ``head`` makes one entry for each head. ``{name}`` in a text is replaced
+by the text with that name in ``[parts]`` or by the text of that key of the entry. ``[usual]`` has the default
+texts of the entries. ``refused`` may be a table of replacements: the example with these texts replaced is
+rejected. ``[meanings]`` explains the words that follow codes.
 """
 
 from __future__ import annotations
@@ -34,7 +36,7 @@ _HOLE = re.compile(r"\{(\w+)\}")
 
 
 def read_book(folder: Path) -> CodeBook:
-    """Return the code book of a folder. Raises ValueError with file and code for an entry that is wrong."""
+    """Return the code book of a folder. Raises ValueError with file and code if an entry is invalid."""
     frame = tomllib.loads((folder / "book.toml").read_text(encoding="utf-8"))
     chapters: dict[str, list[Entry]] = {}
     meanings: dict[str, str] = {}
@@ -64,7 +66,7 @@ def _read_subject(text: str, chapters: dict[str, list[Entry]], meanings: dict[st
 
 
 def _entries(row: dict[str, Any], usual: dict[str, Any], parts: dict[str, str]) -> Iterator[Entry]:
-    """Yield the entry of each head of a row. Raises ValueError for a row that is wrong."""
+    """Yield the entry of each head of a row. Raises ValueError if the row is invalid."""
     for head in row.get("heads") or [row.get("head", "")]:
         try:
             yield _entry({**_TEXTS, **usual, **row, "head": head}, parts)
@@ -90,7 +92,7 @@ def _entry(row: dict[str, Any], parts: dict[str, str]) -> Entry:
 
 
 def _filled(text: str, known: Mapping[str, Any]) -> str:
-    """Return a text with its parts put in, without line breaks at its ends."""
+    """Return a text with its parts inserted and without line breaks at its ends."""
     if "{" not in text:
         return text.strip("\n")
 
@@ -104,7 +106,7 @@ def _filled(text: str, known: Mapping[str, Any]) -> str:
 
 
 def _replaced(example: str, pieces: Mapping[str, str]) -> str:
-    """Return the example with each of the pieces replaced. Raises ValueError for a piece that it lacks."""
+    """Return the example with each of the pieces replaced. Raises ValueError if the example lacks a piece."""
     for before, after in pieces.items():
         if before not in example:
             raise ValueError(f"the example does not contain {before}")
@@ -113,11 +115,11 @@ def _replaced(example: str, pieces: Mapping[str, str]) -> str:
 
 
 def _program(text: str) -> str:
-    """Return the lines of a program, each with its line break."""
+    """Return the lines of a program, each with a line break."""
     return text.strip("\n") + "\n" if text else ""
 
 
 def _check_once(heads: list[str]) -> None:
-    """Raise ValueError for a code with two entries."""
+    """Raise ValueError if a code has two entries."""
     if twice := [head for head, times in Counter(heads).items() if times > 1]:
         raise ValueError(f"{', '.join(twice)}: each code must have only one entry")

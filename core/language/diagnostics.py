@@ -1,4 +1,4 @@
-"""What the control has to say about a program: one sentence, one place, one thing to do."""
+"""Diagnostics of a program: location, severity, text and remedy."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from core.message import Message
 
 
 class Severity(StrEnum):
-    """How much a diagnostic weighs: an error refuses the run, a warning is shown, a note informs."""
+    """Severity of a diagnostic. An error prevents the run, a warning is shown, and a note informs."""
 
     ERROR = "error"
     WARNING = "warning"
@@ -18,11 +18,11 @@ class Severity(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Diagnostic:
-    """One finding. Lines and columns count from 1; column 0 speaks of the whole line, line 0 of the file.
+    """One finding. Lines and columns count from 1. Column 0 means the whole line, and line 0 the whole file.
 
-    ``check`` names the check of the part that has found it, ``n`` the elementary block (0: none). One that
-    repeats is told once: ``count`` says how often, and its place is the first. ``assumed`` names what it
-    rests on that nobody has said (``stock``, ``T3``), ``silenced`` why it is only a note.
+    ``check`` is the name of the check that made the finding, and ``n`` is the elementary block (0 for none).
+    A repeated finding has its first location and its ``count``. ``assumed`` names the assumptions of the
+    finding (``stock``, ``T3``). ``silenced`` is the reason why the finding is only a note.
     """
 
     line: int
@@ -39,7 +39,7 @@ class Diagnostic:
 
     @property
     def text(self) -> str:
-        """The sentence, and how often it would have to be said."""
+        """The message, followed by the number of repetitions if the finding is repeated."""
         return (
             self.message
             if self.count == 1
@@ -47,7 +47,7 @@ class Diagnostic:
         )
 
     def in_one_line(self, name: str) -> str:
-        """The finding in the one line that goes to a person: place, weight, code, message, what to do."""
+        """Return the finding as one line: location, severity, message, code and remedy."""
         place = f"{name}:{self.line}:{max(self.column, 1)}" if self.line else name
         hint = Message(" — {hint}", hint=self.hint) if self.hint else ""
         return Message(
@@ -61,7 +61,7 @@ class Diagnostic:
 
 
 class ProgramError(Exception):
-    """A line cannot mean anything the control would execute; carries the diagnostic that says why."""
+    """Error in a program line, with the diagnostic that explains the error."""
 
     def __init__(self, diagnostic: Diagnostic) -> None:
         super().__init__(diagnostic.message)
@@ -73,15 +73,15 @@ AT_THE_STOP = "axis position after a program stop"
 
 
 def resting_on(found: Diagnostic, *assumed: str) -> Diagnostic:
-    """The finding, which holds only as these are assumed."""
+    """Return the finding with further assumptions on which it depends."""
     return replace(found, assumed=(*found.assumed, *assumed))
 
 
 def refusal(line: int, column: int, code: str, message: str, hint: str = "") -> Diagnostic:
-    """An error diagnostic."""
+    """Return a diagnostic with the severity error."""
     return Diagnostic(line, column, Severity.ERROR, code, message, hint)
 
 
 def program_error(line: int, column: int, code: str, message: str, hint: str = "") -> ProgramError:
-    """The exception that carries an error diagnostic."""
+    """Return the exception for an error diagnostic."""
     return ProgramError(refusal(line, column, code, message, hint))

@@ -1,7 +1,7 @@
-"""Formulas of a program: numbers, parameters, operators with their precedence, functions.
+"""Formulas of programs: numbers, parameters, operators with precedence, and functions.
 
-Each language states its own ``Grammar``; what comes of the text is the same for all, and is worked out by
-``core.interpreter.shared.formula_values``.
+Each language defines its own ``Grammar``. The parsed formulas are the same for all languages and are
+evaluated by ``core.interpreter.shared.formula_values``.
 """
 
 from __future__ import annotations
@@ -15,13 +15,16 @@ from core.language.line_reading import LineReader
 
 
 class Number(NamedTuple):
-    """A number as written."""
+    """A number of the program."""
 
     value: float
 
 
 class Parameter(NamedTuple):
-    """A parameter by its letters, ``Q`` or ``R``, and its number; a name stands alone. ``column`` from 1."""
+    """A parameter with its letters, its number or index if any, and its column from 1.
+
+    The letters are ``Q``, ``R`` or the name of a variable.
+    """
 
     letters: str
     number: int | Formula | None
@@ -29,7 +32,7 @@ class Parameter(NamedTuple):
 
 
 class Operation(NamedTuple):
-    """An operator or a function by the name that ``formula_values`` knows, and what it is asked of."""
+    """An operator or function with its operands; ``name`` is a key of ``OPERATIONS``."""
 
     name: str
     operands: tuple[Formula, ...]
@@ -54,12 +57,12 @@ FUNCTIONS = {
 
 
 def indices_of(index: Formula) -> tuple[Formula, ...]:
-    """What stands in square brackets, one formula for each dimension."""
+    """Return the formulas of an index in square brackets, one for each dimension."""
     return index.operands if isinstance(index, Operation) and index.name == INDICES else (index,)
 
 
 class FormulaError(Exception):
-    """What cannot be read. ``at`` is the index of the place in the text; ``str()`` a sentence about it."""
+    """A syntax error in a formula. ``at`` is the index in the text, and ``str()`` is the message."""
 
     def __init__(self, at: int, why: str, hint: str) -> None:
         super().__init__(why)
@@ -69,12 +72,12 @@ class FormulaError(Exception):
 
 @dataclass(frozen=True)
 class Grammar:
-    """How formulas of a language are written, all in capitals.
+    """Notation of formulas in a language, in capitals.
 
-    ``number`` and ``parameter`` match one operand (a parameter's groups are its letters and its number);
-    ``operators`` give precedence (higher binds closer) and name by how they are written; ``functions`` the
-    name, ``constants`` the value. ``separator`` stands between the operands of a function (empty: there is
-    one, without brackets).
+    ``number`` and ``parameter`` match one operand; the groups of a parameter are its letters and its number.
+    ``operators`` maps each operator to its precedence (higher binds tighter) and name, ``functions`` maps
+    functions to names, and ``constants`` maps constants to values. ``separator`` separates the operands of a
+    function. If it is empty, functions have one operand without parentheses.
     """
 
     number: re.Pattern[str]
@@ -84,7 +87,7 @@ class Grammar:
     constants: Mapping[str, float] = field(default_factory=dict)
     separator: str = ""
     negation: int = 50  # precedence of a sign before an operand
-    indexed: bool = False  # a parameter may have its number, a formula, in square brackets
+    indexed: bool = False  # the number of a parameter may be a formula in square brackets
     _sign: re.Pattern[str] = field(init=False, repr=False)
     _word: re.Pattern[str] = field(init=False, repr=False)
     _constant: re.Pattern[str] = field(init=False, repr=False)
@@ -95,23 +98,23 @@ class Grammar:
         object.__setattr__(self, "_constant", _any_of(self.constants))
 
     def operator(self, text: str, at: int) -> str | None:
-        """The operator that stands here."""
+        """Return the operator at this index, or None."""
         match = self._sign.match(text, at)
         return match.group() if match else None
 
     def function(self, text: str, at: int) -> str | None:
-        """The function that stands here."""
+        """Return the function at this index, or None."""
         match = self._word.match(text, at)
         return match.group() if match else None
 
     def constant(self, text: str, at: int) -> str | None:
-        """The constant that stands here."""
+        """Return the constant at this index, or None."""
         match = self._constant.match(text, at)
         return match.group() if match else None
 
 
 def _any_of(words: Mapping[str, object]) -> re.Pattern[str]:
-    """The longest that stands here; a word ends where its letters do."""
+    """Return a pattern for the longest of these words; no letter may follow a word."""
     if not words:
         return re.compile(r"(?!)")
     ordered = sorted(words, key=len, reverse=True)
@@ -122,7 +125,7 @@ def _any_of(words: Mapping[str, object]) -> re.Pattern[str]:
     )
 
 
-_APART = {"<": "(?!<)"}  # << joins texts
+_APART = {"<": "(?!<)"}  # << concatenates strings
 
 
 _CLOSEST = 1000
@@ -130,7 +133,10 @@ _DEEPEST = 40
 
 
 class FormulaReader(LineReader):
-    """Reads one formula from ``upper`` at ``at``; ``at`` then stands behind it."""
+    """Parser of one formula in ``upper``, which starts at ``at``.
+
+    After reading, ``at`` is the index that follows.
+    """
 
     def __init__(self, grammar: Grammar, upper: str, at: int) -> None:
         self.upper, self.at = upper, at
@@ -138,11 +144,11 @@ class FormulaReader(LineReader):
         self._depth = 0
 
     def formula(self) -> Formula:
-        """The formula. Raises FormulaError for what is missing or is none."""
+        """Read and return the formula. Raises FormulaError if it is incomplete or invalid."""
         return self._expression(0)
 
     def _expression(self, weakest: int) -> Formula:
-        """Operands and operators that bind at least as close as ``weakest``, from left to right."""
+        """Read operands and operators with a precedence of at least ``weakest``, from left to right."""
         self._depth += 1
         if self._depth > _DEEPEST:
             raise FormulaError(
@@ -175,7 +181,7 @@ class FormulaReader(LineReader):
         return self._word(at) or self._figure(at)
 
     def _word(self, at: int) -> Formula | None:
-        """A function with what it is asked of, or a constant."""
+        """Read a function with its operands, or a constant; return None for any other text."""
         grammar = self._grammar
         if word := grammar.function(self.upper, at):
             self.at += len(word)
@@ -186,7 +192,7 @@ class FormulaReader(LineReader):
         return None
 
     def _figure(self, at: int) -> Formula:
-        """A parameter or a number."""
+        """Read a parameter or a number."""
         grammar = self._grammar
         if match := grammar.parameter.match(self.upper, at):
             self.at = match.end()
@@ -200,9 +206,10 @@ class FormulaReader(LineReader):
         raise FormulaError(at, "A number or a parameter is missing in the formula", "Complete the formula.")
 
     def index(self) -> Formula:
-        """The index in the square bracket that opens here; several as an operation INDICES of them all.
+        """Read the index in square brackets at the current position.
 
-        Raises FormulaError.
+        Several indices are returned as one operation INDICES. Raises FormulaError if the bracket is
+        incomplete.
         """
         self.at += 1
         column, found = self.at, [self._expression(0)]
@@ -218,7 +225,10 @@ class FormulaReader(LineReader):
         return made
 
     def _asked_of(self) -> tuple[Formula, ...]:
-        """What a function is asked of: one operand, or a list in brackets where the language has that."""
+        """Read the operands of a function.
+
+        These are one operand, or a list in parentheses if the language has a separator.
+        """
         self.blanks()
         if not self._grammar.separator or not self._takes("("):
             return (self._expression(_CLOSEST),)

@@ -1,4 +1,4 @@
-"""What the readers of all languages share: a place in a line, blanks, comments, numbers, typed characters."""
+"""Helpers for the readers of all languages: position, blanks, comments and numbers."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ SIGNED = rf"[+-]?{UNSIGNED}"
 
 
 class LineReader:
-    """A place in a line, from which patterns are matched. ``upper`` is the line in capitals."""
+    """A position in a line at which patterns are matched. ``upper`` is the line in capitals."""
 
     def __init__(self, upper: str, at: int = 0) -> None:
         self.upper = upper
@@ -19,7 +19,7 @@ class LineReader:
 
     @property
     def done(self) -> bool:
-        """Return whether nothing but blanks follows."""
+        """Whether only blanks follow."""
         return not self.upper[self.at :].strip()
 
     def blanks(self) -> None:
@@ -28,7 +28,7 @@ class LineReader:
             self.at = after_blanks(self.upper, self.at)
 
     def take(self, pattern: re.Pattern[str]) -> re.Match[str] | None:
-        """Return what the pattern matches here, and move behind it; None without a match."""
+        """Return the match of the pattern at this position and move past it; None without a match."""
         match = pattern.match(self.upper, self.at)
         if match is not None:
             self.at = match.end()
@@ -36,7 +36,7 @@ class LineReader:
 
 
 def after_blanks(text: str, at: int) -> int:
-    """Return the index of the next character that is not a blank; the length of the text without one."""
+    """Return the index of the next character that is not a blank, or the length of the text."""
     end = len(text)
     while at < end and text[at].isspace():
         at += 1
@@ -44,9 +44,9 @@ def after_blanks(text: str, at: int) -> int:
 
 
 def comment_start(text: str) -> int:
-    """Return the index of the semicolon that begins the comment; the length of the text without a comment.
+    """Return the index of the semicolon that begins the comment, or the length of the text without a comment.
 
-    In a text in quotes, a semicolon does not begin a comment.
+    A semicolon in a quoted text does not begin a comment.
     """
     at = text.find(";")
     while at >= 0 and text.count('"', 0, at) % 2:
@@ -55,7 +55,7 @@ def comment_start(text: str) -> int:
 
 
 def after_signs(text: str, at: int, signs: int) -> int:
-    """Return the index behind this number of characters that are not blanks."""
+    """Return the index after this number of characters that are not blanks."""
     while signs and at < len(text):
         signs -= not text[at].isspace()
         at += 1
@@ -82,10 +82,13 @@ _SIGNS: dict[str, tuple[str, str]] = {
 
 
 def typed(sign: str) -> tuple[str, str] | None:
-    """What a character is, and what to type instead; None where it is none of these."""
+    """Return the description of a typographic character and the text to type instead.
+
+    Returns None for any other character.
+    """
     return _SIGNS.get(sign)
 
 
 def ascii_upper(text: str) -> str:
-    """In capitals, of the same length: ``ß`` and ``ı`` are nothing that could turn into words."""
+    """Return the text in capitals with the same length; non-ASCII characters such as ``ß`` are unchanged."""
     return text.upper() if text.isascii() else "".join(s.upper() if s.isascii() else s for s in text)

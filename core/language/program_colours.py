@@ -1,4 +1,4 @@
-"""One door to the colours of all languages."""
+"""Entry point for the syntax coloring of all languages."""
 
 from __future__ import annotations
 
@@ -7,9 +7,10 @@ from core.language.syntax_colours import PLAIN, Span
 
 
 def spans(dialect: Dialect, text: str, before: int = PLAIN) -> tuple[list[Span], int]:
-    """The coloured parts of a line, faults last so that they are seen, and the state for the next line.
+    """Return the colored spans of a line, with errors last, and the state for the next line.
 
-    ``before`` is what the line before handed on. A language is loaded when a text of it is shown.
+    ``before`` is the state that the previous line returned. The module of a language is imported on first
+    use.
     """
     if dialect is Dialect.KLARTEXT:
         from core.language.klartext import klartext_colours

@@ -1,4 +1,4 @@
-"""Program text as it was read: a name, its dialect, and lines counted from 1."""
+"""Program text: name, dialect, and lines that count from 1."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from core.message import CodedError, Message
 
 
 class Dialect(StrEnum):
-    """The words are those of the command line and of the JSON."""
+    """Language of a program. The values are those of the command line and of the JSON output."""
 
     OMNITURN = "omniturn"
     KLARTEXT = "klartext"
@@ -30,19 +30,19 @@ _USUAL_ENDINGS = {Dialect.OMNITURN: ".nc", Dialect.KLARTEXT: ".h", Dialect.SINUM
 
 
 def usual_ending(dialect: Dialect) -> str:
-    """What the name of a program of this dialect ends with where nobody says otherwise."""
+    """Return the default file extension of a dialect, such as ``.nc``."""
     return _USUAL_ENDINGS[dialect]
 
 
 def dialect_of(name: str) -> Dialect:
-    """The dialect that a file of this name holds where nobody says otherwise."""
+    """Return the default dialect of a file name, which depends on its extension."""
     return _BY_ENDING.get(PurePath(name).suffix.lower(), Dialect.OMNITURN)
 
 
-# Form feeds and Unicode's line separators end no line, or line numbers would differ from an editor's.
+# Form feeds and Unicode line separators do not end a line, so that line numbers match those of an editor.
 _LINE_END = re.compile(r"\r\n|\r|\n")
 _LONGEST_LINE = 8192
-_LONG = 4 * 1024 * 1024  # characters of a text whose lines are not kept
+_LONG = 4 * 1024 * 1024  # characters; the lines of longer texts are not stored
 LARGEST_FILE = 64 * 1024 * 1024
 _DOS_END_OF_FILE = "\x1a"
 _UTF_16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
@@ -50,9 +50,12 @@ _UTF_16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 
 @dataclass(frozen=True)
 class Source:
-    """Program text. ``name`` is what messages and the screen call it; ``said`` its dialect, where told.
+    """Program text.
 
-    ``subprograms`` are the files that it calls, read when it was: what was proved is what runs.
+    ``name`` is used in messages and on the screen; ``said`` is the specified dialect, or None.
+
+    ``subprograms`` are the called files, which are read together with the program, so that the executed text
+    is the proved text.
     """
 
     name: str
@@ -61,17 +64,17 @@ class Source:
     subprograms: tuple[Source, ...] = ()
 
     def __reduce__(self) -> tuple[object, ...]:
-        """Return how another process makes it: without the lines, which it splits itself."""
+        """Return the pickle data without the lines, which the other process splits again."""
         return Source, (self.name, self.text, self.said, self.subprograms)
 
     @property
     def dialect(self) -> Dialect:
-        """The language it is written in."""
+        """The language of the program."""
         return self.said or dialect_of(self.name)
 
     @cached_property
     def lines(self) -> Sequence[str]:
-        """The lines without their ends; a last empty line after the final newline does not count."""
+        """The lines without line ends; an empty line after the final line end does not count."""
         if len(self.text) >= _LONG and self.text.isascii() and "\r" not in self.text:
             from core.language.long_lines import LongLines  # noqa: PLC0415  with numpy
 
@@ -83,7 +86,7 @@ class Source:
 
 
 class SourceError(CodedError):
-    """A file holds no program text; ``str()`` is the sentence for the operator."""
+    """A file is not a readable program text; ``str()`` is the message for the operator."""
 
     def __init__(self, diagnostic: Diagnostic) -> None:
         super().__init__(diagnostic.message, diagnostic.code)
@@ -91,9 +94,9 @@ class SourceError(CodedError):
 
 
 def load_source(path: Path, said: Dialect | None = None) -> Source:
-    """Read a program file: UTF-8, or else one of the 8-bit codes of DOS and Windows.
+    """Read a program file in UTF-8 or in an 8-bit character set of DOS or Windows.
 
-    Raises SourceError where the file cannot be read or is no text.
+    Raises SourceError if the file cannot be read or is not text.
     """
     try:
         data = input_bytes(path, LARGEST_FILE)
@@ -110,7 +113,7 @@ def load_source(path: Path, said: Dialect | None = None) -> Source:
 
 
 def source_of(name: str, data: bytes, said: Dialect | None = None) -> Source:
-    """The program in these bytes, under this name. Raises SourceError where they are no text."""
+    """Return the source of these bytes with this name. Raises SourceError if the bytes are not text."""
     if len(data) > LARGEST_FILE:
         raise _too_large(name)
     return Source(name, _decoded(name, data), said)
@@ -142,13 +145,13 @@ def _characters(data: bytes) -> str:
     try:
         return data.decode("utf-8")
     except UnicodeDecodeError:
-        # Letters stand at 80…9F in DOS code page 437, where Latin-1 has only unprintable controls.
+        # In DOS code page 437, 80…9F are letters. In Latin-1, they are unprintable control characters.
         dos = any(0x80 <= byte <= 0x9F for byte in data)
         return data.decode("cp437" if dos else "latin-1")
 
 
 def _lines(text: str) -> list[str]:
-    """The lines without their ends; the last one is empty where the text ends with a line end."""
+    """Return the lines without line ends; the last line is empty if the text ends with a line end."""
     return _LINE_END.split(text) if "\r" in text else text.split("\n")
 
 
@@ -172,7 +175,7 @@ def _check_line_lengths(name: str, text: str) -> None:
 
 
 def _may_hold_long_line(text: str) -> bool:
-    """Whether a line may be too long: from line end to line end, in steps as far as one may reach."""
+    """Return whether a line may be too long, searching line ends at the maximum distance."""
     at = 0
     while len(text) - at > _LONGEST_LINE:
         end = text.rfind("\n", at, at + _LONGEST_LINE + 1)

@@ -1,4 +1,4 @@
-"""What the parts of a program line are, for whoever colours a text."""
+"""Kinds of line parts for syntax coloring."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ PLAIN = 0
 
 
 class Ink(StrEnum):
-    """What a part of a line is."""
+    """Kind of a part of a line, which determines its color."""
 
     NUMBER = "number"  # of the block
     CODE = "code"
@@ -23,7 +23,7 @@ class Ink(StrEnum):
 
 
 class Span(NamedTuple):
-    """Some signs of a line: the first one's index from 0, and how many."""
+    """A range of characters in a line, with its kind. ``start`` counts from 0."""
 
     start: int
     length: int

@@ -1,4 +1,4 @@
-"""The keys of axes in a machine file, [axis.…], with their ranges in the model's units."""
+"""Keys of the axis tables [axis.…] of a machine file, with their ranges in the model's units."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _THIRD_NAME: Any = file_key(
 
 
 class Slide:
-    """A linear axis."""
+    """Keys of a linear axis."""
 
     travel: Pair = file_key(
         Range(-5000.0, 5000.0, Unit.LENGTH),
@@ -81,7 +81,7 @@ class Slide:
 
 
 class Home:
-    """Homing of a linear axis."""
+    """Keys for homing of a linear axis."""
 
     order: int = file_key(
         Range(1, 9),
@@ -103,7 +103,7 @@ class Home:
 
 
 class RotaryHome:
-    """Homing of a rotary axis."""
+    """Keys for homing of a rotary axis."""
 
     order: int = Home.order
     speed: float = file_key(
@@ -123,7 +123,7 @@ class RotaryHome:
 
 
 class LatheC:
-    """The C axis of a lathe."""
+    """Keys of the C axis of a lathe."""
 
     enabled: bool = file_key(
         default=False, meaning="true: the machine has a C axis. `vmax` and `count` are then required."
@@ -186,7 +186,7 @@ class LatheC:
 
 
 class ThirdSlide:
-    """The third axis of a lathe where it is linear: mm where C has degrees."""
+    """Keys of a linear third axis of a lathe, in mm where C has degrees."""
 
     travel: Pair = Slide.travel
     vmax: float = Slide.vmax
@@ -220,7 +220,7 @@ class ThirdSlide:
 
 
 class RotaryAxis:
-    """A rotary axis of a mill."""
+    """Keys of a rotary axis of a mill."""
 
     travel: Pair = file_key(
         Range(-36000.0, 36000.0, Unit.DEGREES),

@@ -1,4 +1,4 @@
-"""[backup] and [dnc] of the machine file: daily backups, and the serial line for programs."""
+"""Tables [backup] and [dnc] of the machine file: daily backups, and the serial line for programs."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ KEPT = 14
 
 @key_table
 class DncModel:
-    """The serial line for programs."""
+    """Settings of the serial line over which programs are sent and received."""
 
     port: str = file_key(meaning="Serial port, such as `/dev/serial/by-id/…`.")
     baud: int = BAUD
@@ -63,7 +63,7 @@ DRIVER = Driver(
 
 @key_table
 class BackupTable:
-    """``folder`` on another disk or computer; empty: the data folder's own. The newest ``keep`` stay."""
+    """Folder and number of the daily backups."""
 
     folder: str = file_key(
         default="",

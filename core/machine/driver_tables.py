@@ -1,4 +1,4 @@
-"""Tables that drivers add to a machine file, and the pots: read, checked against the rest, and built."""
+"""Tables that drivers add to a machine file, and pots: reading, checks and construction of the model."""
 
 from __future__ import annotations
 
@@ -24,18 +24,18 @@ _AXES = "XYZABC"
 
 
 def tables_of(drivers: Sequence[Driver]) -> tuple[DriverTable, ...]:
-    """All tables, in the order of the drivers."""
+    """Return the tables of all drivers, in the order of the drivers."""
     return tuple(table for driver in drivers for table in driver.tables)
 
 
 def children_of(drivers: Sequence[Driver], path: str) -> tuple[str, ...]:
-    """Names of the tables that drivers have inside a table of the control's own."""
+    """Return the names of the tables that drivers add inside one of the control's own tables."""
     parted = (table.path.rpartition(".") for table in tables_of(drivers))
     return tuple(name for parent, _, name in parted if parent == path)
 
 
 class DriverReading:
-    """The tables of the drivers that a file has; ``findings`` is what is wrong inside them."""
+    """Reads the drivers' tables of a machine file; ``findings`` contains the errors in them."""
 
     def __init__(self, file: FileReading, drivers: Sequence[Driver]) -> None:
         self.file = file
@@ -49,7 +49,7 @@ class DriverReading:
         self.findings += _read_analog(file)
 
     def hardware(self, outputs: Sequence[str]) -> Hardware:
-        """Everything about wires in the model's units; only for files without a finding."""
+        """Return the hardware model in the model's units. The file must not have findings."""
         file, values = self.file, self.file.values
         refreshed = {name: values.number(f"io.out.{name}.refresh_ms") for name in outputs}
         return Hardware(
@@ -71,7 +71,7 @@ class DriverReading:
 
 
 def tables_there(data: Mapping[str, object], drivers: Sequence[Driver]) -> tuple[str, ...]:
-    """Paths of the drivers' tables that a file has, or that count as there without being written."""
+    """Return the paths of the drivers' tables that a file has, or that always exist."""
     return tuple(
         table.path for table in tables_of(drivers) if table.always or raw_at(data, table.path) is not None
     )
@@ -89,7 +89,7 @@ def _read_analog(file: FileReading) -> Iterator[Finding]:
 
 
 def broken(file: FileReading, drivers: Sequence[Driver]) -> Iterator[Finding]:
-    """Every finding about backend, spindle driver, ports and renewed outputs; then the drivers' own."""
+    """Yield findings about backend, spindle driver, ports, refreshed outputs and the driver tables."""
     yield from _backend(file, drivers)
     yield from _spindle(file, drivers)
     yield from _orients(file, drivers)
@@ -145,7 +145,7 @@ def _spindle(file: FileReading, drivers: Sequence[Driver]) -> Iterator[Finding]:
 
 
 def _orients(file: FileReading, drivers: Sequence[Driver]) -> Iterator[Finding]:
-    """Only where the spindle's driver can stop it at an angle, and where no C does that."""
+    """Check that an oriented spindle has a driver for it and is not the C axis."""
     values, path = file.values, "spindle.oriented"
     if not values.has(path, "spindle.driver") or not values.flag(path):
         return
@@ -169,7 +169,7 @@ def _orients(file: FileReading, drivers: Sequence[Driver]) -> Iterator[Finding]:
 
 
 def _count_rates(values: Values, drivers: Sequence[Driver]) -> Iterator[Finding]:
-    """Counts per second of an axis, which the backend must take."""
+    """Check the counts per second of each axis against the limit of the backend."""
     rates = {driver.backend: driver.count_rate for driver in drivers}
     for axis in _AXES:
         path, count = f"axis.{axis}.vmax", f"axis.{axis}.count"
@@ -218,7 +218,7 @@ def _guard(file: FileReading) -> Iterator[Finding]:
 
 
 def _ports(values: Values, drivers: Sequence[Driver]) -> Iterator[Finding]:
-    """A serial port has one owner."""
+    """Check that no serial port is used twice."""
     taken: dict[str, str] = {}
     for path in (table.port for table in tables_of(drivers) if table.port):
         if values.has(path):

@@ -1,4 +1,4 @@
-"""What the machine is wired to: pots, homing, tables of its drivers, signal tower and sounds."""
+"""Wiring of the machine: pots, homing, tables of the drivers, signal tower and sounds."""
 
 from __future__ import annotations
 
@@ -18,7 +18,10 @@ HALF = 0.5  # s that a blinking lamp is on, and off
 
 @key_table
 class AnalogModel:
-    """A pot or a counting wheel; ``range`` is what both ends mean, ``switch`` names its input."""
+    """A pot or a handwheel.
+
+    ``range`` gives the values at both ends of the signal. ``switch`` is the name of the input of its switch.
+    """
 
     name: str
     terminal: str = file_key(
@@ -46,47 +49,48 @@ class AnalogModel:
 
     @property
     def low(self) -> float:
-        """What the lower end means."""
+        """The value at the lower end of the signal."""
         return self.range[0]
 
     @property
     def high(self) -> float:
-        """What the upper end means."""
+        """The value at the upper end of the signal."""
         return self.range[1]
 
 
 @dataclass(frozen=True, slots=True)
 class HomeModel:
-    """How a real drive looks for home: CiA 402 method, the slow speed, and where home lies from the mark."""
+    """Homing of a real drive: CiA 402 method, slow speed, and position of home from the reference mark."""
 
-    method: int = 0  # 0: not said
+    method: int = 0  # 0: not specified
     latch: float = 0.0  # mm/s
     offset: float = 0.0  # mm
 
 
 @dataclass(frozen=True, slots=True)
 class Hardware:
-    """Everything about wires."""
+    """The wiring of the machine and the tables of its drivers."""
 
-    feeder: bool = False  # the drivers run in a process of their own
-    continues_alone: bool = False  # a cut goes on while the screen does not answer
+    feeder: bool = False  # the drivers run in a separate process
+    continues_alone: bool = False  # the cycle continues while the screen does not respond
     spindle_driver: str = "sim"  # sim, cia402, vfd or grblhal
-    tables: Mapping[str, object] = field(default_factory=dict)  # of the drivers, by path
+    tables: Mapping[str, object] = field(default_factory=dict)  # models of the driver tables, by path
     analog: Mapping[str, AnalogModel] = field(default_factory=dict)
-    homes: Mapping[str, HomeModel] = field(default_factory=dict)  # by axis
+    homes: Mapping[str, HomeModel] = field(default_factory=dict)  # homing models by axis
     refresh: Mapping[str, float] = field(
         default_factory=dict
-    )  # output → s after which it falls if not renewed
+    )  # output name → s after which the output switches off if it is not refreshed
 
     def table(self, kind: type[_Table]) -> _Table | None:
-        """What a driver has made of its table; None where the file has no such table."""
+        """Return the model of the driver table of this type, or None if the file has no such table."""
         return next((each for each in self.tables.values() if isinstance(each, kind)), None)
 
 
 class Signal(NamedTuple):
-    """``buzz``: s for which the buzzer sounds at its beginning, by turns where the lamp blinks.
+    """A machine signal with its lamp, buzzer and sounds.
 
-    ``tones``: what the desk plays, Hz, each a fifth of a second.
+    ``buzz`` is the time in seconds for which the buzzer sounds at the start, in step with a blinking lamp.
+    ``tones`` are the frequencies in Hz that the computer plays, 0.2 s each.
     """
 
     lamp: str

@@ -1,4 +1,4 @@
-"""Machine file to machine, with all errors in one pass; what differs between two of them."""
+"""Reading of a machine file with all its errors in one pass, and comparison of two machine files."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ from core.table_schema import Driver, FileReading, Finding, MachineFileError, jo
 
 _MOST_BYTES = 16 * 1024 * 1024
 _NONE = (-math.inf, math.inf)
-_ONE_TURN = (-360.0, 360.0)  # of a C that does not wrap, degrees
-# Keys of the file that are not called as the model's fields: they end in their unit, or are short.
+_ONE_TURN = (-360.0, 360.0)  # degrees, travel of a C axis that is not modulo
+# Keys of the file whose names differ from those of the model's fields.
 _AXIS_KEYS = {
     "following_window": "fe_window",
     "following_time": "fe_time_ms",
@@ -43,7 +43,7 @@ ABSENT = "—"
 
 
 def text_of(path: Path) -> str:
-    """The text of a machine file. Raises MachineFileError where it cannot be read at all."""
+    """Return the text of a machine file. Raises MachineFileError if it cannot be read."""
     try:
         return input_text(path, _MOST_BYTES)
     except OSError as error:
@@ -68,9 +68,9 @@ def text_of(path: Path) -> str:
 
 
 def parse_machine(text: str, source: str, drivers: Sequence[Driver]) -> Machine:
-    """The machine that the TOML ``text`` describes, with what these drivers add to it; ``source`` names it.
+    """Return the machine described by the TOML ``text`` and the given drivers; ``source`` is its file name.
 
-    Raises MachineFileError with everything that is wrong.
+    Raises MachineFileError with all findings if the text has errors.
     """
     try:
         data = toml_tables(text)
@@ -151,7 +151,7 @@ def _axis_names(reading: Reading) -> tuple[str, ...]:
 
 
 def _of_c(reading: Reading, key: str) -> bool:
-    """A flag of a lathe's C."""
+    """Return a flag of the C axis of a lathe; False for a mill."""
     return reading.kind == "lathe" and reading.values.flag(f"axis.C.{key}")
 
 
@@ -180,7 +180,7 @@ def _axis(reading: Reading, name: str) -> Axis:
 
 
 class Change(NamedTuple):
-    """One key: as it was, as it is; ``ABSENT`` where the file did not have it, or has it no more."""
+    """A changed key with its old and new value; ``ABSENT`` if the key is missing on that side."""
 
     path: str
     old: str
@@ -191,9 +191,9 @@ class Change(NamedTuple):
 
 
 def changes(old: str, new: str) -> tuple[Change, ...]:
-    """Every key whose value differs, in the order of the new file, then those that are gone.
+    """Return every key whose value differs, in the order of the new file, then the removed keys.
 
-    Raises ValueError for a text that is no TOML.
+    Raises ValueError if a text is not valid TOML.
     """
     before, after = dict(_leaves(toml_tables(old))), dict(_leaves(toml_tables(new)))
     places = [*after, *(place for place in before if place not in after)]
@@ -205,7 +205,7 @@ def changes(old: str, new: str) -> tuple[Change, ...]:
 
 
 def _differ(old: object, new: object) -> bool:
-    """1 and 1.0 are one number; true is none."""
+    """Return whether two values differ. 1 and 1.0 are equal, but true is not equal to 1."""
     return old != new or isinstance(old, bool) is not isinstance(new, bool)
 
 

@@ -1,4 +1,4 @@
-"""The machine as its file describes it: frozen, in mm, seconds, degrees; X a radius."""
+"""The machine as described by its file: immutable, in mm, seconds and degrees, with X as a radius."""
 
 from __future__ import annotations
 
@@ -10,44 +10,49 @@ from core.key_declaration import Pair, Range, Unit, file_key, key_table
 from core.machine.hardware_model import LAMPS, Hardware
 from core.machine.mill_kinematics import KinematicsModel
 
-_ROUNDING = 1e-6  # mm, degrees: the step of the control is coarser
+_ROUNDING = 1e-6  # mm or degrees; less than the resolution of the control
 
 
 @dataclass(frozen=True, slots=True)
 class Axis:
-    """One axis. Lengths mm and mm/s; for a rotary axis degrees and degrees/s."""
+    """One axis, in mm and mm/s, or in degrees and degrees/s for a rotary axis."""
 
     name: str
-    travel: tuple[float, float] | None  # from home; None: endless
+    travel: tuple[float, float] | None  # from home; None: no limits
     vmax: float
     amax: float
     count: float  # encoder and command step
     following_window: float
     following_time: float
     in_position: float
-    absolute: bool  # knows its position at power-up: no homing needed
+    absolute: bool  # the position is known at power-up, so no homing is needed
     home_order: int = 0
     home_speed: float = 0.0
     rotary: bool = False
-    fixed_points: tuple[float, ...] = ()  # from home, X a radius: where G75 goes; of a mill M92's zero
-    still_window: float = 0.2  # how far it may be off where it rests
-    still_time: float = 0.2  # s from the end of a motion until that counts, and for which it must be off
+    # positions from home, X as a radius: targets of G75, or the zero of M92 on a mill
+    fixed_points: tuple[float, ...] = ()
+    still_window: float = 0.2  # permitted position error at rest
+    # s after a motion before ``still_window`` applies, and s for which it must be exceeded
+    still_time: float = 0.2
 
     @property
     def reach(self) -> tuple[float, float]:
-        """The travel and a rounding more: a word on the limit itself must not fail by an inch in binary."""
+        """The travel plus a rounding margin, so that a word exactly at the limit is accepted."""
         low, high = self.travel or (-inf, inf)
         return low - _ROUNDING, high + _ROUNDING
 
     def following_limit(self, speed: float) -> float:
-        """How far it may be off its setpoint at a commanded speed: as at rest, and what a drive trails."""
+        """Return the permitted following error at a commanded speed.
+
+        The limit rises linearly from the standstill tolerance to ``following_window`` at ``vmax``.
+        """
         share = min(abs(speed) / self.vmax, 1.0)
         return self.still_window + (self.following_window - self.still_window) * share
 
 
 @key_table
 class SpindleModel:
-    """The main spindle, rpm, rpm/s and W."""
+    """The main spindle, in rpm, rpm/s and W."""
 
     _: KW_ONLY
     rpm: Pair = file_key(Range(1.0, 20000.0, Unit.RPM), meaning="Lowest and highest speed.")
@@ -112,18 +117,18 @@ class SpindleModel:
 
     @property
     def rpm_min(self) -> float:
-        """The lowest speed."""
+        """The lowest speed in rpm."""
         return self.rpm[0]
 
     @property
     def rpm_max(self) -> float:
-        """The highest speed; the only one of a spindle that is not ``controlled``."""
+        """The highest speed in rpm, and the only one of a spindle that is not ``controlled``."""
         return self.rpm[1]
 
 
 @key_table
 class OutputModel:
-    """One output."""
+    """An output with its terminal and its safe state."""
 
     name: str
     terminal: str = file_key(
@@ -147,13 +152,13 @@ class OutputModel:
 
     @property
     def safe(self) -> bool | None:
-        """What an E-stop makes of the output; None: the output keeps its state."""
+        """The state of the output after an E-stop; None if the output remains unchanged."""
         return None if self.stated_safe == "keep" else self.stated_safe is True
 
 
 @key_table
 class InputModel:
-    """One input: the names by which a program or interlock asks for it."""
+    """An input. Programs and interlocks use its name."""
 
     name: str
     terminal: str = file_key(
@@ -169,13 +174,13 @@ class InputModel:
 
     @property
     def active_low(self) -> bool:
-        """Whether the input is on when it has no voltage."""
+        """True if the input is on when it has no voltage."""
         return self.active == "low"
 
 
 @key_table
 class Timing:
-    """Times of the control itself, seconds."""
+    """Times of the control, in seconds."""
 
     commit: float = file_key(
         Range(0.001, 0.2, Unit.MILLISECONDS),
@@ -209,7 +214,7 @@ class Timing:
 
 @key_table
 class Interlocks:
-    """Omniturn section 10 and the two-hand start."""
+    """Interlocks of section 10 of the OmniTurn manual, and two-hand start."""
 
     spindle_with_collet_open: bool = file_key(
         default=False,
@@ -235,9 +240,10 @@ class Interlocks:
 
 @key_table
 class ClampingModel:
-    """Chuck or collet, mm and rpm; 0: not said. ``stick_out`` is from its front to part zero.
+    """Chuck or collet in mm and rpm, where 0 means not specified.
 
-    A tailstock has a quill; the tip of its centre, ``centre_point`` degrees, stands at Z ``centre_at``.
+    ``stick_out`` is measured from its front to part zero. A tailstock has a quill. The tip of its center,
+    with the included angle ``centre_point`` in degrees, is at Z ``centre_at``.
     """
 
     diameter: float = file_key(
@@ -283,7 +289,7 @@ class ClampingModel:
 
 @key_table
 class LimitsModel:
-    """Limits of all axes, mm and mm/s; the resolution of X is on the radius."""
+    """Limits that apply to all axes, in mm and mm/s. The resolution of X is a radius."""
 
     max_feed: float = file_key(
         Range(0.1, 1000.0, Unit.FEED),
@@ -319,7 +325,7 @@ class LimitsModel:
 
 @key_table
 class ColletModel:
-    """Times of the collet, seconds."""
+    """Times of the collet, in seconds."""
 
     _: KW_ONLY
     open_time: float = file_key(
@@ -340,7 +346,10 @@ class ColletModel:
 
 @dataclass(frozen=True, slots=True)
 class Machine:
-    """The whole machine. ``axes``: slides first, then rotary axes; on a lathe X, Z, C."""
+    """The complete machine.
+
+    ``axes`` contains the linear axes first, then the rotary axes. On a lathe the order is X, Z, C.
+    """
 
     name: str
     backend: str
@@ -356,51 +365,51 @@ class Machine:
     inputs: Mapping[str, InputModel]
     m_codes: Mapping[int, tuple[str, bool]]  # M code → output, state
     m_disabled: frozenset[int] = frozenset()  # defined with enabled = false
-    m_ignored: frozenset[int] = frozenset()  # of other machines: they do nothing on this one
-    absent: frozenset[str] = frozenset()  # outputs that it has not: a collet closed by hand
-    source: str = ""  # the file it came from
-    inch: bool = True  # what its builder counts in
+    m_ignored: frozenset[int] = frozenset()  # codes of other machines, which have no effect on this one
+    absent: frozenset[str] = frozenset()  # outputs that the machine does not have, such as a manual collet
+    source: str = ""  # name of the machine file
+    inch: bool = True  # units of the machine file
     clamping: ClampingModel = field(default_factory=ClampingModel)
-    tooling: str = "single"  # "gang": all tools ride one slide; "single": one at a time
-    silenced: tuple[str, ...] = ()  # checks of the part that count for nothing on this machine
+    tooling: str = "single"  # "gang": all tools are on one plate; "single": one tool at a time
+    silenced: tuple[str, ...] = ()  # checks of the part whose findings are only notes on this machine
     kind: str = "lathe"  # or "mill"
-    language: str = "omniturn"  # in which MDI is typed: omniturn, sinumerik or klartext
-    control: str = "840d"  # which SINUMERIK its programs were written for
-    third_axis: str = "C"  # what SINUMERIK programs, positions and keys call C
-    c_modulo: bool = True  # C counts 0..<360 where a language asks; else its travel is -360..+360
-    c_own_drive: bool = False  # C is no second use of the spindle
-    c_linear: bool = False  # the third axis is a slide: mm where C has degrees
-    hardware: Hardware = field(default_factory=Hardware)  # what it is wired to
-    kinematics: KinematicsModel | None = None  # of a mill with rotary axes
-    text: str = field(default="", compare=False, repr=False)  # the file as it was read
+    language: str = "omniturn"  # language of MDI: omniturn, sinumerik or klartext
+    control: str = "840d"  # SINUMERIK control for which the programs were written
+    third_axis: str = "C"  # name of C in SINUMERIK programs, on the position display and on keys
+    c_modulo: bool = True  # C counts from 0 to below 360 degrees; otherwise its travel is -360 to +360
+    c_own_drive: bool = False  # C has its own drive and is not the spindle
+    c_linear: bool = False  # the third axis is linear, in mm instead of degrees
+    hardware: Hardware = field(default_factory=Hardware)  # wiring of the machine
+    kinematics: KinematicsModel | None = None  # kinematics of a mill with rotary axes
+    text: str = field(default="", compare=False, repr=False)  # text of the machine file
 
     @property
     def live_output(self) -> str:
-        """The output that turns the live tool; empty without one."""
+        """The output that turns on the live tool, or an empty string."""
         return min((name for name in self.outputs if name.startswith("live")), default="")
 
     @property
     def spindle_is_c(self) -> bool:
-        """Whether C is a second use of the spindle, so that it cannot be positioned while that turns."""
+        """True if the spindle is also the C axis, so that C cannot move while the spindle turns."""
         return self.kind == "lathe" and not self.c_own_drive
 
     def shown(self, name: str) -> str:
-        """What the operator calls an axis: C of a lathe by the name that its builder has given it."""
+        """Return the name of an axis for the operator; C of a lathe may have another name."""
         return self.third_axis if self.kind == "lathe" and name == "C" else name
 
     @property
     def table_turns(self) -> bool:
-        """Whether a mill's rotary axes turn its table, all or some; False: they turn its head alone."""
+        """True if at least one rotary axis of a mill turns its table; False if all turn the head."""
         chain = self.kinematics.chain if self.kinematics is not None else ()
         return not chain or any(axis.table for axis in chain)
 
     @property
     def lamps(self) -> tuple[str, ...]:
-        """Its outputs that are lamps of the signal tower, which the control lights by itself."""
+        """The outputs that are lamps of the signal tower, which the control switches automatically."""
         return tuple(name for name in LAMPS if name in self.outputs)
 
     def axis(self, name: str) -> Axis:
-        """The axis of this name. Raises KeyError where the machine has none."""
+        """Return the axis with this name. Raises KeyError if the machine has no such axis."""
         for axis in self.axes:
             if axis.name == name:
                 return axis

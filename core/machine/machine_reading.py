@@ -1,7 +1,7 @@
-"""Reads a parsed machine file against the declared tables, and fills in what it leaves out.
+"""Reading of a parsed machine file by the declared tables, with defaults for missing values.
 
-Each default comes with the reason for its figure. A value without a safe default has none, and a file
-without it is refused. Units are the model's.
+The reason for each default is given at its rule. A file is rejected if it lacks a value that has no safe
+default. Units are those of the model.
 """
 
 from __future__ import annotations
@@ -16,21 +16,21 @@ from core.machine.machine_model import InputModel, OutputModel
 from core.message import Message
 from core.table_schema import Driver, Finding, Values, joined, missing, read_table, unknown_keys, written
 
-_NONE = "none"  # terminal of an output that this machine has not: a collet that is closed by hand
+_NONE = "none"  # terminal of an output that the machine does not have, such as a manual collet
 HAND_RAPID = 100 * 25.4 / 60  # mm/s: jog and manual rapid of an OmniTurn, 100 in/min
-_DRIVE = 40.0  # Hz, position loop of a slow servo drive; it lags 2 / (2 pi f) seconds behind its command
+_DRIVE = 40.0  # Hz, position loop of a slow servo drive, which lags its command by 2 / (2 pi f) s
 _LAG = 2.0 / (2.0 * math.pi * _DRIVE)
-_C_STARTS = 3.0  # 1/s: a third of a second to full speed, which a spindle drive without a C ramp can do
+_C_STARTS = 3.0  # 1/s; 1/3 s to full speed, which a spindle drive without a C ramp can do
 _C_SPEED, _C_COUNT = 200 * 6.0, 0.02  # degrees/s and degrees: the C option of a GT-75
-_STILL, _STILL_DEGREES = 0.2, 1.0  # mm, degrees: what an axis at rest may be off
-_CLOSES = 0.5  # s; collets of this class take 0.2 to 0.4, and the switch decides
+_STILL, _STILL_DEGREES = 0.2, 1.0  # mm and degrees, permitted position error at rest
+_CLOSES = 0.5  # s; such collets take 0.2 to 0.4 s, and the switch decides
 _SLIDES = ("X", "Y", "Z")
-Derived = float | None  # None: it cannot be told
+Derived = float | None  # None: cannot be derived
 TO_BE_SAID = frozenset(("collet.close_s", "axis.C.vmax", "axis.C.count"))
 
 
 class Reading:
-    """Values and findings of one file, and the names that its owner gave to signals and M codes."""
+    """Values and findings of one file, and the names of its signals and M codes."""
 
     def __init__(self, data: Mapping[str, object], drivers: Sequence[Driver]) -> None:
         self.data = data
@@ -38,7 +38,7 @@ class Reading:
         self.values = Values(_inch(data))
         self.kind = _kind(data)
         self.outputs: list[str] = []
-        self.absent: list[str] = []  # outputs of which the file says that there is none
+        self.absent: list[str] = []  # outputs that the machine does not have
         self.inputs: list[str] = []
         self.m_codes: list[str] = []
         self.findings = _unknown_tables(data, machine_tables.top_tables(drivers))
@@ -60,7 +60,7 @@ class Reading:
         self._language()
 
     def _language(self) -> None:
-        """In which language MDI is typed: the machine's kind decides which it may be."""
+        """Check the MDI language, whose permitted values depend on the kind of machine."""
         spoken = machine_tables.LANGUAGES[self.kind]
         said = self.values.found.get("machine.language") or spoken[0]
         self.values.found["machine.language"] = said
@@ -83,7 +83,7 @@ class Reading:
             self.findings += read_table(table, keys, path, self.values, children)
 
     def _parent(self, path: str, known: tuple[str, ...]) -> Mapping[str, object]:
-        """A table that holds tables; an empty one where it is none."""
+        """Return a table that contains tables, or an empty one if the entry is not a table."""
         table = self.data.get(path, {})
         if not isinstance(table, dict):
             self.findings.append(
@@ -104,7 +104,7 @@ class Reading:
         for name in machine_tables.SLIDES[self.kind]:
             self._homed(axes.get(name), f"axis.{name}", axis_tables.Slide, axis_tables.Home)
         if lathe:
-            third = axes.get("C", {})  # most have none: no table, no C
+            third = axes.get("C", {})  # most lathes have no C axis and no table for it
             linear = isinstance(third, dict) and third.get("linear") is True
             self._keys(third, "axis.C", axis_tables.ThirdSlide if linear else axis_tables.LatheC)
         for name in rotary:
@@ -112,7 +112,7 @@ class Reading:
                 self._homed(axes[name], f"axis.{name}", axis_tables.RotaryAxis, axis_tables.RotaryHome)
 
     def _homed(self, table: object, path: str, keys: Schema, home: Schema) -> None:
-        """The table of an axis, and in it how it is homed."""
+        """Read the table of an axis and its ``home`` table."""
         self._keys(table, path, keys, ("home",))
         if isinstance(table, dict) and "home" in table:
             self._keys(table["home"], f"{path}.home", home)
@@ -122,18 +122,18 @@ class Reading:
             self.findings.append(
                 Finding(f"[{path}]", "", "only a lathe can have this table; remove the table", "lathe-only")
             )
-        else:  # what the control asks of every machine stands still on this one
+        else:  # the control needs these values for every machine
             self._keys({}, path, machine_tables.TABLES_OF_A_LATHE[path])
 
     def _m_codes(self, table: object) -> list[str]:
-        """M codes that switch an output, and those of which the file says that they do nothing."""
+        """Read the M codes that switch an output and those that are ignored; return their names."""
         ignored, switching = _ignored(table)
         names = {*self._named(ignored, "m_codes", machine_tables.IgnoredMCode)}
         names |= {*self._named(switching, "m_codes", machine_tables.MCode)}
         return [name for name in table if name in names] if isinstance(table, dict) else []
 
     def _named(self, table: object, path: str, keys: Schema) -> list[str]:
-        """Reads tables under names of the owner's choice; returns those names."""
+        """Read tables with names chosen in the file; return the names."""
         if not isinstance(table, dict):
             self._keys(table, path, ())
             return []
@@ -143,14 +143,14 @@ class Reading:
 
 
 def _inch(data: Mapping[str, object]) -> bool | None:
-    """Whether the file counts in inches; None where it does not say so rightly: a finding elsewhere."""
+    """Return whether the file uses inches, or None if its unit is missing or invalid."""
     machine = data.get("machine")
     units = machine.get("units") if isinstance(machine, dict) else None
     return units == "inch" if units in ("inch", "mm") else None
 
 
 def _kind(data: Mapping[str, object]) -> str:
-    """Lathe or mill; where the file says neither rightly, which is a finding elsewhere, a lathe."""
+    """Return the kind of machine; "lathe" if it is missing or invalid."""
     machine = data.get("machine")
     kind = machine.get("kind") if isinstance(machine, dict) else None
     return kind if isinstance(kind, str) and kind in machine_tables.KINDS else "lathe"
@@ -177,7 +177,7 @@ def _unknown_tables(data: Mapping[str, object], top: Sequence[str]) -> list[Find
 
 
 def _ignored(table: object) -> tuple[dict[str, object], object]:
-    """Entries of M codes that do nothing, and the table without them."""
+    """Return the entries of ignored M codes, and the table without them."""
     if not isinstance(table, dict):
         return {}, table
     ignored: dict[str, object] = {}
@@ -188,7 +188,7 @@ def _ignored(table: object) -> tuple[dict[str, object], object]:
 
 
 def _absent(outputs: object) -> tuple[list[str], object]:
-    """Names of outputs that are said to be absent, and the table without them."""
+    """Return the names of outputs that the machine does not have, and the table without them."""
     if not isinstance(outputs, dict):
         return [], outputs
     absent = [name for name, entry in outputs.items() if isinstance(entry, dict) and entry.get("at") == _NONE]
@@ -196,9 +196,9 @@ def _absent(outputs: object) -> tuple[list[str], object]:
 
 
 def fill(reading: Reading) -> Iterator[Finding]:
-    """Puts in what was left out; a finding for each value that this machine has to say itself.
+    """Fill in the missing values; yield a finding for each value that has no default.
 
-    What cannot be told because the value it comes from is wrong has its finding there.
+    A default that depends on an invalid value gives no second finding.
     """
     values = reading.values
     for place, field in values.left_out.items():
@@ -221,7 +221,7 @@ def _of_slides(values: Values, key: str) -> list[float]:
 
 
 def _slowest(reading: Reading, _place: str) -> Derived:
-    """A feed goes in every direction: no faster than the slowest slide."""
+    """Return the speed of the slowest linear axis, because a feed may be in any direction."""
     return min(_of_slides(reading.values, "vmax"), default=None)
 
 
@@ -230,36 +230,42 @@ def _by_hand(reading: Reading, _place: str) -> Derived:
 
 
 def _coarsest(reading: Reading, _place: str) -> Derived:
-    """A programmed step must be a count on every slide."""
+    """Return the largest count, because a programmed step must be at least one count on every axis."""
     return max(_of_slides(reading.values, "count"), default=None)
 
 
 def _brakes(reading: Reading, _place: str) -> Derived:
-    """As hard as it accelerates: most brake harder, and a time that is too long only waits."""
+    """Return the acceleration of the spindle.
+
+    Most spindles brake faster, and too long a time only adds a wait.
+    """
     return _number(reading.values, "spindle.accel_rpm_s")
 
 
 def _closes(reading: Reading, _place: str) -> Derived:
-    """Only where a switch says that it is closed; else its time is all that holds the spindle back."""
+    """Return 0.5 s if a switch confirms a closed collet; otherwise the file must specify the time."""
     return _CLOSES if "collet_closed" in reading.inputs or reading.kind != "lathe" else None
 
 
 def _neighbour(values: Values, place: str) -> Derived:
-    """The same key of the first slide that says it: slides of one machine have drives of one kind."""
+    """Return the same key of the first linear axis that has it, because axes usually have equal drives."""
     _, name, key = place.split(".")
     said = [f"axis.{other}.{key}" for other in _SLIDES if name in _SLIDES]
     return next((values.number(p) for p in said if values.has(p) and p not in values.left_out), None)
 
 
 def _window(reading: Reading, place: str) -> Derived:
-    """The neighbour's, else twice what a slow drive lags at full speed."""
+    """Return the value of another axis, or twice the lag of a slow drive at full speed."""
     values = reading.values
     vmax = _number(values, place.replace("fe_window", "vmax"))
     return _neighbour(values, place) or (2.0 * _LAG * vmax if vmax else None)
 
 
 def _arrived(reading: Reading, place: str) -> Derived:
-    """The neighbour's, else four counts: a drive that stands moves by one or two; five of a coarse C."""
+    """Return the value of another axis, or four counts, because a drive at rest moves by one or two.
+
+    For a coarse C, five counts are used.
+    """
     values = reading.values
     count = _number(values, place.replace("in_pos", "count"))
     counts = 4.0 if place.split(".")[1] in _SLIDES else 5.0
@@ -267,9 +273,9 @@ def _arrived(reading: Reading, place: str) -> Derived:
 
 
 def _stands(reading: Reading, place: str) -> Derived:
-    """The neighbour's; else .2 mm, by which no cutting force moves a slide that is held, or a degree.
+    """Return the value of another axis, or 0.2 mm (1 degree), which cutting forces do not exceed.
 
-    But no less than it needs to be in position, and no more than its fault window.
+    The result is at least four in-position windows and at most the following error window.
     """
     values = reading.values
     window = _number(values, place.replace("still_window", "fe_window"))
@@ -289,7 +295,7 @@ def _c_count(reading: Reading, _place: str) -> Derived:
 
 
 def _c_starts(reading: Reading, _place: str) -> Derived:
-    """In a third of a second, and no harder than the spindle, which it is."""
+    """Return an acceleration to full speed in 1/3 s, limited by that of the spindle, which is C."""
     values = reading.values
     spindle, vmax = _number(values, "spindle.accel_rpm_s"), _number(values, "axis.C.vmax")
     return min(6.0 * spindle, _C_STARTS * vmax) if spindle and vmax else None

@@ -1,4 +1,4 @@
-"""What must hold between the values of a machine file: rules, each checked where its values are good."""
+"""Rules between the values of a machine file, each checked if its values are valid."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from core.table_schema import Finding, Values
 
 
 class Rule(NamedTuple):
-    """``wrong`` answers what was expected at ``path``, or nothing; it runs when ``needs`` are all there."""
+    """A rule. ``wrong`` returns the error at ``path``, or an empty string, if all ``needs`` are present."""
 
     path: str
     needs: tuple[str, ...]
@@ -21,14 +21,14 @@ class Rule(NamedTuple):
 
 
 def broken(values: Values) -> Iterator[Finding]:
-    """A finding for every rule that the good values break."""
+    """Yield a finding for every rule that the valid values break."""
     for rule in RULES:
         if values.has(rule.path, *rule.needs) and (expected := rule.wrong(values)):
             yield Finding(rule.path, "", expected, "broken-rule")
 
 
 def _below(path: str, limit: str, why: str, unit: Unit) -> Rule:
-    """``path`` may not be over ``limit``."""
+    """Return the rule that ``path`` must not exceed ``limit``."""
 
     def wrong(values: Values) -> str:
         value, bound = values.number(path), values.number(limit)
@@ -85,7 +85,7 @@ def _fixed_points(axis: str) -> Rule:
 
 
 def _jog_run_on(axis: str) -> Rule:
-    """A key held by nobody: lease · vmax + vmax² / 2a is how far the slide still goes."""
+    """Return the rule for the distance lease · vmax + vmax² / 2a that an axis travels after a lost jog."""
     vmax, amax = f"axis.{axis}.vmax", f"axis.{axis}.amax"
 
     def wrong(values: Values) -> str:
@@ -108,7 +108,7 @@ def _jog_run_on(axis: str) -> Rule:
 
 
 def _corner_tolerance(axis: str) -> Rule:
-    """Joints are moved by a count on each slide whatever is said: a smaller tolerance would be exceeded."""
+    """Return the rule that the tolerance is at least the one count by which joints always move."""
     path, count = "limits.corner_tolerance", f"axis.{axis}.count"
 
     def wrong(values: Values) -> str:
@@ -145,7 +145,7 @@ def _homing(axis: str) -> Rule:
 
 
 def _home_orders() -> tuple[Rule, ...]:
-    """Axes home one after the other."""
+    """Return the rules that no two axes home at the same time."""
 
     def rule(one: str, other: str) -> Rule:
         def wrong(values: Values) -> str:
@@ -217,7 +217,7 @@ def _slide(axis: str) -> tuple[Rule, ...]:
 
 
 def _windows(axis: str, unit: Unit) -> tuple[Rule, ...]:
-    """Each holds the next: a count, in position, what the axis may be off at rest and in motion."""
+    """Return the rules that count, in-position, standstill and following error windows increase in order."""
     count, arrived, still, window = (
         f"axis.{axis}.{key}" for key in ("count", "in_pos", "still_window", "fe_window")
     )
@@ -252,7 +252,7 @@ _QUEUE = "the setpoint queue would run empty"
 
 
 def _indexes(values: Values) -> str:
-    """A turret would have to be indexed with every T; no driver does, and T2 would cut with another tool."""
+    """Reject a turret, because no driver indexes it and T2 would cut with another tool."""
     if values.text("tooling.kind") != "turret":
         return ""
     return (

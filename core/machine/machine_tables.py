@@ -1,4 +1,4 @@
-"""The keys of the control's own tables in a machine file; ranges are in the model's units: mm, s, degrees."""
+"""Keys of the control's own tables in a machine file, with ranges in the model's units: mm, s, degrees."""
 
 from __future__ import annotations
 
@@ -20,11 +20,12 @@ from core.table_schema import Driver
 KINDS = ("lathe", "mill")
 LANGUAGES = {"lathe": ("omniturn", "sinumerik"), "mill": ("klartext",)}  # the first one is the default
 SLIDES = {"lathe": ("X", "Z"), "mill": ("X", "Y", "Z")}
-ROTARY = {"lathe": (), "mill": ("A", "B", "C")}  # those a machine may have; a lathe's C is its spindle
+# rotary axes that a machine may have; C of a lathe is its spindle
+ROTARY = {"lathe": (), "mill": ("A", "B", "C")}
 
 
 class General:
-    """[machine] without its times."""
+    """Keys of [machine], without its times."""
 
     name: str = file_key(meaning="Name of the machine, shown on the screen and in reports.")
     units: str = file_key(
@@ -74,7 +75,7 @@ class General:
 
 
 class COption:
-    """[c_axis] of a lathe."""
+    """Keys of [c_axis] of a lathe."""
 
     feedback: bool = file_key(
         default=False,
@@ -84,7 +85,7 @@ class COption:
 
 
 class Tooling:
-    """[tooling]."""
+    """Keys of [tooling]."""
 
     kind: str = file_key(
         default="single",
@@ -95,7 +96,7 @@ class Tooling:
 
 
 class Checks:
-    """[checks]."""
+    """Keys of [checks]."""
 
     silenced: Words = file_key(
         default="",
@@ -105,7 +106,7 @@ class Checks:
 
 
 class MCode:
-    """An M code that switches an output, [m_codes.…]."""
+    """Keys of an M code that switches an output, [m_codes.…]."""
 
     output: str = file_key(meaning="Name of the output in [io.out] that the code switches.")
     on: bool = file_key(meaning="State to which the code switches the output.")
@@ -115,7 +116,7 @@ class MCode:
 
 
 class IgnoredMCode:
-    """An M code of another machine, which does nothing on this one."""
+    """Keys of an M code of another machine that has no effect on this one."""
 
     ignored: str = file_key(
         choices=(True,),
@@ -125,7 +126,7 @@ class IgnoredMCode:
 
 
 class _SpindleDriver:
-    """The key of [spindle] that the drivers extend."""
+    """The key of [spindle] whose choices come from the drivers."""
 
     driver: str = file_key(
         default="sim",
@@ -136,21 +137,22 @@ class _SpindleDriver:
 
 
 def _offered(keys: tuple[Field, ...], key: str, words: Iterable[str]) -> tuple[Field, ...]:
-    """The keys, one of which has the choices that the drivers offer."""
+    """Return the keys, one of them with the choices that the drivers provide."""
     choices = tuple(word for word in words if word)
     return tuple(replace(each, choices=choices) if each.key == key else each for each in keys)
 
 
 def machine_fields(drivers: Sequence[Driver]) -> tuple[Field, ...]:
-    """[machine]: which backends there are is the drivers' word."""
+    """Return the keys of [machine] with the backends of the drivers."""
     keys = (*keys_of(General), *keys_of(Timing))
     return _offered(keys, "backend", (driver.backend for driver in drivers))
 
 
 def plain_tables(drivers: Sequence[Driver]) -> tuple[tuple[str, Schema], ...]:
-    """Path and keys; axis, io and m_codes hold tables, some under names of the owner's choice.
+    """Return paths and keys of the tables that contain no other tables.
 
-    What turns the spindle is the drivers' word.
+    The tables axis, io and m_codes contain tables, some with names chosen in the file. The spindle drivers
+    come from the drivers.
     """
     spindle = (*keys_of(SpindleModel), *keys_of(_SpindleDriver))
     return (
@@ -166,7 +168,7 @@ def plain_tables(drivers: Sequence[Driver]) -> tuple[tuple[str, Schema], ...]:
 
 
 def top_tables(drivers: Sequence[Driver]) -> tuple[str, ...]:
-    """Every table that a file may have, in the order in which its owner is told of them."""
+    """Return the names of all tables that a file may have, in the order of the documentation."""
     own = [table for table in tables_of(drivers) if "." not in table.path]
     return (
         *(
@@ -190,17 +192,17 @@ def top_tables(drivers: Sequence[Driver]) -> tuple[str, ...]:
 
 
 class _NoCollet:
-    """[collet] of a mill."""
+    """Keys of [collet] of a mill."""
 
     open_s: float = file_key(Range(0.0, 10.0, Unit.SECONDS), default=0.0, meaning="A mill has no collet.")
     close_s: float = file_key(Range(0.0, 10.0, Unit.SECONDS), default=0.0, meaning="A mill has no collet.")
 
 
-# A mill has none of these; its model holds what stands here.
+# A mill does not have these tables, and its model contains these defaults.
 TABLES_OF_A_LATHE: dict[str, type] = {"c_axis": COption, "collet": _NoCollet}
 MAY_BE_MISSING = ("limits", "collet", "clamping", "tooling", "checks", "c_axis", "interlocks", "m_codes")
 
-# M codes with a meaning of their own in the machine's language; the machine file cannot assign them.
+# M codes with a fixed meaning in the machine's language, which the machine file cannot assign.
 FIXED_M_CODES = {
     "omniturn": frozenset((0, 1, 2, 3, 4, 5, 8, 9, 12, 13, 19, 30, 31, 89, *range(91, 100))),
     "sinumerik": frozenset((0, 1, 2, 3, 4, 5, 7, 8, 9, 17, 19, 30, 70, 98, 99)),

@@ -1,4 +1,4 @@
-"""[kinematics] of a mill: where its rotary axes lie, in which order, and where the workpiece stands."""
+"""Table [kinematics] of a mill: positions and order of its rotary axes, and position of the workpiece."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _ALONG = {"A": "X", "B": "Y", "C": "Z"}
 
 @key_table
 class RotaryModel:
-    """One rotary axis with all of them at 0."""
+    """One rotary axis, described with all rotary axes at 0."""
 
     name: str
     side: str = file_key(choices=("table", "head"), meaning="Whether the axis turns the table or the head.")
@@ -47,18 +47,21 @@ class RotaryModel:
 
     @property
     def table(self) -> bool:
-        """Whether the axis turns the table, not the head."""
+        """True if the axis turns the table instead of the head."""
         return self.side == "table"
 
     @property
     def unit_vector(self) -> Triple:
-        """The direction of the axis of rotation."""
+        """The direction of the axis of rotation, as a unit vector."""
         return _DIRECTIONS[self.direction]
 
 
 @key_table
 class KinematicsModel:
-    """The workpiece, mm and degrees. ``chain`` goes from the workpiece to the tool."""
+    """Position of the workpiece in mm and degrees, and the rotary axes.
+
+    ``chain`` is the order of the axes from the workpiece to the tool.
+    """
 
     origin: Triple = file_key(
         Range(-5000.0, 5000.0, Unit.LENGTH),
@@ -73,7 +76,7 @@ class KinematicsModel:
 
 
 class KinematicsReading:
-    """Reads the table where a file has one; ``findings`` is what is wrong with it."""
+    """Reads [kinematics] if the file has it; ``findings`` contains the errors in the table."""
 
     def __init__(self, data: Mapping[str, object], values: Values, kind: str, rotary: Sequence[str]) -> None:
         self._values = values
@@ -84,7 +87,7 @@ class KinematicsReading:
             self._read(data[TABLE], kind, rotary)
 
     def model(self) -> KinematicsModel | None:
-        """What the table says, once nothing is wrong with it."""
+        """Return the model of the table, or None without a table. There must be no findings."""
         if not self._there:
             return None
         chain = (self._values.model(RotaryModel, f"{TABLE}.{name}", name=name) for name in self._names)
@@ -123,7 +126,7 @@ class KinematicsReading:
         self.findings += [*self._broken()]
 
     def _broken(self) -> Iterator[Finding]:
-        """Rules between the axes; each is looked at where its values are good."""
+        """Yield findings about rules between the axes, each checked if its values are valid."""
         values = self._values
         if len(self._names) > MOST_ROTARIES:
             yield Finding(

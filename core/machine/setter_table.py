@@ -1,4 +1,4 @@
-"""[setter] of the machine file: a tool setter, or a probe that stands still, where tools are touched off."""
+"""Table [setter] of the machine file: a fixed tool setter or probe for touching off tools."""
 
 from __future__ import annotations
 
@@ -9,16 +9,17 @@ from core.message import Message
 from core.table_schema import Driver, DriverTable, FileReading, Finding
 
 PROBE_INPUT = "io.in.probe"
-SEES = 0.1  # s that may go by from the touch to the command to brake
+SEES = 0.1  # s, longest time from the touch to the command to brake
 
 
 @key_table
 class SetterModel:
-    """Where its stylus stands and how it is touched; mm and mm/s, X a radius.
+    """Position of the stylus of a tool setter, and the motion of a touch-off.
 
-    ``x z`` is the middle of the stylus from part zero on the spindle's axis, ``width`` its size across, so
-    that its faces lie half of that beside. ``overtravel`` is how far it may be pushed. A tool looks for it at
-    ``speed`` within ``search``, goes ``back_off`` from it and touches it at ``slow``.
+    Units are mm and mm/s, with X as a radius. ``x z`` is the middle of the stylus, measured from part zero
+    and the spindle axis. ``width`` is its size, with the faces at half this distance from the middle.
+    ``overtravel`` is the distance by which it may be pushed. The tool searches at ``speed`` within
+    ``search``, retracts by ``back_off``, and touches again at ``slow``.
     """
 
     x: float = file_key(
@@ -55,7 +56,7 @@ class SetterModel:
     )
 
     def face(self, axis: str, sign: int) -> float:
-        """Where a tip is that touches it going this way, mm from part zero."""
+        """Return the tip position at which it touches the stylus in this direction, in mm from part zero."""
         middle = self.x if axis == "X" else self.z
         return middle - sign * self.width / 2.0
 
@@ -99,7 +100,10 @@ def _rules(file: FileReading) -> Iterator[Finding]:
 
 
 def runs_on(speed: float, accel: float, commit: float) -> float:
-    """How far a slide goes at most from touch to rest: until it is seen, what is committed, the braking."""
+    """Return the largest distance from the touch to rest.
+
+    It consists of the detection delay, the commit time and the braking distance.
+    """
     return speed * (SEES + commit) + speed * speed / (2.0 * accel)
 
 

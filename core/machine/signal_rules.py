@@ -1,4 +1,4 @@
-"""What must hold between outputs, inputs, interlocks, M codes and terminals of a machine file."""
+"""Rules for outputs, inputs, interlocks, M codes and terminals of a machine file."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ NEEDED_OUTPUTS = {
 ESTOP = "estop"
 _NUMBERS = frozenset(str(number) for number in range(1000))
 STATION_SWITCH = "spindle_auto"  # the AUTO/OFF switch of an operator station
-_BUTTONS = ("start", "hold")  # a machine that has neither is operated by the station on the screen
+_BUTTONS = ("start", "hold")  # a machine without these inputs uses the station on the screen
 _TOPS = {"feed_pot": 1.5, "spindle_pot": 1.0}
 
 
 def broken(reading: Reading) -> Iterator[Finding]:
-    """Every finding about signals."""
+    """Yield all findings about signals."""
     yield from _needed(reading)
     yield from _m_codes(reading)
     yield from _never_off(reading)
@@ -34,7 +34,7 @@ def broken(reading: Reading) -> Iterator[Finding]:
 
 
 def terminals(reading: Reading) -> dict[str, str]:
-    """The terminal of each signal, by the signal's path."""
+    """Return the terminal of each signal by the path of the signal."""
     paths = [f"io.out.{name}" for name in reading.outputs] + [f"io.in.{name}" for name in reading.inputs]
     values = reading.values
     return {path: values.text(f"{path}.at") for path in paths if values.has(f"{path}.at")}
@@ -99,13 +99,13 @@ def _m_codes(reading: Reading) -> Iterator[Finding]:
 
 
 def _language(reading: Reading) -> str:
-    """The language of MDI; that of its kind where the file names none rightly, which is told elsewhere."""
+    """Return the MDI language, or the default of the machine's kind if it is invalid."""
     said = str(reading.values.found.get("machine.language"))
     return said if said in FIXED_M_CODES else LANGUAGES[reading.kind][0]
 
 
 def ignored_codes(reading: Reading) -> Iterator[int]:
-    """M codes of which the file says that they do nothing on this machine."""
+    """Yield the M codes that have no effect on this machine."""
     for code in reading.m_codes:
         keys = f"m_codes.{code}.ignored", f"m_codes.{code}.enabled"
         if code in _NUMBERS and reading.values.has(*keys) and all(map(reading.values.flag, keys)):
@@ -113,7 +113,7 @@ def ignored_codes(reading: Reading) -> Iterator[int]:
 
 
 def enabled_codes(reading: Reading) -> Iterator[tuple[int, str, bool]]:
-    """M code, output and state of every code that is whole and enabled."""
+    """Yield number, output and state of every complete and enabled M code."""
     values = reading.values
     for code in reading.m_codes:
         path = f"m_codes.{code}"
@@ -123,7 +123,7 @@ def enabled_codes(reading: Reading) -> Iterator[tuple[int, str, bool]]:
 
 
 def disabled_codes(reading: Reading) -> Iterator[int]:
-    """M codes that are defined and not enabled."""
+    """Yield the M codes that are defined but not enabled."""
     values = reading.values
     for code in reading.m_codes:
         path = f"m_codes.{code}.enabled"
@@ -132,9 +132,9 @@ def disabled_codes(reading: Reading) -> Iterator[int]:
 
 
 def _never_off(reading: Reading) -> Iterator[Finding]:
-    """An output that some code switches on must have one that switches it off; M12 closes the collet."""
+    """Yield findings for outputs that an M code turns on but no code turns off; M12 handles the collet."""
     if any(path.startswith("m_codes.") for path in reading.values.wrong):
-        return  # it may be the one that is wrong
+        return  # the invalid entry may be the missing code
     codes = list(enabled_codes(reading))
     off = {output for _, output, on in codes if not on} | set(NEEDED_OUTPUTS)
     for code, output, on in codes:
@@ -148,7 +148,10 @@ def _never_off(reading: Reading) -> Iterator[Finding]:
 
 
 def _lamps(reading: Reading) -> Iterator[Finding]:
-    """Lamps are the control's own; a dead control must leave none that says that all is well."""
+    """Yield findings about lamps, which the control switches automatically.
+
+    A lamp must not indicate normal operation when the control has failed.
+    """
     for name in (each for each in reading.outputs if each.startswith(PREFIX)):
         path = f"io.out.{name}"
         if name not in LAMPS:
@@ -184,7 +187,7 @@ def _lamps(reading: Reading) -> Iterator[Finding]:
 
 
 def shared(file: FileReading, drivers: Sequence[Driver]) -> Iterator[Finding]:
-    """A finding for every signal or pot on a terminal that is taken, however it is written."""
+    """Yield a finding for every signal or pot on a terminal that is already used, in any spelling."""
     taken: dict[object, str] = {}
     places = {f"{path}.at": terminal for path, terminal in file.terminals.items()}
     places |= {f"{path}.at": terminal for path, terminal in file.pots().items()}
@@ -197,7 +200,7 @@ def shared(file: FileReading, drivers: Sequence[Driver]) -> Iterator[Finding]:
 
 
 def pots(file: FileReading, drivers: Sequence[Driver]) -> Iterator[Finding]:
-    """A finding for every pot whose range or whose switch cannot be."""
+    """Yield a finding for every pot with an invalid range or switch."""
     values = file.values
     there = (*file.terminals, *(path.removesuffix(".at") for path in values.wrong))
     inputs = {path.removeprefix("io.in.") for path in there if path.startswith("io.in.")}
@@ -222,7 +225,7 @@ def pots(file: FileReading, drivers: Sequence[Driver]) -> Iterator[Finding]:
 def absent_devices(file: FileReading) -> Iterator[Finding]:
     """Yield a finding for each signal at a device that this TurnDesk cannot read.
 
-    Without this rule, a stop button on the pendant would be an input that is never on.
+    Without this rule, a stop button on the pendant would be an input that never turns on.
     """
     analog = {f"io.analog.{name}": f"io.analog.{name}.at" for name in file.names("io.analog")}
     pots = {path: file.values.text(at) for path, at in analog.items() if file.values.has(at)}
@@ -240,14 +243,14 @@ def _backend(values: Values, drivers: Sequence[Driver]) -> Driver | None:
 
 
 def _on_the_screen(switch: str, values: Values, drivers: Sequence[Driver], inputs: Collection[str]) -> bool:
-    """A machine without a wired station has this switch among the buttons on the screen."""
+    """Return whether the switch is a button on the screen because no operator station is wired."""
     backend = _backend(values, drivers)
     wired = backend is not None and backend.inputs is not None
     return switch == STATION_SWITCH and not (wired and any(name in inputs for name in _BUTTONS))
 
 
 def _line_to_add(file: FileReading, drivers: Sequence[Driver], switch: str) -> str:
-    """Without its input a switch would stand on AUTO for ever; what to write is said to the letter."""
+    """Return the message with the line to add. Without its input, the switch would always be on AUTO."""
     backend = _backend(file.values, drivers)
     terminal = _free_input(file, drivers, backend) if backend is not None else "IN-…"
     key = switch if switch.replace("_", "").isalnum() else written(switch)
@@ -267,7 +270,7 @@ def _free_input(file: FileReading, drivers: Sequence[Driver], backend: Driver) -
 
 
 def _same(file: FileReading, drivers: Sequence[Driver], terminal: str) -> object:
-    """Equal for two ways to write one terminal."""
+    """Return a value that is equal for two spellings of the same terminal."""
     for driver in drivers:
         found = driver.terminal(file, terminal) if driver.terminal is not None else None
         if found is not None:

@@ -1,4 +1,4 @@
-"""What must hold between a handwheel and the switches beside it; palm buttons are refused."""
+"""Rules for a handwheel and its switches, and for jog buttons. Wired palm buttons are rejected."""
 
 from __future__ import annotations
 
@@ -9,24 +9,24 @@ from core.message import Message
 from core.table_schema import FileReading, Finding, written
 
 WHEEL = "handwheel"
-ENABLE = "wheel_enable"  # held down while the wheel may move anything
+ENABLE = "wheel_enable"  # pressed while the handwheel may move an axis
 FACTORS = {"wheel_x1": 1, "wheel_x10": 10, "wheel_x100": 100}  # times the smallest step
 AXIS_BUTTON, STEP_BUTTON = "wheel_axis", "wheel_step"  # each press selects the next axis, the next step
-JOG_RAPID = "jog_rapid"  # held beside a jog button
+JOG_RAPID = "jog_rapid"  # pressed together with a jog button
 
 
 def selector(axis: str) -> str:
-    """The input that is on while the station's switch selects an axis."""
+    """Return the name of the input that is on while the axis selector switch is at this axis."""
     return f"wheel_{axis.lower()}"
 
 
 def jog_button(axis: str, sign: int) -> str:
-    """The input that is on while a button beside the slides is held, which jogs an axis this way."""
+    """Return the name of the input of the machine's jog button for this axis and direction."""
     return f"jog_{axis.lower()}_{'plus' if sign > 0 else 'minus'}"
 
 
 def wrong_jog(file: FileReading) -> Iterator[Finding]:
-    """A finding for every jog button of an axis that is not there."""
+    """Yield a finding for every jog button whose axis does not exist."""
     known = [JOG_RAPID, *(jog_button(axis, sign) for axis in file.axes for sign in (1, -1))]
     for name in file.names("io.in"):
         if name.startswith("jog_") and name not in known:
@@ -39,7 +39,7 @@ def wrong_jog(file: FileReading) -> Iterator[Finding]:
 
 
 def wrong_wheel(file: FileReading) -> Iterator[Finding]:
-    """A finding for every count and every switch that is no handwheel's."""
+    """Yield a finding for every invalid count and every switch that is not a handwheel switch."""
     values, analog = file.values, file.names("io.analog")
     for name in analog:
         path = f"io.analog.{name}.counts_per_click"
@@ -86,7 +86,7 @@ def wrong_wheel(file: FileReading) -> Iterator[Finding]:
             )
 
 
-# --- Palm buttons that are wired to the control: refused, because two hands are told apart by a relay alone.
+# --- Palm buttons: rejected at the control, because only a two-hand relay can check both hands. ---
 
 
 _PALM = re.compile(
@@ -100,7 +100,7 @@ WHY = (
 
 
 def wrong_palms(file: FileReading) -> Iterator[Finding]:
-    """A finding for every input that is one button of two."""
+    """Yield a finding for every input that is one of two palm buttons."""
     for name in file.names("io.in"):
         if _PALM.fullmatch(name):
             yield Finding(f"io.in.{name}", "", WHY, "broken-rule")

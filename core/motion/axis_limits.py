@@ -1,4 +1,4 @@
-"""What the axes can do: speeds and accelerations from which the time law follows."""
+"""Speed and acceleration limits of the axes, on which the motion planner is based."""
 
 from __future__ import annotations
 
@@ -14,21 +14,19 @@ from core.message import CodedError, Message
 
 
 class MotionError(CodedError):
-    """A movement cannot be planned; one sentence says which block, what is wrong and what to do."""
+    """Raised when a motion cannot be planned. The message names the block, the fault and the remedy."""
 
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 BoolArray = npt.NDArray[np.bool_]
 
-OVERRIDE_MAX = (
-    1.5  # largest feed_scale and rapid_scale; the speed for which an arc keeps acceleration in hand
-)
-CENTRIPETAL_SHARE = 0.8  # of the acceleration; the rest, in the vector sum, is left for braking on the arc
+OVERRIDE_MAX = 1.5  # largest feed_scale and rapid_scale, for which arcs reserve acceleration
+CENTRIPETAL_SHARE = 0.8  # fraction of the acceleration; the rest of the vector sum is for braking on the arc
 
 
 class AxisLike(Protocol):
-    """An axis as a machine file describes it, as far as the time law needs it."""
+    """The properties of an axis in the machine file that the motion planner uses."""
 
     @property
     def vmax(self) -> float: ...
@@ -40,14 +38,14 @@ class AxisLike(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class MotionLimits:
-    """Limits of the axes, slides first, on a lathe X, Z, C: mm/s and mm/s², degrees/s and degrees/s².
+    """Limits of the axes, linear axes first, in mm/s and mm/s² or degrees/s and degrees/s².
 
-    ``interval`` (s) is the time between two setpoints: within it an axis changes its velocity by
-    ``amax * interval`` at most, so a corner may ask for as much and no more.
-    ``grain`` (mm) is the step to which words are rounded, and by which joints of short chords may be moved
-    on each slide; 0 leaves every joint where it is written.
+    A lathe has the order X, Z, C. ``interval`` (s) is the time between two setpoints. Within an interval an
+    axis changes its velocity by at most ``amax * interval``, which also limits the velocity step at a corner.
+    ``grain`` (mm) is the resolution of the programmed words. Joints of short chords may be moved by this
+    amount on each axis; 0 leaves every joint at its programmed position.
 
-    Raises MotionError where a figure is not positive and finite.
+    Raises MotionError if a value is not positive and finite.
     """
 
     vmax: tuple[float, ...] = (127.0, 127.0, 1200.0)
@@ -71,10 +69,10 @@ class MotionLimits:
 
     @classmethod
     def of(cls, axes: Sequence[AxisLike], interval: float, corner_tolerance: float = 0.0) -> MotionLimits:
-        """The limits of a machine's axes.
+        """Return the limits of a machine's axes.
 
-        A joint of chords may be moved by ``corner_tolerance`` (mm) as the way of both slides together, and by
-        the count on each that rounding takes anyway.
+        ``corner_tolerance`` (mm) is the distance by which a joint of chords may be moved in X and Z together.
+        Each axis may always move it by one encoder count.
         """
         return cls(
             vmax=tuple(axis.vmax for axis in axes),
@@ -95,12 +93,12 @@ class MotionLimits:
 
     @property
     def plane_speed(self) -> float:
-        """The smaller vmax of a lathe's slides, mm/s: what an arc, turning through all directions, has."""
+        """The smaller ``vmax`` of X and Z of a lathe in mm/s, which an arc can use in all directions."""
         return min(self.vmax[:2])
 
     @property
     def plane_acceleration(self) -> float:
-        """The smaller amax of a lathe's slides, mm/s²; see ``plane_speed``."""
+        """The smaller ``amax`` of X and Z of a lathe in mm/s²; see ``plane_speed``."""
         return min(self.amax[:2])
 
 

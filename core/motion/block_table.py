@@ -1,6 +1,6 @@
-"""What the time law reads from elementary blocks: a table with a row of numbers a block.
+"""Elementary blocks as a table of numbers for the motion planner, with one row per block.
 
-Blocks come in one by one or in rows of their own, and are put together to batches that are planned at once.
+Blocks arrive singly or in rows, and are combined to batches that are planned together.
 """
 
 from __future__ import annotations
@@ -23,8 +23,11 @@ if TYPE_CHECKING:
 
 
 class ModalLike(Protocol):
-    """The clamp of the spindle speed under constant surface speed, rpm; how far C is shifted, degrees;
-    whether the spindle itself is C."""
+    """The modal values that the planner uses.
+
+    These are the rpm limits of constant surface speed, the shift of C in degrees, and whether the spindle is
+    engaged as C.
+    """
 
     @property
     def css_min(self) -> float: ...
@@ -37,7 +40,10 @@ class ModalLike(Protocol):
 
 
 class MotionBlock(Protocol):
-    """An elementary block as the interpreter makes it; mm, X a radius, degrees, mm/s or mm/rev."""
+    """An elementary block as the interpreter makes it.
+
+    Units are mm with X as a radius, degrees, and mm/s or mm/rev.
+    """
 
     n: int
     x0: float
@@ -67,23 +73,22 @@ class MotionBlock(Protocol):
 
 
 KINDS = {"rapid": 0, "feed": 1, "arc": 2, "rotate": 3, "plane-line": 4, "plane-arc": 5, "thread": 6}
-KINDS["plane"] = 7  # Klartext: rotary axes swivel
+KINDS["plane"] = 7  # swivel of rotary axes in Klartext
 _COLUMNS = ("n", "x0", "z0", "c0", "x", "z", "c", "offset_x", "offset_z", "feed", "rpm", "cx", "cz")
 _read = attrgetter(*_COLUMNS, "per_rev", "clockwise", "modal.offset_c", "modal.c_locked")
 
 
 @dataclass(frozen=True, slots=True)
 class BlockTable:
-    """m blocks as columns: ``start`` and ``end`` (m, axes) and ``centre`` (m, 2) in machine coordinates.
+    """m blocks as columns. ``start`` and ``end`` (m, axes) and ``centre`` (m, 2) are in machine coordinates.
 
-    Positions lie in memory axis by axis, and so does what is made of them: columns are quicker than rows.
-
-    ``axis`` (m,) is the machine X of the spindle axis, from which radii count; ``locked`` (m,) tells where
-    the spindle is held as the axis C, whose turns then are those that a feed per revolution counts.
-    ``surface lo hi`` (m,) hold the surface speed in force (mm/s, NaN without) and the clamp of its rpm.
-    ``way`` has m ways on which the axes do not run in proportion, such as those of the virtual mill, None
-    elsewhere. ``length`` (m,) is given by blocks that tell of all axes, NaN by those of the lathe, whose X,
-    Z and C say enough.
+    Positions are stored in memory axis by axis, because columns are faster than rows. ``axis`` (m,) is the
+    machine X of the spindle centerline, from which radii are measured. ``locked`` (m,) is True while the
+    spindle is engaged as the C axis, whose revolutions then count for a feed per revolution. ``surface lo
+    hi`` (m,) are the surface speed in mm/s, NaN without one, and the limits of its rpm. ``way`` has m curved
+    moves on which the axes are not proportional, such as those of the virtual mill, or None. ``length`` (m,)
+    is given for blocks that specify all axes. It is NaN for blocks of a lathe, whose length follows from X, Z
+    and C.
     """
 
     n: FloatArray
@@ -107,9 +112,9 @@ class BlockTable:
 
 
 def read_blocks(blocks: Sequence[MotionBlock], rpm_max: float) -> BlockTable:
-    """The table of blocks that move; ``rpm_max`` is what the spindle can do at all.
+    """Return the table of blocks that move. ``rpm_max`` is the maximum spindle speed.
 
-    Raises MotionError, naming the block, for a kind that has no time law or a number that is none.
+    Raises MotionError with the number of the block if its kind cannot be planned or a value is not a number.
     """
     width = len(_COLUMNS) + 4
     table = np.fromiter(chain.from_iterable(map(_read, blocks)), np.float64).reshape(-1, width)
@@ -148,7 +153,7 @@ def read_blocks(blocks: Sequence[MotionBlock], rpm_max: float) -> BlockTable:
 
 
 def _rapid(blocks: Sequence[MotionBlock], kinds: FloatArray) -> BoolArray:
-    """Blocks (m,) for which the rapid override counts."""
+    """Return the blocks (m,) to which the rapid override applies."""
     rapid: BoolArray = kinds == KINDS["rapid"]
     for i in np.flatnonzero((kinds == KINDS["plane"]) | (kinds == KINDS["plane-line"])).tolist():
         rapid[i] = blocks[i].rapid
@@ -160,7 +165,7 @@ def _way(block: MotionBlock) -> CurvedMove | None:
 
 
 def _travels(blocks: Sequence[MotionBlock]) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Start and end (m, axes) and length (m,) of blocks that tell of all axes."""
+    """Return start and end (m, axes) and length (m,) of blocks that specify all axes."""
     travels = [block.travel for block in blocks if block.travel is not None]
     if len(travels) != len(blocks):
         raise MotionError(
@@ -227,9 +232,9 @@ _FIELDS = tuple(f.name for f in fields(BlockTable))
 
 
 class Row(Protocol):
-    """m straight moves of X and Z as columns (m,); in all else each of them is as ``pattern`` is.
+    """m straight moves of X and Z as columns (m,). All other values are those of ``pattern``.
 
-    ``feed`` (m,) is None where that too is as in ``pattern``.
+    ``feed`` (m,) is None if the feed is that of ``pattern`` too.
     """
 
     @property
@@ -255,9 +260,10 @@ Part = list[Any] | Row
 
 
 def batches(blocks: Iterable[MotionBlock | Row], first: int, window: int) -> Iterator[tuple[list[Part], int]]:
-    """Batches of ``window`` blocks and how many each has: the first of ``first``, the last of what is left.
+    """Yield batches of ``window`` blocks with their sizes; the first batch has ``first`` blocks.
 
-    Takes no block before the batch that was full is asked on from; rows are cut where a batch ends.
+    The last batch contains the remaining blocks. A full batch is yielded before the next block is read. Rows
+    are divided at the end of a batch.
     """
     batch: list[Part] = []
     singles: list[Any] = []
@@ -285,15 +291,15 @@ def batches(blocks: Iterable[MotionBlock | Row], first: int, window: int) -> Ite
 
 
 def _is_row(each: MotionBlock | Row) -> TypeGuard[Row]:
-    return isinstance(each, Sequence)  # blocks have no length
+    return isinstance(each, Sequence)  # single blocks are not sequences
 
 
 def table_of(batch: Sequence[Part], rpm_max: float) -> BlockTable:
-    """The table of all blocks of a batch; see ``read_blocks``."""
+    """Return the table of all blocks of a batch; see ``read_blocks``."""
     unlike = [block for part in batch for block in (part if isinstance(part, list) else [part.pattern])]
     table = read_blocks(unlike, rpm_max)
     if all(isinstance(part, list) for part in batch):
-        return table  # a row of a single block is like its pattern, but for where it goes
+        return table  # =
     counts = [n for part in batch for n in ([1] * len(part) if isinstance(part, list) else [len(part)])]
     table = BlockTable(*[_repeated(getattr(table, name), counts) for name in _FIELDS])
     first = 0
@@ -305,15 +311,15 @@ def table_of(batch: Sequence[Part], rpm_max: float) -> BlockTable:
 
 
 def _repeated(column: Any, counts: Sequence[int]) -> Any:
-    """A column (k,) or (k, axes), or the ways, with each entry so often."""
+    """Return a column (k,) or (k, axes), or the curved moves, with each entry repeated ``counts`` times."""
     if isinstance(column, tuple):
         return tuple(chain.from_iterable(map(repeat, column, counts)))
-    # An array of rows lies axis by axis: repeated along its columns it still does.
+    # The array is stored axis by axis, and remains so when its columns are repeated.
     return np.repeat(column.T, counts, axis=-1).T
 
 
 def _put_in(table: BlockTable, at: slice, row: Row) -> None:
-    """Numbers, positions and feeds of the blocks of a row, which stand at these places."""
+    """Write numbers, positions and feeds of a row of blocks to the slice ``at`` of the table."""
     like = row.pattern
     table.n[at] = row.n
     if row.feed is not None:

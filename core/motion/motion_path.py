@@ -1,9 +1,10 @@
-"""The path: pieces, their limits, which block owns them, and blocks in which C turns too.
+"""The path as pieces with their limits and blocks, including blocks in which C turns too.
 
-C turns with the slides in moves of a virtual mill, and where slides are fed by the turns of C. The path of
-such a piece is measured as its feed is, along the mill's way or along the slide's; what X, Z and
-C do is its ``direction``. So limits, corners, look-ahead and holds are those of any other line. A curved way
-becomes chords in X, Z and C; the reasons are in docs/decisions/0005-c-axis-and-virtual-mill.md.
+C moves together with X and Z in moves of a virtual mill, and when a feed per revolution counts the
+revolutions of C. The length of such a piece is measured like its feed, along the path of the mill or of X and
+Z. The motion of X, Z and C per unit of length is its ``direction``. Limits, corners, look-ahead and holds are
+therefore those of any other line. A curved move becomes chords in X, Z and C. The reasons are in
+docs/decisions/0005-c-axis-and-virtual-mill.md.
 """
 
 from __future__ import annotations
@@ -41,18 +42,19 @@ if TYPE_CHECKING:
     from core.geometry.working_plane import CurvedMove
 
 
-CHORD_ERROR = 1e-4  # mm by which a chord may leave the mill's way, seen from the part
-STEP_SHARE = 0.5  # of what a corner may ask of an axis: the joints of chords then cost no speed
-_FIRST = 16  # chords to begin with
-_HALVINGS = 30  # no chord is cut more often
-_SHORTEST = 1e-5  # mm; no shorter chord is cut again: distances of a path are good to 1e-9
+CHORD_ERROR = 1e-4  # mm by which a chord may deviate from the move, measured on the part
+STEP_SHARE = 0.5  # fraction of the velocity step of a corner, so that joints of chords do not limit the speed
+_FIRST = 16  # initial number of chords
+_HALVINGS = 30  # largest number of halvings
+# mm; shorter chords are not halved, because distances along a path have an accuracy of 1e-9 mm
+_SHORTEST = 1e-5
 _ROUNDING = 1e-9
-_SPOTS = np.array([0.25, 0.5, 0.75])  # of a chord, where it is compared with the true way
+_SPOTS = np.array([0.25, 0.5, 0.75])  # fractions of a chord at which its deviation is checked
 GAP = 1e-6  # mm or degrees between the end of a block and the start of the next
 
 
 def with_parts(table: BlockTable) -> BoolArray:
-    """Blocks (m,) that this module cuts into pieces."""
+    """Return the blocks (m,) that are divided into several pieces."""
     parted = _fed_by_c(table)
     if table.way.count(None) < len(table.way):
         parted = parted | np.array([way is not None for way in table.way], dtype=bool)
@@ -60,9 +62,9 @@ def with_parts(table: BlockTable) -> BoolArray:
 
 
 def parts_of(whole: Pieces, table: BlockTable, limits: MotionLimits, index: int) -> Pieces:
-    """Piece ``index`` as chords, or as the slide's way and what C turns on behind it.
+    """Return piece ``index`` as chords, or as a move of X and Z followed by the remaining rotation of C.
 
-    Raises MotionError where C turns too little for the slide's way.
+    Raises MotionError if C turns too little for the move of X and Z.
     """
     piece, move = whole[index : index + 1], table.way[index]
     if move is None:
@@ -77,10 +79,10 @@ def parts_of(whole: Pieces, table: BlockTable, limits: MotionLimits, index: int)
 
 
 def chords(move: CurvedMove, rate: float, limits: MotionLimits) -> FloatArray:
-    """Fractions of the way (k+1,) between which the axes may run in proportion.
+    """Return fractions of a curved move (k+1,) between which the axes may move proportionally.
 
-    Chords leave the way by CHORD_ERROR at most, measured on the part, and neighbours differ so little that
-    their joint does not hold the feed ``rate`` (mm/s) up, unless the way itself has a corner there.
+    The chords deviate from the move by at most CHORD_ERROR, measured on the part. Neighboring chords differ
+    so little that their joint permits the feed ``rate`` (mm/s), unless the move itself has a corner there.
     """
     share, nearest = np.linspace(0.0, 1.0, _FIRST + 1), move.nearest()
     if np.abs(share - nearest).min() > _ROUNDING:
@@ -96,7 +98,7 @@ def chords(move: CurvedMove, rate: float, limits: MotionLimits) -> FloatArray:
 
 
 def _leaves(move: CurvedMove, share: FloatArray, ends: FloatArray) -> BoolArray:
-    """Chords (k,) between ``ends`` (at ``share``) that leave the way by over CHORD_ERROR, for the part."""
+    """Return which chords (k,) between ``ends`` at ``share`` deviate too much on the part."""
     span, change = np.diff(share), np.diff(ends, axis=0)
     true = move.machine((share[:-1] + _SPOTS[:, None] * span).ravel())
     chord = (ends[:-1] + _SPOTS[:, None, None] * change).reshape(true.shape)
@@ -109,7 +111,7 @@ def _leaves(move: CurvedMove, share: FloatArray, ends: FloatArray) -> BoolArray:
 def _jerks(
     move: CurvedMove, share: FloatArray, ends: FloatArray, speed: float, limits: MotionLimits
 ) -> BoolArray:
-    """Chords (k,) at whose ends an axis would have to change its velocity too much at once."""
+    """Return the chords (k,) at whose ends the velocity step of an axis would be too large."""
     length = np.diff(share) * move.length
     direction = np.diff(ends, axis=0) / length[:, None]
     turn = np.abs(np.diff(direction, axis=0))
@@ -118,7 +120,7 @@ def _jerks(
     bend = least_ratio(limits.accelerations * CENTRIPETAL_SHARE, turn / mean[:, None])
     v = np.minimum(np.minimum(fastest[:-1], fastest[1:]), np.sqrt(bend))
     sharp = (v[:, None] * turn > STEP_SHARE * limits.accelerations * limits.interval).any(axis=1)
-    long = mean > v * limits.interval  # shorter ones are a corner of the way itself
+    long = mean > v * limits.interval  # shorter chords belong to a corner of the move itself
     wide = np.zeros(len(length), dtype=bool)
     wide[:-1] |= sharp & long
     wide[1:] |= sharp & long
@@ -126,7 +128,7 @@ def _jerks(
 
 
 def _chain(piece: Pieces, points: FloatArray, length: FloatArray) -> Pieces:
-    """Straight pieces through ``points`` (k+1, axes) whose ``length`` (k,) is measured otherwise."""
+    """Return straight pieces through ``points`` (k+1, axes) with the given ``length`` (k,)."""
     parts = piece[np.zeros(len(length), dtype=np.int64)]
     zero = np.zeros(len(length))
     return replace(
@@ -142,7 +144,10 @@ def _chain(piece: Pieces, points: FloatArray, length: FloatArray) -> Pieces:
 
 
 def _fed_by_c(table: BlockTable) -> BoolArray:
-    """Straight moves (m,) at a feed per revolution in which the spindle turns as C: its turns are meant."""
+    """Return the straight moves (m,) with a feed per revolution in which the spindle turns as C.
+
+    The revolutions of C count for their feed.
+    """
     delta = table.end - table.start
     lathe = np.isnan(table.length)
     slides = np.hypot(delta[:, 0], delta[:, 1]) > SAME_POINT
@@ -152,7 +157,7 @@ def _fed_by_c(table: BlockTable) -> BoolArray:
 
 
 def _slide_by_c(piece: Pieces, table: BlockTable, index: int) -> Pieces:
-    """The slide's way with C, and behind it the degrees that C turns beyond what the way needs."""
+    """Return the move of X and Z with C, followed by the rotation of C that the move does not need."""
     start, end, feed = table.start[index], table.end[index], float(table.feed[index])
     way = float(np.hypot(*(end - start)[:2]))
     needed, turn = way / feed * 360.0, float(end[2] - start[2])
@@ -178,14 +183,14 @@ def _slide_by_c(piece: Pieces, table: BlockTable, index: int) -> Pieces:
 
 @dataclass(frozen=True, slots=True)
 class Path:
-    """A path in machine coordinates that can be planned; n pieces of m blocks.
+    """A path in machine coordinates that can be planned, with n pieces of m blocks.
 
-    ``s`` (n+1,) is the distance of the joints along the path, mm; it goes on counting where a builder has
-    dropped what lies behind. ``cap`` (n,) mm/s and ``a`` (n,) mm/s² are the limits along the pieces,
-    ``corner`` (n+1,) the squared speed limits of the joints, endless at both ends. Block i, whose number is
-    ``blocks[i]``, owns the pieces ``first[i]:first[i+1]``, none when it has no length. ``start`` (axes,) is
-    the point where the path begins. The last ``loose`` joints may yet move, by the step of the words, when
-    more blocks come in.
+    ``s`` (n+1,) is the distance of the joints along the path in mm. It continues from earlier pieces that a
+    builder has dropped. ``cap`` (n,) in mm/s and ``a`` (n,) in mm/s² are the limits along the pieces.
+    ``corner`` (n+1,) are the squared speed limits of the joints, infinite at both ends. The block with the
+    number ``blocks[i]`` has the pieces ``first[i]:first[i+1]``, none if it has no length. ``start`` (axes,)
+    is the first point of the path. The last ``loose`` joints may still move, by the resolution of the words,
+    when more blocks are added.
     """
 
     pieces: Pieces
@@ -204,16 +209,19 @@ class Path:
 
     @property
     def length(self) -> float:
-        """Length of the whole path, mm."""
+        """Length of the whole path, in mm."""
         return float(self.s[-1] - self.s[0])
 
     @property
     def reach(self) -> float:
-        """How far round a joint its limit looks at most, mm: the way of one interval."""
+        """The largest distance around a joint that affects its limit, in mm: the path of one interval."""
         return float(self.limits.interval * self.cap.max(initial=0.0))
 
     def block_span(self, n: int) -> tuple[float, float]:
-        """Distances at which block ``n`` starts and ends. Raises MotionError when it is not on this path."""
+        """Return the distances at which block ``n`` starts and ends.
+
+        Raises MotionError if the block is not on this path.
+        """
         i = int(np.searchsorted(self.blocks, n))
         if i == len(self.blocks) or self.blocks[i] != n:
             raise MotionError(
@@ -222,12 +230,12 @@ class Path:
         return float(self.s[self.first[i]]), float(self.s[self.first[i + 1]])
 
     def piece_at(self, s: FloatArray) -> IntArray:
-        """Index of the piece that holds each distance; at a joint the piece that starts there."""
+        """Return the index of the piece at each distance; at a joint, that of the piece that starts there."""
         found: IntArray = np.searchsorted(self.s, s, side="right") - 1
         return np.clip(found, 0, max(len(self) - 1, 0))
 
     def point(self, s: FloatArray, piece: IntArray | None = None) -> FloatArray:
-        """Machine position (k, axes) at the distances ``s`` (k,), exact on lines and arcs."""
+        """Return the machine positions (k, axes) at the distances ``s`` (k,), exact on lines and arcs."""
         if not len(self):
             return np.tile(self.start, (len(s), 1))
         index = self.piece_at(s) if piece is None else piece
@@ -236,11 +244,11 @@ class Path:
 
 
 class PathBuilder:
-    """Makes paths of blocks that come in one after the other.
+    """Builds a path from blocks that are added step by step.
 
-    ``rpm_max`` is the highest spindle speed that can be reached now: the machine's, or the operator's limit;
-    it may be changed and counts for blocks that are added afterwards. A path stays good while it grows: from
-    any state of a plan on it, a plan on the longer path is possible.
+    ``rpm_max`` is the highest spindle speed that is possible now: that of the machine, or the operator's
+    limit. It may be changed and applies to blocks that are added afterwards. The path remains valid while it
+    grows. A plan on the longer path is possible from any state of a plan on the shorter one.
     """
 
     def __init__(self, limits: MotionLimits, *, rpm_max: float = np.inf) -> None:
@@ -248,7 +256,7 @@ class PathBuilder:
         self.rpm_max = rpm_max
         self._closed = False
         self._parts: list[Pieces] = []
-        self._written: Pieces | None = None  # the last pieces as the words have them
+        self._written: Pieces | None = None  # the last pieces as programmed
         self._blocks: list[IntArray] = []
         self._counts: list[IntArray] = []
         self._start: FloatArray | None = None
@@ -258,21 +266,22 @@ class PathBuilder:
 
     @property
     def holds_blocks(self) -> bool:
-        """Whether there is anything to make a path of."""
+        """True if the path contains blocks."""
         return self._start is not None
 
     def add(self, blocks: Iterable[MotionBlock], reached: float = -np.inf) -> None:
-        """Append blocks that move. Raises MotionError, and adds nothing, when one of them cannot be moved.
+        """Append blocks that move.
 
-        ``reached`` is the distance before which a motion under way can still come to rest. Where it comes
-        near the end no joint of the path so far is moved any more.
+        Raises MotionError, and adds nothing, if one of them cannot be planned. ``reached`` is the distance
+        before which the present motion can still stop. If it is near the end, no existing joint is moved any
+        more.
         """
         batch = list(blocks)
         if batch:
             self.add_batch([batch], reached)
 
     def add_batch(self, batch: Sequence[Part], reached: float = -np.inf) -> None:
-        """``add`` for blocks that come as lists and rows, none of them empty."""
+        """Append blocks given as lists and rows, which must not be empty; see ``add``."""
         table = table_of(batch, self.rpm_max)
         if self._closed:
             raise MotionError(
@@ -293,9 +302,9 @@ class PathBuilder:
         self._path = None
 
     def _append(self, new: Pieces, reached: float) -> None:
-        """Join on; joints of short chords before the old end are moved to where the new ones say."""
+        """Append pieces and move the joints of short chords before the old end, which the new ones affect."""
         known = joined([*self._parts, new[:0]])
-        if self._written is None or not len(known):  # blocks without length leave nothing to join on to
+        if self._written is None or not len(known):  # blocks without length leave nothing to continue
             self._parts, self._written = [unrounded(new, self._limits)], new[-2 * SUPPORT :]
             return
         end = self._s0 + float(known.length.sum())
@@ -306,19 +315,22 @@ class PathBuilder:
         self._written = joined([self._written, new[-2 * SUPPORT :]])[-2 * SUPPORT :]
 
     def path(self) -> Path:
-        """The path of all blocks that were added and not dropped. Raises MotionError before the first."""
+        """Return the path of all blocks that were added and not dropped.
+
+        Raises MotionError if no block has been added.
+        """
         if self._path is None:
             self._path = self._make()
         return self._path
 
     def close(self) -> None:
-        """Say that the path ends here, in an exact stop: its last short piece need not be kept in hand."""
+        """End the path with an exact stop, so that no blocks can be added."""
         self._closed, self._path = True, None
 
     def drop_before(self, n: int) -> None:
-        """Forget the blocks before block ``n`` but the last with a length: corners need a neighbour.
+        """Drop the blocks before block ``n``, except those that its corner limit still needs.
 
-        Short chords need those of one interval.
+        These are the last block with a length and, for short chords, those within one interval.
         """
         path = self.path()
         keep = int(np.searchsorted(path.blocks, n))
@@ -355,7 +367,7 @@ class PathBuilder:
 
 
 def _pieces(table: BlockTable, limits: MotionLimits) -> tuple[Pieces, IntArray]:
-    """Pieces of the blocks and how many (m,) each block has."""
+    """Return the pieces of the blocks and the number of pieces (m,) of each block."""
     whole = make_pieces(table, constant_rates(table))
     counts = (whole.length > 0.0).astype(np.int64)
     turned, mapped = (counts > 0) & by_radius(table), with_parts(table)

@@ -1,7 +1,8 @@
-"""The plan of a path: look-ahead, squared speeds at the joints, then phases of constant acceleration.
+"""The plan of a path: look-ahead, squared speeds at the joints, and phases of constant acceleration.
 
-Where a jerk limit will go: ``profile_of`` gives every piece a speed-up, a cruise and a slow-down of constant
-acceleration; a jerk limit replaces these three by seven, and ``2·a·length`` by what such a ramp reaches.
+To add a jerk limit, change ``profile_of``, which gives each piece an acceleration, a cruise and a
+deceleration. A jerk limit replaces these three phases by seven, and ``2·a·length`` by the speed that such a
+ramp reaches.
 """
 
 from __future__ import annotations
@@ -19,22 +20,24 @@ from core.motion.motion_profile import Phases, Profile
 # --- look-ahead -----------------------------------------------------------------------------------------
 
 
-_FEW = 24  # limits, up to which a plain loop costs less than arrays
-_SUMS_ROW = 256  # sums restart every row, so that rounding stays below 1e-9 of a row's sum
+_FEW = 24  # number of limits up to which a plain loop is faster than arrays
+_SUMS_ROW = 256  # =
 
 
 def reachable_forward(limit: FloatArray, gain: FloatArray) -> FloatArray:
-    """Largest r (n+1,) with r[i] ≤ limit[i] and r[i+1] ≤ r[i] + gain[i].
+    """Return the largest r (n+1,) with r[i] ≤ limit[i] and r[i+1] ≤ r[i] + gain[i].
 
-    With squared speeds as ``limit`` and 2·a·length as ``gain`` (n,) ≥ 0 it is what acceleration can reach:
-    r[i] = min over j ≤ i of limit[j] + (W[i] - W[j]), W the running sum of gain.
+    With squared speeds as ``limit`` and 2·a·length as ``gain`` (n,) ≥ 0, the result is the speed that
+    acceleration can reach: r[i] = min over j ≤ i of limit[j] + (W[i] - W[j]), where W is the running sum of
+    gain.
     """
     count = len(limit)
     if count <= _FEW:
         return _one_by_one(limit.tolist(), gain.tolist())
     rows = -(-count // _SUMS_ROW)
     top = float(limit[np.isfinite(limit)].max(initial=0.0))
-    # A gain as large as the largest limit decouples its neighbours; more would only cost digits.
+    # A gain as large as the largest limit decouples its neighbors; a larger one would only reduce the
+    # precision.
     steps = np.zeros(rows * _SUMS_ROW)
     np.minimum(gain, top, out=steps[1:count])
     limits = np.full(rows * _SUMS_ROW, np.inf)
@@ -46,7 +49,10 @@ def reachable_forward(limit: FloatArray, gain: FloatArray) -> FloatArray:
 
 
 def reachable_backward(limit: FloatArray, gain: FloatArray) -> FloatArray:
-    """Largest r (n+1,) with r[i] ≤ limit[i] and r[i] ≤ r[i+1] + gain[i]: what braking allows."""
+    """Return the largest r (n+1,) with r[i] ≤ limit[i] and r[i] ≤ r[i+1] + gain[i].
+
+    The result is the speed from which braking is possible.
+    """
     return reachable_forward(limit[::-1], gain[::-1])[::-1]
 
 
@@ -58,7 +64,7 @@ def _one_by_one(limits: list[float], gains: list[float]) -> FloatArray:
 
 
 def _carry(lows: list[float], totals: list[float]) -> FloatArray:
-    """For each row, what the rows before it allow at its start."""
+    """Return the limit at the start of each row that follows from the earlier rows."""
     carry, carries = np.inf, []
     for low, total in zip(lows, totals, strict=True):
         carries.append(carry)
@@ -67,7 +73,7 @@ def _carry(lows: list[float], totals: list[float]) -> FloatArray:
 
 
 def _sharpened(rough: FloatArray, limit: FloatArray, steps: FloatArray) -> FloatArray:
-    """The same minima with the rounding of the sums taken out of every place where a limit holds."""
+    """Return the minima without the rounding error of the sums, wherever a limit applies."""
     sharp = rough.copy()
     np.minimum(limit[1:], rough[:-1] + steps, out=sharp[1:])
     sharp[0] = limit[0]
@@ -78,11 +84,11 @@ def _sharpened(rough: FloatArray, limit: FloatArray, steps: FloatArray) -> Float
 # --- phases ---------------------------------------------------------------------------------------------
 
 
-_TINY = 1e-12  # relative: a ramp or a cruise that is smaller is rounding
+_TINY = 1e-12  # relative length below which a ramp or a cruise is a rounding error
 
 
 def at_rest(path: Path, at: float) -> Profile:
-    """No motion at all."""
+    """Return a profile without motion at the distance ``at``."""
     none = np.empty(0)
     phases = Phases(none, none, none, none, none, np.empty(0, dtype=np.int64))
     return Profile(path=path, start_s=at, end_s=at, duration=0.0, phases=phases)
@@ -98,11 +104,11 @@ def profile_of(
     cap: FloatArray,
     speeds: FloatArray,
 ) -> Profile:
-    """Phases of n consecutive pieces from ``first`` on, which begin at the distance ``at``.
+    """Return the phases of n consecutive pieces from ``first`` on, starting at the distance ``at``.
 
-    ``cap`` (n,) and ``speeds`` (n+1,) are squared speeds: the feed within the pieces and what the joints
-    have. A piece speeds up to its cap or as far as its length allows, cruises, slows down; entered above
-    its cap it slows down first.
+    ``cap`` (n,) and ``speeds`` (n+1,) are squared speeds: the feed within the pieces, and the speeds at the
+    joints. A piece accelerates to its cap or as far as its length permits, cruises, and decelerates. A piece
+    entered above its cap decelerates first.
     """
     peak = np.minimum(np.maximum(cap, speeds[1:]), 0.5 * (speeds[:-1] + speeds[1:]) + a * length)
     v0, vp, v1 = np.sqrt(speeds[:-1]), np.sqrt(peak), np.sqrt(speeds[1:])
@@ -134,7 +140,7 @@ def profile_of(
 
 
 def _distances(length: FloatArray, a: FloatArray, ends: FloatArray) -> FloatArray:
-    """How far (n, 3) each piece speeds up, cruises and slows down between the speeds ``ends`` (n, 4)."""
+    """Return the lengths (n, 3) of acceleration, cruise and deceleration for ``ends`` (n, 4)."""
     v0, peak, _, v1 = ends.T
     up = np.where(np.abs(peak - v0) > _TINY * peak, np.abs(peak - v0) * (peak + v0) / (2.0 * a), 0.0)
     down = np.where(np.abs(peak - v1) > _TINY * peak, (peak - v1) * (peak + v1) / (2.0 * a), 0.0)
@@ -145,9 +151,9 @@ def _distances(length: FloatArray, a: FloatArray, ends: FloatArray) -> FloatArra
     return np.stack([up * fit, np.where(full, 0.0, cruise), down * fit], axis=1)
 
 
-_SETTLED = 1e-12  # relative difference of squared speeds that is rounding
-_LOOK_BACK = 1000  # joints before the end in which one that is settled is looked for first
-NEAR = 1e-9  # mm of path and relative squared speed that are rounding, not motion
+_SETTLED = 1e-12  # relative difference of squared speeds that is a rounding error
+_LOOK_BACK = 1000  # joints before the end that are searched first for a settled one
+NEAR = 1e-9  # mm of path and relative squared speed that are rounding errors
 
 
 def plan(
@@ -159,14 +165,14 @@ def plan(
     rapid_scale: float = 1.0,
     stop: bool = False,
 ) -> Profile:
-    """The fastest motion from ``start_s`` (default: the path's start) at ``start_v`` that ends at rest.
+    """Return the fastest motion from ``start_s`` (default: the start of the path) at ``start_v`` to rest.
 
-    It ends at the path's end, with ``stop`` as soon as braking allows; a scale of 0 stops before the first
-    feed (or rapid) piece, or at once when braking before it is no longer possible. A present speed above a
-    new, lower feed is braked down with full acceleration; limits of axes, arcs and corners hold always.
+    The motion ends at the end of the path, or with ``stop`` as soon as braking permits. A scale of 0 stops
+    before the first feed (or rapid) piece, or at once if the motion can no longer stop before it. A speed
+    above a new, lower feed is reduced with full acceleration. Limits of axes, arcs and corners always apply.
 
-    Raises MotionError when a figure makes no sense, or the speed is too high for the next corner or for
-    coming to rest on this path: the state then does not come from a plan on this path.
+    Raises MotionError if a value is not valid, or if the speed is too high for the next corner or for a stop
+    on this path. The state then does not come from a plan on this path.
     """
     _demand_sane(start_v, feed_scale, rapid_scale)
     at = _start(path, start_s)
@@ -188,13 +194,14 @@ def plan(
 
 
 def settled_joints(path: Path, start_s: float | None = None) -> int:
-    """The last joint of the path whose planned speed no further piece can change, -1 when there is none.
+    """Return the last joint whose planned speed cannot be changed by further pieces, or -1.
 
-    The last piece may get a sharp corner at its end or none, so the speed at its start may turn out to be
-    anything up to its limit. Joints that come out the same for 0 and for that limit are settled.
+    A piece that follows may form a sharp corner with the last one or none. The speed at the start of the last
+    piece may therefore be anything up to its limit. Joints with the same speed for 0 and for that limit are
+    settled.
     """
     first = int(path.piece_at(np.array([_start(path, start_s)]))[0])
-    # Joints of short chords near the end may yet be allowed more.
+    # Later pieces may raise the limits of joints of short chords near the end.
     known = int(np.searchsorted(path.s[:-1], path.s[-1] - path.reach, side="right"))
     known = min(known, len(path) - path.loose)
     settled, back = -1, _LOOK_BACK
@@ -208,7 +215,7 @@ def settled_joints(path: Path, start_s: float | None = None) -> int:
 
 
 def _settled_between(path: Path, first: int, known: int) -> int:
-    """The last joint from ``first`` on, before ``known``, that comes out the same; -1 when there is none."""
+    """Return the last settled joint from ``first`` on and before ``known``, or -1."""
     run = _Run.of(path, float(path.s[first]), first, known)
     limit = run.hard[:-1].copy()
     soft = np.minimum(path.cap[first:known], path.pieces.rate[first:known]) ** 2
@@ -224,11 +231,11 @@ def _settled_between(path: Path, first: int, known: int) -> int:
 
 @dataclass(frozen=True, slots=True)
 class _Run:
-    """The pieces that a plan covers: n pieces, the first perhaps in part."""
+    """The n pieces that a plan covers; the first one may be partial."""
 
     length: FloatArray
     a: FloatArray
-    hard: FloatArray  # (n+1,) squared speeds that nothing may exceed, 0 at the end
+    hard: FloatArray  # (n+1,) squared speed limits that always apply, 0 at the end
 
     @classmethod
     def of(cls, path: Path, at: float, first: int, last: int) -> _Run:
@@ -250,12 +257,12 @@ class _Run:
         return v * v <= float(self.gain.sum()) + self.slack(v)
 
     def slack(self, v: float) -> float:
-        """What a squared speed may be off by rounding of the distances."""
+        """Return the rounding error of a squared speed that the rounding of distances causes."""
         return float(NEAR * v * v + 2.0 * NEAR * self.a.max(initial=0.0))
 
 
 def _squared_speeds(run: _Run, soft: FloatArray, v: float) -> FloatArray:
-    """Squared speeds (n+1,) at the joints, beginning with v²."""
+    """Return the squared speeds (n+1,) at the joints, starting with v²."""
     limit = run.hard.copy()
     np.minimum(limit[:-1], soft, out=limit[:-1])
     np.minimum(limit[1:], soft, out=limit[1:])
@@ -268,7 +275,7 @@ def _squared_speeds(run: _Run, soft: FloatArray, v: float) -> FloatArray:
 
 
 def _braked_into(run: _Run, allowed: FloatArray, square: float, slack: float) -> FloatArray:
-    """Full braking from a speed that the new feeds do not allow, until they allow it; then on as usual."""
+    """Return full braking from a speed above the new feeds until they are met, then the normal plan."""
     braked = square - np.concatenate([[0.0], np.cumsum(run.gain)])
     fits = np.flatnonzero(braked <= allowed + slack)
     fits = fits[fits > 0]
@@ -305,7 +312,7 @@ def _demand_passable(braked: FloatArray, hard: FloatArray, slack: float) -> None
 
 
 def _brake(path: Path, at: float, v: float, first: int) -> Profile:
-    """To rest with full acceleration along the path; looks only as far ahead as it must."""
+    """Return the profile of braking to rest with full acceleration along the path."""
     last = first
     while True:
         last = min(len(path), last + max(64, last - first))
@@ -318,7 +325,7 @@ def _brake(path: Path, at: float, v: float, first: int) -> Profile:
     k = int(np.argmax(braked <= run.slack(v))) if (braked <= run.slack(v)).any() else len(run.length)
     if v == 0.0:
         return at_rest(path, at)
-    # However slow: near the axis of a plane C turns through degrees in a thousandth of a millimetre.
+    # At least one piece, because C turns by degrees in 0.001 mm near the axis of a plane.
     k = max(k, 1)
     _demand_passable(braked[:k], run.hard[:k], run.slack(v))
     length, speeds = run.length[:k].copy(), np.maximum(braked[: k + 1], 0.0)

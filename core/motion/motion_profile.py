@@ -1,6 +1,6 @@
-"""A planned motion: distance along the path over time, in phases of constant acceleration, and its setpoints.
+"""A planned motion: distance along the path over time, in phases of constant acceleration, and setpoints.
 
-Setpoints are what a driver takes: the motion of each axis in pieces of constant acceleration.
+Setpoints describe the motion of each axis for a driver, in pieces of constant acceleration.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ from core.motion.motion_path import Path
 SegmentArrays = tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]
 
 PART = 0.002  # s, longest part of an arc
-ARC_ERROR = 2.5e-4  # mm by which a part may leave the arc between its ends
-BRIEF = 1e-6  # s; in shorter parts differences of positions would be rounding, and the arc is its tangent
+ARC_ERROR = 2.5e-4  # mm by which a part may deviate from the arc between its ends
+BRIEF = 1e-6  # s; shorter parts use the tangent, because their position differences would be rounding errors
 PART_ANGLE = 0.25  # rad, longest part of an arc
 
 
 class Phases(NamedTuple):
-    """k phases of constant acceleration along a path, each within one piece; arrays (k,)."""
+    """k phases of constant acceleration along a path, each within one piece, as arrays (k,)."""
 
     t: FloatArray  # start, s
     dt: FloatArray  # length, s
@@ -32,7 +32,7 @@ class Phases(NamedTuple):
     piece: IntArray
 
     def pick(self, part: IntArray | BoolArray | slice) -> Phases:
-        """Some of the phases."""
+        """Return the selected phases."""
         return Phases(
             t=self.t[part],
             dt=self.dt[part],
@@ -44,13 +44,14 @@ class Phases(NamedTuple):
 
 
 def axis_segments(path: Path, phases: Phases, t_origin: float) -> SegmentArrays:
-    """Setpoint pieces (t, dt, p, v, a) of k phases; times are those of the phases plus ``t_origin``.
+    """Return the setpoint pieces (t, dt, p, v, a) of k phases, with ``t_origin`` added to their times.
 
-    Lines give one piece each, exact. An arc is cut into equal times of at most 2 ms. Their ends lie on the
-    arc, and a = 2·(P1 - P0 - V0·h)/h² joins them, so positions are continuous. With j = v/R·hypot(v²/R, 3a)
-    as the jerk of the true motion the position between the ends is off by at most j·h³·2/81 and the velocity
-    jumps by at most j·h²/6 at a joint; h keeps the first below 0.25 µm, and the second then stays far below
-    amax · interval. The part that ends at rest ends with velocity 0 and takes its jump at its start.
+    A line gives one exact piece. An arc is divided into equal times of at most 2 ms. The ends of the parts
+    are on the arc and are joined by a = 2·(P1 - P0 - V0·h)/h², so positions are continuous. With the jerk j =
+    v/R·hypot(v²/R, 3a) of the true motion, the position between the ends has an error of at most j·h³·2/81,
+    and the velocity steps by at most j·h²/6 at a joint. The time h is chosen so that the position error is
+    below 0.25 µm. The velocity step is then far below amax · interval. The part that ends at rest ends with
+    velocity 0 and has its velocity step at its start.
     """
     parts = _part_counts(path, phases)
     owner = np.repeat(np.arange(len(parts)), parts)
@@ -66,7 +67,7 @@ def axis_segments(path: Path, phases: Phases, t_origin: float) -> SegmentArrays:
 def _joined_on_arc(
     path: Path, phases: Phases, nth: IntArray, h: FloatArray, begin: tuple[FloatArray, FloatArray]
 ) -> tuple[FloatArray, FloatArray]:
-    """Velocity and acceleration that lead each part from its start on the arc to its end on the arc."""
+    """Return velocity and acceleration that lead each part between its ends on the arc."""
     end = (nth + 1) * h
     p1, _, _ = _states(path, phases, end)
     resting = (phases.v + phases.a * end <= 1e-9 * phases.v)[:, None]
@@ -79,7 +80,7 @@ def _joined_on_arc(
 
 
 def _curved(path: Path, phases: Phases, v: FloatArray) -> FloatArray:
-    """The true acceleration (k, 3) at the start of arc phases, where the velocity is ``v`` (k, 3)."""
+    """Return the true acceleration (k, 3) at the start of arc phases with the velocity ``v`` (k, 3)."""
     pieces = path.pieces[phases.piece]
     tangent = pieces.tangent(np.clip(phases.s - path.s[phases.piece], 0.0, pieces.length))
     curved: FloatArray = tangent * phases.a[:, None]
@@ -105,7 +106,7 @@ def _part_counts(path: Path, phases: Phases) -> IntArray:
 
 
 def _states(path: Path, phases: Phases, tau: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Axis position, velocity, tangential acceleration (k, axes), ``tau`` (k,) after the start of phases."""
+    """Return position, velocity and tangential acceleration (k, axes) at ``tau`` (k,) in the phases."""
     pieces = path.pieces[phases.piece]
     speed = np.maximum(phases.v + phases.a * tau, 0.0)
     local = phases.s - path.s[phases.piece] + (phases.v + 0.5 * phases.a * tau) * tau
@@ -114,16 +115,16 @@ def _states(path: Path, phases: Phases, tau: FloatArray) -> tuple[FloatArray, Fl
     return pieces.point(local), tangent * speed[:, None], tangent * phases.a[:, None]
 
 
-NEAR = 1e-9  # mm that are rounding, not distance
-BRIEF_TIME = 1e-12  # s that are rounding, not time
+NEAR = 1e-9  # mm that are a rounding error
+BRIEF_TIME = 1e-12  # s that are a rounding error
 
 
 @dataclass(frozen=True, slots=True)
 class Profile:
     """Motion along ``path`` from ``start_s`` at t = 0 to ``end_s`` at ``duration``.
 
-    A plan ends at rest; only a part cut off for a longer plan (``until``) ends in motion. Without phases it
-    stands at ``end_s``. Times in s from the start of the profile.
+    A plan ends at rest. Only a part cut off with ``until`` may end in motion. A profile without phases is at
+    rest at ``end_s``. Times are in seconds from the start of the profile.
     """
 
     path: Path
@@ -136,7 +137,10 @@ class Profile:
         return len(self.phases.t)
 
     def at(self, t: FloatArray | float) -> tuple[FloatArray, FloatArray]:
-        """Distance and speed at the times ``t`` (m,); before the start as at 0, after the end at rest."""
+        """Return distance and speed at the times ``t`` (m,).
+
+        Earlier times give the state at the start. Later times give rest at the end.
+        """
         times = np.atleast_1d(np.asarray(t, dtype=np.float64))
         if not len(self):
             return np.full(times.shape, self.end_s), np.zeros(times.shape)
@@ -150,14 +154,14 @@ class Profile:
 
     @property
     def end_v(self) -> float:
-        """Speed at the end, mm/s: 0 for a plan, the speed to go on with for a part of one."""
+        """The speed at the end in mm/s: 0 for a plan, the speed to continue with for a part of one."""
         if not len(self):
             return 0.0
         last = self.phases.pick(slice(-1, None))
         return max(float(last.v[0] + last.a[0] * last.dt[0]), 0.0)
 
     def position(self, t: FloatArray | float) -> FloatArray:
-        """Machine position (m, axes) at the times ``t`` (m,), exact on lines and arcs."""
+        """Return the machine positions (m, axes) at the times ``t`` (m,), exact on lines and arcs."""
         times = np.atleast_1d(np.asarray(t, dtype=np.float64))
         s, _ = self.at(times)
         if not len(self):
@@ -165,7 +169,7 @@ class Profile:
         return self.path.point(s, self.phases.piece[self._phase(times)])
 
     def block_at(self, t: FloatArray | float) -> IntArray:
-        """Number of the block that is executed at the times ``t`` (m,); 0 where nothing moves at all."""
+        """Return the numbers of the blocks executed at the times ``t`` (m,); 0 without motion."""
         times = np.atleast_1d(np.asarray(t, dtype=np.float64))
         if not len(self):
             return np.zeros(times.shape, dtype=np.int64)
@@ -173,7 +177,7 @@ class Profile:
         return owner
 
     def block_of(self, t: float) -> int:
-        """Return the number of the block that is executed at ``t``, s; quicker than ``block_at``."""
+        """Return the number of the block executed at ``t`` in seconds; faster than ``block_at``."""
         if not len(self):
             return 0
         found = int(self.phases.t.searchsorted(t, side="right")) - 1
@@ -181,15 +185,19 @@ class Profile:
         return int(self.path.pieces.block[piece])
 
     def block_times(self) -> tuple[IntArray, FloatArray, FloatArray]:
-        """Numbers of all blocks of the path and when each starts and ends, s; endless where it never does.
+        """Return the numbers of all blocks of the path, and the times at which each starts and ends.
 
-        Blocks behind the start have 0 for both; a block without length ends where it starts.
+        Times are in seconds, and inf for a block that is not reached. Blocks before the start have 0 for
+        both. A block without length ends when it starts.
         """
         joints, first = self._joint_times(), self.path.first
         return self.path.blocks, joints[first[:-1]], joints[first[1:]]
 
     def time_at(self, s: FloatArray) -> FloatArray:
-        """When the distances ``s`` (m,) are reached; 0 behind the start, endless beyond the end."""
+        """Return the times at which the distances ``s`` (m,) are reached.
+
+        The time is 0 before the start, and inf after the end.
+        """
         beyond = s > self.end_s + NEAR
         if not len(self):
             return np.where(beyond, np.inf, 0.0)
@@ -202,23 +210,23 @@ class Profile:
         return np.where(beyond, np.inf, times)
 
     def segments(self, t_from: float, t_to: float, t_origin: float = 0.0) -> SegmentArrays:
-        """Arrays (t, dt, p, v, a) of setpoint pieces for a window: the fields of ``core.ports.Segments``.
+        """Return setpoint arrays (t, dt, p, v, a) for a time window: the fields of ``core.ports.Segments``.
 
-        One piece of constant acceleration per phase on lines; on arcs parts of 2 ms at most whose ends lie
-        on the arc, see ``axis_segments``. ``t`` is the time of the profile plus ``t_origin``. Cut
-        at ``t_to`` it ends in motion; reaching the end of the profile it ends at rest.
+        A phase on a line gives one piece of constant acceleration. Arcs give parts of at most 2 ms, as
+        described in ``axis_segments``. ``t`` is the time of the profile plus ``t_origin``. The arrays end in
+        motion if ``t_to`` is before the end of the profile, and at rest otherwise.
         """
         return axis_segments(self.path, self._window(t_from, t_to), t_origin)
 
     def until(self, s: float) -> Profile:
-        """The part up to the distance ``s``, which must be a joint of the path; it may end in motion."""
+        """Return the part up to the distance ``s``, which must be a joint. It may end in motion."""
         count = int(np.searchsorted(self.phases.s, s, side="left"))
         phases = self.phases.pick(slice(0, count))
         duration = float(phases.t[-1] + phases.dt[-1]) if count else 0.0
         return Profile(path=self.path, start_s=self.start_s, end_s=s, duration=duration, phases=phases)
 
     def _joint_times(self) -> FloatArray:
-        """``time_at`` of all joints, by their pieces: near a stop a distance says little about a time."""
+        """Return the times of all joints, from their pieces. Near a stop, distances give no exact times."""
         joints = np.arange(len(self.path) + 1)
         times = np.append(self.phases.t, self.duration)[np.searchsorted(self.phases.piece, joints)]
         return np.where(self.path.s > self.end_s + NEAR, np.inf, times)
@@ -229,7 +237,7 @@ class Profile:
             return self.phases.pick(slice(0, 0))
         i = int(np.searchsorted(self.phases.t, lo, side="right")) - 1
         j = int(np.searchsorted(self.phases.t, hi, side="left"))
-        part = self.phases.pick(np.arange(i, j))  # a copy, as a slice would not be
+        part = self.phases.pick(np.arange(i, j))  # an index array makes a copy, a slice would not
         part.dt[-1] = min(part.dt[-1], hi - part.t[-1])
         skip = lo - part.t[0]
         part.s[0] += (part.v[0] + 0.5 * part.a[0] * skip) * skip

@@ -1,9 +1,9 @@
-"""Lines and arcs as arrays, on which the time law runs, and joints of short chords made smooth.
+"""Lines and arcs as arrays for the motion planner, and smoothing of joints between short chords.
 
-A program tells points to a step, and in chords of a hundredth that turns the direction to and fro at every
-joint, far more than the curve does that was chopped. No drive needs that: a joint is moved, by one step at
-most on each axis, to where its neighbours say the curve is. Ends of runs of chords, corners, arcs, long lines
-and turns of other axes stay where they are written.
+Programmed points are rounded to the resolution. With chords of 0.01 mm, the rounding changes the direction at
+every joint far more than the original curve does. Each joint is therefore moved, by at most one resolution
+step per axis, to the curve that its neighbors indicate. Ends of runs of chords, corners, arcs, long lines and
+moves of other axes remain as programmed.
 """
 
 from __future__ import annotations
@@ -19,27 +19,27 @@ from core.message import Message
 from core.motion.axis_limits import BoolArray, FloatArray, IntArray, MotionError, MotionLimits
 from core.motion.block_table import BlockTable
 
-SAME_POINT = 1e-7  # mm or degrees: nearer points are one point
-_STEEPEST = 1e5  # degrees of C a mm: distances along the path are good to 1e-9 mm, so C to a ten-thousandth
-_NO_WAY = 1e-4  # mm of the slides beside a turn of C that measures the path then
-_TURN_ALONE = 1e-6  # mm of the slides under which the feed is that of C
-RADII_DIFFER = 0.02  # mm by which start and end of an arc may differ in their distance from the centre
-_AROUND = 6  # joints on either side of which the mean is taken, four times
-_BACK = 6  # and over which what would be more than a step is taken back, twice
-SUPPORT = 4 * _AROUND + 4 * _BACK + 2  # joints on either side that have a say
-_SHARE = 0.25  # of a chord by which its ends may be moved at most
-_TURNS = 4.0  # steps over the length of a chord: more than rounding can turn it
+SAME_POINT = 1e-7  # mm or degrees; closer points count as one point
+_STEEPEST = 1e5  # degrees of C per mm; distances have an accuracy of 1e-9 mm, so C has 1e-4 degrees
+_NO_WAY = 1e-4  # mm of X and Z below which a rotation of C measures the path
+_TURN_ALONE = 1e-6  # mm of X and Z below which the feed is that of C
+RADII_DIFFER = 0.02  # mm by which the radii at the start and end of an arc may differ
+_AROUND = 6  # joints on either side for the mean, which is applied four times
+_BACK = 6  # joints on either side for the correction of excess moves, which is applied twice
+SUPPORT = 4 * _AROUND + 4 * _BACK + 2  # joints on either side that affect a joint
+_SHARE = 0.25  # fraction of a chord by which its ends may be moved
+_TURNS = 4.0  # resolution steps per chord length; a larger turn is not caused by rounding
 
 
 @dataclass(frozen=True, slots=True)
 class Pieces:
-    """n lines and arcs in machine coordinates; mm, degrees for C, radians for angles, mm/s.
+    """n lines and arcs in machine coordinates, in mm, degrees for C, radians for angles, and mm/s.
 
-    Lines: ``start`` (n, axes) and ``direction`` (n, axes), the change of the axes per unit of path. A lathe's
-    path is measured in X and Z, and in degrees where only C turns; blocks of other machines say what counts.
-    Arcs: ``curvature`` ±1/radius, positive clockwise, 0 for lines; ``angle`` at the start, with
-    x = centre x + radius·sin, z = centre z + radius·cos; ``direction`` then holds only what C does. ``block``
-    is the owner's n. ``rate`` is the programmed speed.
+    A line has ``start`` (n, axes) and ``direction`` (n, axes), the change of the axes per unit of path. The
+    path of a lathe is measured in X and Z, and in degrees if only C turns. Blocks of other machines specify
+    their length. An arc has ``curvature`` ±1/radius, positive for clockwise and 0 for lines. ``angle`` is
+    that of its start, with x = center x + radius·sin and z = center z + radius·cos. ``direction`` of an arc
+    contains only the motion of C. ``block`` is the number of the block, and ``rate`` is the programmed speed.
     """
 
     block: IntArray
@@ -60,7 +60,7 @@ class Pieces:
         return Pieces(*[getattr(self, name)[part] for name in _FIELDS])
 
     def tangent(self, at: FloatArray) -> FloatArray:
-        """Direction (n, axes) at the distances ``at`` (n,) from the start of each piece."""
+        """Return the directions (n, axes) at the distances ``at`` (n,) from the start of each piece."""
         tangent = self.direction.copy(order="K")
         arc = np.flatnonzero(self.curvature)
         if len(arc):
@@ -71,7 +71,7 @@ class Pieces:
         return tangent
 
     def point(self, at: FloatArray) -> FloatArray:
-        """Position (n, axes) at the distances ``at`` (n,) from the start of each piece."""
+        """Return the positions (n, axes) at the distances ``at`` (n,) from the start of each piece."""
         point = self.start + self.direction * at[:, None]
         arc = self.curvature != 0.0
         if arc.any():
@@ -85,16 +85,16 @@ _FIELDS = tuple(f.name for f in fields(Pieces))
 
 
 def joined(parts: Sequence[Pieces]) -> Pieces:
-    """Pieces of several arrays, one after the other."""
+    """Return the pieces of several arrays, one after the other."""
     if len(parts) == 1:
         return parts[0]
     return Pieces(*[np.concatenate([getattr(p, name) for p in parts]) for name in _FIELDS])
 
 
 def make_pieces(table: BlockTable, rate: FloatArray) -> Pieces:
-    """One piece for each of m blocks, those of length zero included. ``rate`` (m,) is its speed in mm/s.
+    """Return one piece for each of m blocks, including those of length zero. ``rate`` (m,) is in mm/s.
 
-    Raises MotionError for an arc whose start and end do not lie on one circle.
+    Raises MotionError if the start and the end of an arc are not on one circle.
     """
     delta = table.end - table.start
     length = np.hypot(delta[:, 0], delta[:, 1])
@@ -102,7 +102,7 @@ def make_pieces(table: BlockTable, rate: FloatArray) -> Pieces:
     way, slides = length, length > np.maximum(SAME_POINT, np.minimum(turn / _STEEPEST, _NO_WAY))
     length = np.where(slides, way, np.where(turn > SAME_POINT, turn, 0.0))
     beside = ~slides & (way > _TURN_ALONE) & np.isnan(table.length)
-    rate = np.where(beside, rate * length / np.maximum(way, _TURN_ALONE), rate)  # the slides keep their feed
+    rate = np.where(beside, rate * length / np.maximum(way, _TURN_ALONE), rate)  # X and Z retain their feed
     length = np.where(np.isnan(table.length), length, table.length)
     centre, radius, angle, curvature, sweep = _circles(table)
     length = np.where(curvature != 0.0, radius * sweep, length)
@@ -123,7 +123,7 @@ def make_pieces(table: BlockTable, rate: FloatArray) -> Pieces:
 
 
 def _circles(table: BlockTable) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Centre, radius, start angle, curvature and positive sweep; zeros for lines and points."""
+    """Return center, radius, start angle, curvature and positive sweep; zeros for lines and points."""
     m = len(table.n)
     centre, sweep = np.zeros((m, 2)), np.zeros(m)
     radius, angle, curvature = np.zeros(m), np.zeros(m), np.zeros(m)
@@ -145,9 +145,10 @@ def _circles(table: BlockTable) -> tuple[FloatArray, FloatArray, FloatArray, Flo
 
 
 def _settled_centre(table: BlockTable, arc: IntArray) -> FloatArray:
-    """The centre moved onto the perpendicular bisector of the chord, so that the arc meets its end exactly.
+    """Return the centers moved to the perpendicular bisector of the chord, so that the arc meets its end.
 
-    A program gives centres rounded to the machine's step; without this the path would jump by that step.
+    Programmed centers are rounded to the resolution. Without this correction, the path would have a gap of
+    that size.
     """
     start, end, centre = table.start[arc, :2], table.end[arc, :2], table.centre[arc]
     radii = np.hypot(*(start - centre).T), np.hypot(*(end - centre).T)
@@ -173,7 +174,7 @@ def _settled_centre(table: BlockTable, arc: IntArray) -> FloatArray:
 
 
 def unrounded(pieces: Pieces, limits: MotionLimits) -> Pieces:
-    """The pieces with joints moved by ``limits.grain`` at most on each slide; both ends stay."""
+    """Return the pieces with joints moved by at most ``limits.grain`` per axis. Both ends remain."""
     inner = _free(pieces, limits)
     if not inner.any():
         return pieces
@@ -188,12 +189,12 @@ def unrounded(pieces: Pieces, limits: MotionLimits) -> Pieces:
 
 
 def _joints(pieces: Pieces) -> FloatArray:
-    """Where the pieces (n,) begin, and where the last of them ends: (n+1, axes)."""
+    """Return the starts of the pieces (n,) and the end of the last one: (n+1, axes)."""
     return np.concatenate([pieces.start, pieces[-1:].point(pieces.length[-1:])])
 
 
 def moved(pieces: Pieces, joints: FloatArray, free: BoolArray) -> Pieces:
-    """Lines between ``joints`` (n+1, axes) where an end of theirs is ``free`` (n+1,)."""
+    """Return the lines between ``joints`` (n+1, axes) where at least one end is ``free`` (n+1,)."""
     touched = np.flatnonzero(free[:-1] | free[1:])
     start, direction = pieces.start.copy(order="K"), pieces.direction.copy(order="K")
     length = pieces.length.copy()
@@ -205,15 +206,15 @@ def moved(pieces: Pieces, joints: FloatArray, free: BoolArray) -> Pieces:
 
 
 def regrown(known: Pieces, written: Pieces, new: Pieces, redo: int, limits: MotionLimits) -> Pieces:
-    """The last ``redo`` pieces of ``known``, their joints where ``new`` ones behind say, and the new ones.
+    """Return the last ``redo`` pieces of ``known``, smoothed together with the ``new`` pieces that follow.
 
-    ``written`` are the last pieces of ``known`` as their words have them, at least SUPPORT more than ``redo``
-    where there are as many.
+    ``written`` are the last pieces of ``known`` as programmed, at least SUPPORT more than ``redo`` if so many
+    exist.
     """
     both = joined([written, new])
     eased = unrounded(both, limits)[len(written) - redo :]
     begin = known[-1:].point(known.length[-1:])[0] if redo == 0 else known.start[len(known) - redo]
-    # Only a chord has an end that was moved: a turn of C, whose slides differ by noise, has no other length.
+    # Only chords have moved ends. A rotation of C must not change its length because of noise in X and Z.
     if not len(eased) or not _chords(eased[:1], limits)[0] or (eased.start[0] == begin).all():
         return eased
     joints = _joints(eased)
@@ -222,13 +223,13 @@ def regrown(known: Pieces, written: Pieces, new: Pieces, redo: int, limits: Moti
 
 
 def ends_in_chord(pieces: Pieces, limits: MotionLimits) -> bool:
-    """Whether the end may yet become a joint that is moved."""
+    """Return whether the last joint may still be moved when pieces are added."""
     return len(pieces) > 0 and bool(_chords(pieces[-1:], limits)[0])
 
 
 def _chords(pieces: Pieces, limits: MotionLimits) -> BoolArray:
-    """Lines (n,) of the slides that are short enough to feel the rounding of their ends."""
-    # Longer lines turn by so little that no speed is too high for the joint.
+    """Return the lines (n,) of linear axes that are short enough to be affected by rounding."""
+    # Rounding turns longer lines so little that no speed is too high for the joint.
     longest = _TURNS * limits.grain * limits.plane_speed / (limits.plane_acceleration * limits.interval)
     alone = (pieces.curvature == 0.0) & ~pieces.direction[:, 2:].any(axis=1)
     chords: BoolArray = alone & (pieces.length < longest) & pieces.direction[:, :2].any(axis=1)
@@ -236,7 +237,7 @@ def _chords(pieces: Pieces, limits: MotionLimits) -> BoolArray:
 
 
 def _free(pieces: Pieces, limits: MotionLimits) -> BoolArray:
-    """Joints (n-1,) between two chords that are short enough to feel the rounding, and turn no more."""
+    """Return the joints (n-1,) between two short chords that turn no more than rounding can cause."""
     if limits.grain <= 0.0 or len(pieces) < 3:
         return np.zeros(max(len(pieces) - 1, 0), dtype=bool)
     chord = _chords(pieces, limits)
@@ -248,7 +249,7 @@ def _free(pieces: Pieces, limits: MotionLimits) -> BoolArray:
 
 
 def _clear(free: BoolArray) -> IntArray:
-    """How many joints on either side of each (n+1,) are as free as it is."""
+    """Return the number of free joints on either side of each joint (n+1,)."""
     at = np.arange(len(free))
     before = at - np.maximum.accumulate(np.where(free, -1, at))
     behind = np.minimum.accumulate(np.where(free, len(free), at)[::-1])[::-1] - at
@@ -257,7 +258,10 @@ def _clear(free: BoolArray) -> IntArray:
 
 
 class _Window(NamedTuple):
-    """Neighbours of each of n+1 joints: sums up to ``behind`` less those up to ``first`` are of ``size``."""
+    """The neighbors of each of n+1 joints.
+
+    A sum over a window of ``size`` joints is the running sum at ``behind`` minus the one at ``first``.
+    """
 
     first: IntArray
     behind: IntArray
@@ -265,12 +269,12 @@ class _Window(NamedTuple):
 
     @classmethod
     def of(cls, around: IntArray) -> _Window:
-        """So many (n+1,) joints on either side of each."""
+        """Return the windows with ``around`` (n+1,) joints on either side of each joint."""
         at = np.arange(len(around))
         return cls(at - around, at + around + 1, (2 * around + 1).astype(np.float64))
 
     def mean(self, values: FloatArray) -> FloatArray:
-        """Mean (k, n+1) of the values around each."""
+        """Return the means (k, n+1) of the values in each window."""
         base = values[:, :1]
         sums = np.zeros((len(values), values.shape[1] + 1))
         np.subtract(values, base, out=sums[:, 1:])
@@ -283,9 +287,10 @@ class _Window(NamedTuple):
 
 
 def _eased(joints: FloatArray, s: FloatArray, free: BoolArray, allowed: FloatArray) -> FloatArray:
-    """Joints (2, n+1) at the distances ``s``, moved onto the mean of those around, ``allowed`` at most.
+    """Return joints (2, n+1) at the distances ``s``, moved toward the mean of their neighbors.
 
-    Every run of ``free`` (n+1,) ones is eased by itself: nothing before a corner moves for what lies behind.
+    Each joint moves by at most ``allowed``. Every run of ``free`` (n+1,) joints is smoothed separately, so
+    that a corner is never crossed.
     """
     clear, apart, fixed = _clear(free), _apart(free, _BACK), np.flatnonzero(~free)
     around, back = _Window.of(np.minimum(clear, _AROUND)), _Window.of(np.minimum(clear, _BACK))
@@ -293,13 +298,16 @@ def _eased(joints: FloatArray, s: FloatArray, free: BoolArray, allowed: FloatArr
     off = s - around.mean(s[None])[0]
 
     def mean(of: FloatArray) -> FloatArray:
-        """Mean of the joints around each, carried along their line to its own distance: a line stays one."""
+        """Return the mean of the neighbors, corrected along their line to the joint's own distance.
+
+        The joints of a straight line therefore remain on it.
+        """
         slope = (of.take(around.behind - 1, axis=1) - of.take(around.first, axis=1)) / span
         carried: FloatArray = around.mean(of) + slope * off
         return carried
 
     once = mean(mean(joints))
-    # A mean cuts the curve short by some height; what the mean of the mean cuts off more is as much.
+    # A mean flattens the curve by some height, and the mean of the mean flattens it by as much again.
     eased = 2.0 * once - mean(mean(once))
     for _ in range(2):
         over = np.clip(eased, joints - allowed, joints + allowed) - eased
@@ -313,7 +321,7 @@ def _eased(joints: FloatArray, s: FloatArray, free: BoolArray, allowed: FloatArr
 
 
 def _apart(free: BoolArray, around: int) -> IntArray | None:
-    """Places (n+1,) for the joints that keep runs of free ones more than ``around`` apart; None: one run."""
+    """Return positions (n+1,) that separate runs of free joints by over ``around``; None for one run."""
     begins = free.copy()
     begins[1:] &= ~free[:-1]
     if np.count_nonzero(begins) < 2:
@@ -323,7 +331,10 @@ def _apart(free: BoolArray, around: int) -> IntArray | None:
 
 
 def _largest(values: FloatArray, around: int, apart: IntArray | None) -> FloatArray:
-    """Largest (k, m) of the values, none below 0, ``around`` each: of two, four, … neighbours at a time."""
+    """Return the largest values (k, m), none below 0, within ``around`` joints of each.
+
+    The maximum is built from two, four, … neighbors at a time.
+    """
     if apart is not None:
         spread = np.zeros((len(values), int(apart[-1]) + 1))
         spread[:, apart] = values

@@ -1,12 +1,12 @@
 """Programmed speeds, and speed and acceleration limits of pieces, corners and runs of chords.
 
-Words are rounded to the step, and on chords of a hundredth the rounding turns the direction to and fro at
-every joint far more than the curve does. An axis never sees these turns: between two setpoints it gets their
-sum. What it is asked for is the second difference of the setpoints, |P(s+r) - 2·P(s) + P(s-r)| / interval²
-with r the way of one interval, and that is what is held against its limit here.
+Words are rounded to the resolution. With chords of 0.01 mm, this rounding turns the direction at every joint
+far more than the curve does. An axis does not see the single turns but their sum between two setpoints. The
+demand on an axis is the second difference of its setpoints, |P(s+r) - 2·P(s) + P(s-r)| / interval², where r
+is the distance of one interval. This module compares that value with the limit of the axis.
 
-The formulas and their reasons: docs/decisions/0014-time-law.md. Nothing here depends on an override, so that
-a plan made from a moving state meets the same limits as the plan it replaces.
+The formulas and their reasons are in docs/decisions/0014-time-law.md. No value here depends on an override. A
+plan made from a moving state therefore meets the same limits as the plan that it replaces.
 """
 
 from __future__ import annotations
@@ -33,14 +33,14 @@ from core.motion.path_pieces import Pieces
 # --- chords over an interval ----------------------------------------------------------------------------
 
 
-_HALVINGS = 6  # slower speeds at which the same joint is looked at too
-_MUCH = 0.2  # of amax: joints of chords that ask less are left as they are
-RPM_STEP = 1.02  # the spindle speed changes by no more than this factor within a piece
-ARC_SAMPLES = 65  # points at which an arc's radius is read for the split
+_HALVINGS = 6  # number of lower speeds at which the same joint is checked too
+_MUCH = 0.2  # fraction of amax; joints of chords that need less remain unchanged
+RPM_STEP = 1.02  # largest factor of the spindle speed within a piece
+ARC_SAMPLES = 65  # points at which the radius of an arc is sampled for the split
 
 
 class JointDemand(NamedTuple):
-    """Of k joints: squared speed limit (k,), mm²/s², and acceleration (k, axes) that it takes, mm/s²."""
+    """Squared speed limits (k,) in mm²/s² of k joints, and required acceleration (k, axes) in mm/s²."""
 
     joint: IntArray
     squared: FloatArray
@@ -50,12 +50,13 @@ class JointDemand(NamedTuple):
 def demand_over_intervals(
     pieces: Pieces, alone: JointDemand, fastest: FloatArray, limits: MotionLimits, *, more: bool
 ) -> JointDemand:
-    """What the path asks round the joints of ``alone``, which may be run at ``fastest`` (k,) mm/s.
+    """Return the demand of the path around the joints of ``alone``.
 
-    ``alone`` tells their limits if each stood for itself; no joint gets less. Joint i lies between the pieces
-    i and i+1. The path is taken to go straight on at both ends; but where ``more`` pieces will follow, joints
-    within an interval of the end stand for themselves and take all they may, so that what a plan builds on
-    only grows with the path.
+    The joints are passed at ``fastest`` (k,) mm/s or slower. ``alone`` contains the limits of each joint
+    considered separately; no limit becomes lower. Joint i is between the pieces i and i+1. The path is
+    assumed to continue straight at both ends. If ``more`` pieces will follow, joints within an interval of
+    the end are considered separately and reserve the full acceleration, so that limits only rise as the path
+    grows.
     """
     if not len(alone.joint):
         return alone
@@ -67,7 +68,7 @@ def demand_over_intervals(
     asked = np.zeros((_HALVINGS, len(at), len(share)))
     for i, speed in enumerate(speeds):
         asked[i] = _second_difference(pieces, s, at, speed * limits.interval) / limits.interval**2
-    asked[speeds * limits.interval < mean] = 0.0  # one joint an interval: its own limit sees to it
+    asked[speeds * limits.interval < mean] = 0.0  # one joint per interval is covered by its own limit
     ratio = (asked / share).max(axis=2)
     over = ratio > 1.0
     squared = np.where(over, (speeds / np.where(over, ratio, 1.0)) ** 2, np.inf).min(axis=0)
@@ -82,7 +83,7 @@ def demand_over_intervals(
 
 
 def _second_difference(pieces: Pieces, s: FloatArray, at: FloatArray, reach: FloatArray) -> FloatArray:
-    """|P(s+r) - 2·P(s) + P(s-r)| per axis (k, axes)."""
+    """Return |P(s+r) - 2·P(s) + P(s-r)| per axis (k, axes)."""
     before, here, after = (_points(pieces, s, where) for where in (at - reach, at, at + reach))
     difference: FloatArray = np.abs(after - 2.0 * here + before)
     return difference
@@ -96,9 +97,9 @@ def _points(pieces: Pieces, s: FloatArray, where: FloatArray) -> FloatArray:
 def piece_limits(
     pieces: Pieces, limits: MotionLimits, *, more: bool
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Speed cap (n,) and acceleration (n,) of pieces, squared speed limit (n+1,) of their joints.
+    """Return speed cap (n,) and acceleration (n,) of pieces, and squared speed limits (n+1,) of joints.
 
-    ``more`` says that pieces will follow. The joints at both ends are endless.
+    ``more`` is True if pieces will follow. The limits at both ends are infinite.
     """
     cap = speed_caps(pieces, limits)
     speeds = expected_speeds(pieces, cap)
@@ -110,14 +111,14 @@ def piece_limits(
     single = np.minimum(steps, curve_caps(pieces, turns, limits))
     asked = _asked(pieces, speeds, turns, single, limits, more=more)
     corner[1:-1] = single
-    # A step of the velocity at one joint stays within amax·interval: the queue of the drives takes no more.
+    # A velocity step at one joint is at most amax·interval, because the drives' queue accepts no more.
     corner[1:-1][asked.joint] = np.minimum(asked.squared, steps[asked.joint])
     spare = spare_for_chords(pieces, speeds, turns, single, limits, asked, more=more)
     return cap, np.minimum(along, spare), corner
 
 
 def speed_caps(pieces: Pieces, limits: MotionLimits) -> FloatArray:
-    """Speed (n,) that axes and centripetal acceleration allow on each piece, mm/s."""
+    """Return the speeds (n,) in mm/s that axes and centripetal acceleration permit on each piece."""
     caps = least_ratio(limits.speeds, np.abs(pieces.direction))
     arc = pieces.curvature != 0.0
     centripetal = np.sqrt(CENTRIPETAL_SHARE * limits.plane_acceleration * pieces.radius[arc])
@@ -126,12 +127,15 @@ def speed_caps(pieces: Pieces, limits: MotionLimits) -> FloatArray:
 
 
 def expected_speeds(pieces: Pieces, caps: FloatArray) -> FloatArray:
-    """The fastest (n,) that a piece will be run with any override, mm/s; acceleration is laid out for it."""
+    """Return the highest speeds (n,) of the pieces at any override, in mm/s, for which arcs are planned."""
     return np.minimum(caps, OVERRIDE_MAX * pieces.rate)
 
 
 def accelerations(pieces: Pieces, speeds: FloatArray, limits: MotionLimits) -> FloatArray:
-    """Acceleration (n,) along each piece, mm/s²; on arcs what the vector sum leaves at ``speeds``."""
+    """Return the accelerations (n,) along the pieces in mm/s².
+
+    On arcs, they are the part of the vector sum that remains at ``speeds``.
+    """
     along = least_ratio(limits.accelerations, np.abs(pieces.direction))
     arc = pieces.curvature != 0.0
     centripetal = speeds[arc] ** 2 * np.abs(pieces.curvature[arc])
@@ -140,9 +144,9 @@ def accelerations(pieces: Pieces, speeds: FloatArray, limits: MotionLimits) -> F
 
 
 def least_ratio(limit: FloatArray, share: FloatArray) -> FloatArray:
-    """Smallest (n,) of limit / share over the axes; endless for an axis whose ``share`` (n, axes) is 0.
+    """Return the smallest limit / share (n,) over the axes; inf for an axis whose ``share`` (n, axes) is 0.
 
-    ``limit``, (axes,) or (n, axes), is above 0.
+    ``limit``, (axes,) or (n, axes), is greater than 0.
     """
     with np.errstate(divide="ignore"):
         ratios = limit / share
@@ -150,7 +154,7 @@ def least_ratio(limit: FloatArray, share: FloatArray) -> FloatArray:
 
 
 def corner_turns(pieces: Pieces) -> FloatArray:
-    """|change of direction| per axis (n-1, axes) at the joints between pieces; below 1e-9 it is none."""
+    """Return |change of direction| per axis (n-1, axes) at the joints. Values below 1e-9 become 0."""
     leaving = pieces.tangent(pieces.length)[:-1]
     entering = pieces.tangent(np.zeros(len(pieces)))[1:]
     turns: FloatArray = np.abs(entering - leaving)
@@ -159,11 +163,11 @@ def corner_turns(pieces: Pieces) -> FloatArray:
 
 
 def step_caps(turns: FloatArray, along: FloatArray, limits: MotionLimits) -> FloatArray:
-    """Square of the speed (n-1,) at which no axis is asked for more than it has over one interval, mm²/s².
+    """Return the squared speeds (n-1,) in mm²/s² at which no velocity step exceeds the limit of an interval.
 
-    A corner turns the velocity by v·|Δu|, and ``along`` (n-1,) mm/s² may brake into it and speed up behind:
-    (v + along·interval/2)·|Δu| ≤ amax·interval. A full reversal is a stop. Setpoints half an interval
-    off the corner show an eighth more at most. Endless where nothing turns.
+    A corner turns the velocity by v·|Δu|, and ``along`` (n-1,) mm/s² may brake before the corner and
+    accelerate after it: (v + along·interval/2)·|Δu| ≤ amax·interval. A full reversal is a stop. Setpoints
+    half an interval before the corner show at most an eighth more. The result is infinite without a turn.
     """
     sharp = least_ratio(limits.accelerations * limits.interval, turns)
     caps: FloatArray = np.maximum(sharp - 0.5 * limits.interval * along, 0.0) ** 2
@@ -171,11 +175,12 @@ def step_caps(turns: FloatArray, along: FloatArray, limits: MotionLimits) -> Flo
 
 
 def curve_caps(pieces: Pieces, turns: FloatArray, limits: MotionLimits) -> FloatArray:
-    """Square of the speed (n-1,) of joints near others, each standing for itself, mm²/s².
+    """Return the squared speeds (n-1,) in mm²/s² of joints close to others, each considered separately.
 
-    Short chords: v²·|Δu|/ℓ ≤ share·amax, ℓ the neighbours' mean length, which for chords of a circle is its
-    centripetal limit whatever the length of the chords. A second corner within the interval: v²·|Δu|/ℓ ≤
-    amax, ℓ the shorter neighbour; two such take (2 - ℓ/vT)·ℓ/vT of amax together, never more than all of it.
+    Short chords: v²·|Δu|/ℓ ≤ share·amax, where ℓ is the mean length of the neighbors. For chords of a circle,
+    this is its centripetal limit for any chord length. A second corner within the interval: v²·|Δu|/ℓ ≤ amax,
+    where ℓ is the shorter neighbor. Two such corners together use (2 - ℓ/vT)·ℓ/vT of amax, which is never
+    more than 1.
     """
     mean = 0.5 * (pieces.length[:-1] + pieces.length[1:])
     shorter = np.minimum(pieces.length[:-1], pieces.length[1:])
@@ -192,7 +197,7 @@ def _asked(
     *,
     more: bool,
 ) -> JointDemand:
-    """What short chords ask over an interval, of the joints that would be slow or ask much by themselves."""
+    """Return the demand of short chords over an interval, for the joints that would otherwise be slow."""
     fastest = np.minimum(speeds[:-1], speeds[1:])
     mean = 0.5 * (pieces.length[:-1] + pieces.length[1:])
     alone = turns * (np.minimum(fastest**2, single) / mean)[:, None]
@@ -212,12 +217,12 @@ def spare_for_chords(
     *,
     more: bool,
 ) -> FloatArray:
-    """Acceleration (n,) that chords shorter than one interval may use besides following their curve.
+    """Return the acceleration (n,) that remains for short chords while they follow a curve.
 
-    Chords passed within one setpoint interval are a curve to the machine: v²·|Δu|/ℓ of each axis is spoken
-    for, or what the interval as a whole asks (``JointDemand``), and (amax - that)/|u| remains. At least
-    a fifth of amax does, by the limit on corners; where ``more`` pieces will follow, the last one gets that,
-    so that no later corner can take what a plan has built on. Endless for longer lines and for arcs.
+    Chords passed within one setpoint interval act as a curve. They use v²·|Δu|/ℓ of each axis, or the demand
+    of the whole interval (``JointDemand``), and (amax - used)/|u| remains. At least a fifth of amax remains
+    because of the corner limits. If ``more`` pieces will follow, the last chord gets exactly this share, so
+    that a later corner cannot reduce it. The result is infinite for longer lines and for arcs.
     """
     amax = limits.accelerations
     spare = np.full(len(pieces), np.inf)
@@ -239,9 +244,9 @@ def spare_for_chords(
 
 
 def constant_rates(table: BlockTable) -> FloatArray:
-    """Speed (m,) of each block in mm/s, that of surface-speed blocks at the middle of their radii.
+    """Return the speed (m,) of each block in mm/s. Surface-speed blocks use the middle of their radii.
 
-    Raises MotionError for a feed that is not positive and for a feed per revolution with the spindle still.
+    Raises MotionError for a feed that is not positive, and for a feed per revolution with a stopped spindle.
     """
     _refuse(table, ~(table.feed > 0.0), "the feed must be greater than 0; program an F word", "no-feed")
     surface = by_radius(table)
@@ -267,7 +272,10 @@ def constant_rates(table: BlockTable) -> FloatArray:
 
 
 def _per_lead(table: BlockTable) -> FloatArray:
-    """Way (m,) per way along Z, 1 save in threads: a lead counts along the axis of the thread."""
+    """Return the path length per travel along Z (m,): 1 except in threads.
+
+    A lead is measured along the axis of the thread.
+    """
     _refuse(
         table,
         table.thread & (table.start[:, 1] == table.end[:, 1]),
@@ -280,12 +288,15 @@ def _per_lead(table: BlockTable) -> FloatArray:
 
 
 def by_radius(table: BlockTable) -> BoolArray:
-    """Blocks (m,) whose speed follows the radius."""
+    """Return the blocks (m,) whose speed depends on the radius."""
     return table.per_rev & np.isfinite(table.surface)
 
 
 def surface_rpms(table: BlockTable, radius: FloatArray) -> FloatArray:
-    """``surface_rpm`` of ``core.geometry`` for arrays; NaN without a surface speed, or by 0 on the axis."""
+    """Return ``surface_rpm`` of ``core.geometry`` for arrays.
+
+    The result is NaN without a surface speed, and for a surface speed of 0 at the centerline.
+    """
     with np.errstate(divide="ignore", invalid="ignore"):
         rpm = 60.0 * table.surface / (2.0 * np.pi * np.abs(radius))
     return np.clip(rpm, table.lo, table.hi)
@@ -299,10 +310,11 @@ def _refuse(table: BlockTable, wrong: BoolArray, why: str, code: str) -> None:
 
 
 def split_by_radius(pieces: Pieces, table: BlockTable, index: int) -> Pieces:
-    """Piece ``index`` in parts within which the rpm changes by 2 % at most, each with the rate at its middle.
+    """Return piece ``index`` in parts within which the rpm changes by at most 2 %.
 
-    On a line across the axis the time of a part is then exact, since 1/v grows linearly with the radius.
-    Where the rpm is clamped nothing is split; the parts are bounded by ln(max/min rpm)/ln 1.02 per pass.
+    Each part has the rate at its middle. On a line across the axis, the time of a part is then exact, because
+    1/v is linear in the radius. The piece is not split where the rpm is at its limit. The number of parts is
+    at most ln(max/min rpm)/ln 1.02 per pass.
     """
     piece, owner = pieces[index : index + 1], _row(table, index)
     length = float(piece.length[0])
@@ -313,7 +325,7 @@ def split_by_radius(pieces: Pieces, table: BlockTable, index: int) -> Pieces:
 
 
 def cut(piece: Pieces, at: FloatArray, rate: FloatArray) -> Pieces:
-    """One piece cut at the distances ``at`` (k+1,), its ends included, with rates ``rate`` (k,)."""
+    """Return one piece cut at the distances ``at`` (k+1,), including its ends, with ``rate`` (k,)."""
     parts = piece[np.zeros(len(at) - 1, dtype=np.int64)]
     return replace(
         parts,
@@ -325,7 +337,7 @@ def cut(piece: Pieces, at: FloatArray, rate: FloatArray) -> Pieces:
 
 
 def _row(table: BlockTable, index: int) -> BlockTable:
-    """The table of one block alone."""
+    """Return the table of one block."""
     row = slice(index, index + 1)
     return BlockTable(*(getattr(table, name)[row] for name in table.__dataclass_fields__))
 
@@ -337,7 +349,7 @@ def _radii(piece: Pieces, owner: BlockTable, at: FloatArray) -> FloatArray:
 
 
 def _cuts(piece: Pieces, owner: BlockTable, length: float) -> FloatArray:
-    """Distances at which the radius passes a level of the geometric ladder between both clamps."""
+    """Return the distances at which the radius passes a level of a geometric series of rpm."""
     if piece.curvature[0] == 0.0:
         x0, x1 = owner.start[0, 0] - owner.axis[0], owner.end[0, 0] - owner.axis[0]
         crossing = [length * x0 / (x0 - x1)] if x0 * x1 < 0.0 else []
@@ -352,7 +364,7 @@ def _cuts(piece: Pieces, owner: BlockTable, length: float) -> FloatArray:
 
 
 def _passed(owner: BlockTable, s0: float, s1: float, r0: float, r1: float) -> FloatArray:
-    """Distances between s0 and s1, the radius running straight from r0 to r1, at which levels are passed."""
+    """Return the distances at which levels are passed while the radius changes linearly from r0 to r1."""
     unclamped = 60.0 * owner.surface[0] / (2.0 * np.pi)  # rpm times radius
     low, high = min(r0, r1), max(r0, r1)
     bottom = max(low, unclamped / owner.hi[0])

@@ -1,4 +1,4 @@
-"""Whole programs in bounded memory: the same law, planned window by window, and sampled for a trace."""
+"""Planning of whole programs in bounded memory, window by window, and sampling for a trace."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from core.motion.motion_profile import Profile
 
 
 class Chunk(NamedTuple):
-    """Motion that is planned for good. ``t`` is when it starts, s of motion since the planner's beginning.
+    """A final part of the planned motion. ``t`` is its start in seconds since the start of the planner.
 
-    ``profile`` counts from 0 and may begin and end in motion; the next chunk goes on from there. ``n t0 t1``
-    are the numbers of the blocks that end in it and when they start and end, counted as ``t`` is.
+    ``profile`` starts at time 0 and may start and end in motion; the next chunk continues it. ``n t0 t1`` are
+    the numbers of the blocks that end in the chunk, and their start and end times on the scale of ``t``.
     """
 
     t: float
@@ -31,11 +31,11 @@ class Chunk(NamedTuple):
 
 
 class ChunkPlanner:
-    """Plans blocks as they come in, holding about ``window`` of them.
+    """Plans blocks as they arrive, with about ``window`` blocks in memory.
 
-    What it yields equals one plan of the whole: from a window only that part is taken whose speeds no
-    further block can change, because its braking ends at a corner or feed inside the window. Where none
-    does the window grows.
+    The result equals one plan of the whole program. Each window yields only the part whose speeds no further
+    block can change, because its braking ends at a corner or a feed inside the window. If no part is final,
+    the window grows.
     """
 
     def __init__(self, limits: MotionLimits, *, rpm_max: float = math.inf, window: int = 20_000) -> None:
@@ -50,7 +50,7 @@ class ChunkPlanner:
         self._rpm_max = rpm_max
         self._window = window
         self._t = 0.0
-        self._last = -1  # number of the last block that was yielded
+        self._last = -1  # =
         self._builder = PathBuilder(limits, rpm_max=rpm_max)
         self._s: float | None = None
         self._v = 0.0
@@ -58,13 +58,13 @@ class ChunkPlanner:
 
     @property
     def t(self) -> float:
-        """Time up to which motion has been yielded, s."""
+        """The time up to which motion has been yielded, in seconds."""
         return self._t
 
     def add(self, blocks: Iterable[MotionBlock | Row]) -> Iterator[Chunk]:
-        """Take blocks lazily and yield what is settled; nothing happens until the result is iterated.
+        """Read blocks lazily and yield the motion that is final.
 
-        Raises MotionError for a block that cannot be moved.
+        Nothing happens until the result is iterated. Raises MotionError for a block that cannot be planned.
         """
         for batch, size in batches(blocks, self._window - self._waiting, self._window):
             self._builder.add_batch(batch)
@@ -74,7 +74,7 @@ class ChunkPlanner:
                 yield from self._settled()
 
     def finish(self) -> Iterator[Chunk]:
-        """Come to rest at the end of the last block: an exact stop. Blocks may be added again afterwards."""
+        """Stop at the end of the last block, as for an exact stop. More blocks may be added afterwards."""
         if self._builder.holds_blocks:
             self._builder.close()
             yield self._accept(self._plan(), None)
@@ -94,7 +94,7 @@ class ChunkPlanner:
         yield self._accept(self._plan(), joint)
 
     def _accept(self, whole: Profile, joint: int | None) -> Chunk:
-        """Yield ``whole`` up to ``joint`` (None: to its end) and go on from there."""
+        """Return ``whole`` up to ``joint`` (None: to its end) and continue from there."""
         path, begin = whole.path, self._t
         n, t0, t1 = whole.block_times()
         ended = len(n) if joint is None else int(np.searchsorted(path.first[1:], joint, side="right"))
@@ -112,10 +112,10 @@ class ChunkPlanner:
 def sample_positions(
     profile: Profile, dt: float, t_offset: float = 0.0
 ) -> tuple[FloatArray, FloatArray, IntArray]:
-    """Times (m,), machine positions (m, axes) and block numbers (m,) every ``dt`` from ``t_offset`` on.
+    """Return times (m,), machine positions (m, axes) and block numbers (m,) every ``dt`` seconds.
 
-    The end itself is left out, since it is the start of what follows. Raises MotionError for a ``dt`` that
-    is not above zero.
+    The samples start at ``t_offset``. The end is left out, because the next profile starts there. Raises
+    MotionError if ``dt`` is not greater than 0.
     """
     if not dt > 0.0:
         raise MotionError(

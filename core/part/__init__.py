@@ -1,1 +1,1 @@
-"""The part as metal: tool shapes and their outlines, stock, removal. Millimetres, X a radius."""
+"""The part and its material: tool shapes and outlines, stock, and removal, in mm with X as a radius."""

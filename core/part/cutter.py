@@ -1,8 +1,8 @@
-"""A tool at work on a turned part: what it takes off, what its body and its neighbours meet.
+"""A tool that machines a turned part: the material that it removes, and collisions of its body.
 
-An outside tool takes off all that lies further out than its edge: what stands above the edge is a chip, or
-its holder would have met it. A tool in a bore takes off all that is nearer to the axis. A tool that works in
-the face takes off what its outline covers, and nothing beside it.
+An outside tool removes everything further out than its edge, because material above the edge is a chip or
+would hit the holder. A boring tool removes everything closer to the axis. A face tool removes only what its
+outline covers.
 """
 
 from __future__ import annotations
@@ -22,14 +22,14 @@ from core.part.tool_outline import outline as outline_of
 from core.part.tool_shape import ToolShape
 from core.part.turned_part import NOTHING, Cut, TurnedPart
 
-_OVERLAP = 0.02  # mm; a body that comes no further into metal touches it
+_OVERLAP = 0.02  # mm; a body that enters the material by less only touches it
 _PHASE = 1e-6  # turns
-_ONE_PLACE = 1.0  # mm between the tips of two tools that cannot both be mounted
+_ONE_PLACE = 1.0  # =
 _ASSUMED_BODY = frozenset({"holder", "stick_out", "length"})
 
 
 class Side(StrEnum):
-    """From where a tool comes to the part."""
+    """The side from which a tool machines the part."""
 
     OUTSIDE = "outside"
     BORE = "bore"
@@ -38,14 +38,14 @@ class Side(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class _Sides:
-    """Both sides of one convex outline; ``far`` is that away from the axis, mirrored."""
+    """Both sides of one convex outline. ``far`` is the side away from the axis, mirrored."""
 
     near: Edge
     far: Edge
 
 
 class _Outlines(NamedTuple):
-    """Convex outlines, their least Z and r, and their greatest Z; endlessly far away without any."""
+    """Convex outlines with their least Z and r and their greatest Z; infinitely far away if empty."""
 
     sides: list[_Sides]
     low: Point
@@ -60,10 +60,10 @@ class _Outlines(NamedTuple):
 
 
 class Cutter:
-    """A tool's outlines (k, 2) of Z and r about its control point, made ready to be swept.
+    """The outlines (k, 2) of a tool in Z and r about its control point, prepared for sweeping.
 
-    ``drills``: it is round about the spindle's axis. ``rear``: it works at X negative; its outlines are those
-    that it has there. ``height`` is how far its edges reach along r, mm.
+    ``drills`` means that the tool is round about the spindle axis. ``rear`` means that it works at negative
+    X, where its outlines are given. ``height`` is the size of its edges along r in mm.
     """
 
     def __init__(
@@ -71,7 +71,7 @@ class Cutter:
         drills: bool = False,
     ) -> None:  # fmt: skip
         self.side, self.drills = side, drills
-        self.across = -1.0 if rear else 1.0  # sign of X where it works
+        self.across = -1.0 if rear else 1.0  # sign of X on the working side
         turned = np.array([1.0, self.across])
         outlines = tuple(cutting)
         self._cutting = _Outlines.of(outline * turned for outline in outlines)
@@ -81,12 +81,14 @@ class Cutter:
 
     @property
     def held(self) -> bool:
-        """Whether its holder is known."""
+        """True if the holder of the tool is known."""
         return bool(self._body.sides)
 
     def clears(self, forward: int) -> float:
-        """Degrees from Z at which the back of the edge rises behind the tip of a tool that cuts towards
-        ``forward`` (sign of Z); 90 where it has none."""
+        """Return the angle in degrees from Z at which the trailing edge rises from the tip.
+
+        ``forward`` is the sign of Z in the cutting direction. The result is 90 if no trailing edge rises.
+        """
         if forward not in self._clears:
             self._clears[forward] = self._clearance(forward)
         return self._clears[forward]
@@ -96,19 +98,19 @@ class Cutter:
         edge = outline.far if self.side is Side.BORE else outline.near
         rises = -forward * edge.slope
         lengths = np.where(rises > 0.0, np.hypot(np.diff(edge.z), np.diff(edge.r)), 0.0)
-        sides = rises[lengths > 0.5 * lengths.max(initial=0.0)]  # and no chord of the nose
+        sides = rises[lengths > 0.5 * lengths.max(initial=0.0)]  # without the chords of the nose
         return float(np.degrees(np.arctan(sides.min()))) if len(sides) else 90.0
 
     def cut(self, part: TurnedPart, start: Point, end: Point) -> Cut:
-        """Take off what the edges sweep from one place of the control point to the next."""
+        """Remove the material that the edges sweep on a straight move of the control point."""
         return self._swept(part, start, end, cut=True)
 
     def meets(self, part: TurnedPart, start: Point, end: Point) -> Cut:
-        """What the edges would take off, left where it is."""
+        """Return the material that the edges would remove, without removing it."""
         return self._swept(part, start, end, cut=False)
 
     def strikes(self, part: TurnedPart, start: Point, end: Point) -> Cut:
-        """What holder and shank run into; it is taken off, so that one collision is told once."""
+        """Return the material that holder and shank hit, and remove it so that it is reported only once."""
         met = NOTHING
         start, end = self._fronts(start, end)
         if self._clear_of(part, self._body, start, end) or self._above(part, self._body, start, end):
@@ -120,7 +122,7 @@ class Cutter:
         return met if met.depth > _OVERLAP and met.width > _OVERLAP else NOTHING
 
     def reaches(self, part: TurnedPart, start: Point, end: Point) -> Cut:
-        """What edges and body would meet, left where it is: the outline of a chuck."""
+        """Return what edges and body would hit, without removing it, such as the outline of a chuck."""
         start, end = self._fronts(start, end)
         met = NOTHING
         for outlines in (self._cutting, self._body):
@@ -130,10 +132,10 @@ class Cutter:
         return met if met.depth > _OVERLAP and met.width > _OVERLAP else NOTHING
 
     def thread(self, part: TurnedPart, start: Point, end: Point, lead: float, turns: float) -> Cut:
-        """The form of a thread in the section: the edge stands once a turn on its way.
+        """Cut the section of a thread, where the edge is in the section plane once per revolution.
 
-        ``turns`` is how far the spindle has turned since the pass began in step. A lead finer than a column
-        leaves nothing standing between two turns that a column could show.
+        ``turns`` is the number of revolutions since the pass started in step. If the lead is finer than a
+        column, the thread is cut like a cylinder, because no column could show it.
         """
         if lead <= part.columns.step:
             return self.cut(part, start, end)
@@ -147,14 +149,14 @@ class Cutter:
         return met
 
     def _clear_of(self, part: TurnedPart, outlines: _Outlines, start: Point, end: Point) -> bool:
-        """Whether outlines stay before the part, or outside of it."""
+        """Return whether the outlines remain in front of the part or outside it."""
         columns, low = part.columns, outlines.low
         if min(start[0], end[0]) + low[0] > columns.first + columns.step * columns.number:
             return True
         return self.side is Side.OUTSIDE and min(start[1], end[1]) + low[1] > part.largest
 
     def _above(self, part: TurnedPart, outlines: _Outlines, start: Point, end: Point) -> bool:
-        """Whether outlines of an outside tool stay outside of all columns that they pass."""
+        """Return whether the outlines of an outside tool remain outside all columns that they pass."""
         if self.side is not Side.OUTSIDE or not outlines.sides:
             return False
         z = min(start[0], end[0]) + outlines.low[0], max(start[0], end[0]) + outlines.front
@@ -164,7 +166,10 @@ class Cutter:
         return place[0], place[1] * self.across
 
     def _fronts(self, start: Point, end: Point) -> tuple[Point, Point]:
-        """Both ends of a move on the side of the axis where the outlines are; a round tool works on both."""
+        """Return both ends of a move on the side of the axis where the outlines are.
+
+        A round tool works on both sides.
+        """
         if self.drills:
             side = math.copysign(1.0, start[1] + end[1])
             return (start[0], start[1] * side), (end[0], end[1] * side)
@@ -190,7 +195,7 @@ class Cutter:
 
 
 def _opposite(part: TurnedPart, outline: _Sides, start: Point, end: Point) -> Cut:
-    """The wall of a bore on the other side of the axis, which a bar that is too thick meets."""
+    """Return the opposite wall of a bore that a bar of too large diameter would hit."""
     first, near = sweep(outline.near, start, end, part.columns)
     return part.inwards(first, -near)
 
@@ -204,8 +209,10 @@ def _mirrored(point: Point) -> Point:
 
 
 class SolidTool(NamedTuple):
-    """All of a tool that must not meet metal: its extent about the control point, and its outlines on
-    either side of the axis.
+    """The parts of a tool that must not hit material.
+
+    ``low`` and ``high`` are the extent about the control point, and ``sides`` are the outlines on either side
+    of the axis.
     """
 
     low: FloatArray
@@ -213,7 +220,7 @@ class SolidTool(NamedTuple):
     sides: tuple[Cutter, Cutter]
 
     def met(self, part: TurnedPart, start: Point, end: Point) -> Cut:
-        """Return the metal on the straight path of the control point, Z and r in mm; all of it stays."""
+        """Return the material on the straight path of the control point (Z, r in mm), without removing it."""
         low = self.low + np.minimum(start, end)
         high = self.high + np.maximum(start, end)
         columns, radius = part.columns, part.largest
@@ -226,17 +233,18 @@ class SolidTool(NamedTuple):
 
 
 class _Neighbour(NamedTuple):
-    """A tool and where it is on the plate, Z and r."""
+    """A tool with its position on the plate, Z and r."""
 
     at: Point
     solid: SolidTool
 
 
 class Neighbours:
-    """Tools with a shape and an offset; ``offsets`` are machine Z and X of each tip on part zero, mm.
+    """The tools on the plate that have a shape and an offset.
 
-    Two tools with the same offset cannot both be mounted: ``in_one_place`` has such pairs, and neither is
-    taken for the neighbour of the other. A holder without a stated size is left out.
+    ``offsets`` are the machine Z and X in mm at which each tip is at part zero. Two tools with the same
+    offset cannot both be mounted. Such pairs are in ``in_one_place``, and neither tool counts as a neighbor
+    of the other. Holders without a specified size are left out.
     """
 
     def __init__(self, shapes: Mapping[int, ToolShape], offsets: Mapping[int, Point]) -> None:
@@ -249,7 +257,7 @@ class Neighbours:
         )
 
     def struck(self, part: TurnedPart, tool: int, way: Iterable[tuple[Point, Point]]) -> int:
-        """The first other tool that metal meets while ``tool`` goes this way; 0 where none does."""
+        """Return the first other tool that hits material while ``tool`` moves along the path, or 0."""
         if tool not in self._offsets:
             return 0
         own = self._offsets[tool]
@@ -264,7 +272,7 @@ class Neighbours:
 
 
 def solid_tool(outlines: Sequence[FloatArray]) -> SolidTool:
-    """Return the tool that consists of these convex outlines (k, 2) of Z and r, mm."""
+    """Return a tool that consists of these convex outlines (k, 2) of Z and r in mm."""
     points = np.vstack(outlines)
     sides = Cutter((), outlines, Side.FACE), Cutter((), outlines, Side.FACE, rear=True)
     return SolidTool(points.min(axis=0), points.max(axis=0), sides)

@@ -1,15 +1,15 @@
-"""Codes of indexable inserts (ISO 1832, ANSI B212.4) and of tool holders, and their sizes.
+"""Codes of indexable inserts (ISO 1832, ANSI B212.4) and of tool holders, and their dimensions.
 
-``CNMG 120408`` and ``CNMG432`` are the same insert: a rhombus of 80° without clearance, inscribed circle
-12.7 mm, 4.76 mm thick, nose radius .8 mm (1/32 in). The tables are those of ISO 1832 (shape, normal
-clearance, tolerance, type, size, thickness, corner) and of ANSI B212.4 (sizes in fractions of an inch), held
-against the keys to insert codes in the catalogues of Mitsubishi, Widia, Palbit and Denitool.
+``CNMG 120408`` and ``CNMG432`` are the same insert: an 80° rhombus without clearance, with an inscribed
+circle of 12.7 mm, a thickness of 4.76 mm and a nose radius of 0.8 mm (1/32 in). The tables follow ISO 1832
+(shape, clearance, tolerance, type, size, thickness, corner) and ANSI B212.4 (sizes in fractions of an inch).
+They were compared with the catalogs of Mitsubishi, Widia, Palbit and Denitool.
 
-``20x20``, ``3/4"`` and ``16mm`` are sizes of a shank; ``MCLNR 2020K12`` (ISO 5608) and ``MCLNR-124B``
-(ANSI B212.5) are holders with a shank, ``S16R-SCLCR09`` (ISO 5609) and ``A10-SCLCR2`` boring bars.
-Style letters and codes are as catalogues print them; reach and head are the usual ones and not those of
-one maker: for less than a millimetre measure the holder and give its outline.
-``0,4 18,4 18,60 0,60`` is an outline, mm: Z and X from the control point. All else is a name.
+``20x20``, ``3/4"`` and ``16mm`` are sizes of a shank. ``MCLNR 2020K12`` (ISO 5608) and ``MCLNR-124B`` (ANSI
+B212.5) are holders with a shank, and ``S16R-SCLCR09`` (ISO 5609) and ``A10-SCLCR2`` are boring bars. Reach
+and head are typical values and not those of one maker. If they must be exact within 1 mm, measure the holder
+and specify its outline. ``0,4 18,4 18,60 0,60`` is an outline in mm, with Z and X from the control point. Any
+other text is a name.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ _RHOMBS = {"C": 80.0, "D": 55.0, "E": 75.0, "K": 55.0, "M": 86.0, "S": 90.0, "V"
 CORNERS: Mapping[str, tuple[float, ...]] = {
     **{shape: (angle, 180.0 - angle) * 2 for shape, angle in _RHOMBS.items()},
     "T": (60.0,) * 3,
-    "W": (80.0, 160.0) * 3,  # the trigon: a triangle with broken sides
+    "W": (80.0, 160.0) * 3,  # the trigon, a triangle with bent sides
     "P": (108.0,) * 5,
     "H": (120.0,) * 6,
     "O": (135.0,) * 8,
@@ -41,21 +41,21 @@ _LETTERS: tuple[tuple[str, Iterable[str]], ...] = (
     ("tolerance class", "ACEFGHJKLMNU"),
     ("insert type (hole and chip breaker)", "ABCFGHJMNQRTUWX"),
 )
-# Inscribed circles in inches; those under 1/4 in only where the standard names an edge for them.
+# Inscribed circles in inches; those under 1/4 in only if the standard has an edge length for them.
 _SERIES = (1 / 4, 5 / 16, 3 / 8, 7 / 16, 1 / 2, 9 / 16, 5 / 8, 11 / 16, 3 / 4, 7 / 8, 1.0, 5 / 4)
 _SMALL = (5 / 32, 3 / 16, 7 / 32)
 _UNUSUAL: Mapping[str, Mapping[str, float]] = {
-    "C": {"03": 5 / 32 * MM_PER_INCH},  # whose edge of 4.03 mm would be 04, and that is 3/16 in
+    "C": {"03": 5 / 32 * MM_PER_INCH},  # the edge of 4.03 mm would give 04, which is 3/16 in
     "K": {"16": 9.525},
     "R": {f"{circle:02d}": float(circle) for circle in (5, 6, 8, 10, 16, 20, 25, 32)}
     | {"09": 9.525, "12": 12.7, "15": 15.875, "19": 19.05},
     "W": {"L3": 4.7625},
 }
-# Thin inserts of the smallest boring bars (CCGT 0301, CCGT 04T0) have circles of the makers' own, mm.
+# Thin inserts of the smallest boring bars (CCGT 0301, CCGT 04T0) have maker-specific circles, mm.
 _THIN: Mapping[tuple[str, str], float] = {
     **{("03", "01"): 3.5, ("03", "S1"): 3.5, ("04", "T0"): 4.3, ("04", "T1"): 4.3},
 }
-_METRIC_ROUND = 12.0  # mm; RCMT 1204M0, beside 12.7 mm of RNMG 120400
+_METRIC_ROUND = 12.0  # mm; RCMT 1204M0, compared with 12.7 mm of RNMG 120400
 _THICKNESS = {
     **{
         "S1": 1.39,
@@ -74,7 +74,7 @@ _THICKNESS = {
 _CORNER = {
     f"{tenths:02d}": tenths / 10.0 for tenths in (0, 1, 2, 3, 4, 5, 6, 8, 10, 12, 15, 16, 20, 24, 28, 32)
 }
-_K_EDGE = 16.15  # mm, the long edge of KNUX 1604..: the only K that is turned with
+_K_EDGE = 16.15  # mm, the long edge of KNUX 1604.., the only K insert used for turning
 _EIGHTHS = {
     **{"1.2": 5 / 32, "1.5": 3 / 16, "1.8": 7 / 32, "2": 1 / 4, "2.5": 5 / 16, "3": 3 / 8},
     **{"4": 1 / 2, "5": 5 / 8, "6": 3 / 4, "7": 7 / 8, "8": 1.0},
@@ -99,13 +99,13 @@ _SIXTY_FOURTHS = {
 }
 _FRACTION = re.compile(r"1\.[1258]|[23]\.5|\d?")
 _CORNER_FRACTION = re.compile(r"0?\.[25]|\d?")
-# Entering angles by the style letter, ISO 5608 clause 4.4; in a shank these of the second table face.
+# Entering angles by style letter, ISO 5608 clause 4.4; shanks of the second table are for facing.
 _TURNS: Mapping[str, float] = {
     **{"A": 90.0, "B": 75.0, "D": 45.0, "E": 60.0, "G": 90.0, "H": 107.5, "J": 93.0, "L": 95.0},
     **{"M": 50.0, "N": 63.0, "P": 117.5, "Q": 107.5, "R": 75.0, "S": 45.0, "T": 60.0, "V": 72.5},
 }
 _FACES: Mapping[str, float] = {"C": 90.0, "F": 91.0, "K": 75.0, "U": 93.0, "W": 60.0, "X": 120.0, "Y": 85.0}
-# From the tip to the far side of the shank by its width, ISO 5608 (mm) and ANSI B212.5 (16ths of an inch).
+# Distance from the tip to the far side of the shank by its width, ISO 5608 (mm) and ANSI B212.5 (1/16 in).
 _REACH = {8.0: 10.0, 10.0: 12.0, 12.0: 16.0, 16.0: 20.0, 20.0: 25.0, 25.0: 32.0, 32.0: 40.0, 40.0: 50.0}
 _INCH_REACH = {6: 8, 8: 10, 10: 12, 12: 16, 16: 20, 20: 24, 24: 32}
 _PAIR = r"[-+.\d]+,[-+.\d]+"
@@ -118,14 +118,16 @@ _BAR = rf"[ACES](\d\d)[A-Z]?[\s-]*{_HEAD}[\s-]*(\d\d?)\b.*"
 
 
 class InsertCodeError(CodedError, ValueError):
-    """A code that means nothing; the text says which character."""
+    """Raised for an invalid code. The message names the wrong character."""
 
 
 @dataclass(frozen=True, slots=True)
 class Insert:
-    """An insert: interior angles and edges counter-clockwise from the cutting corner, degrees and mm.
+    """An indexable insert, in degrees and mm.
 
-    ``inscribed_circle`` is a diameter. A round insert has no corners and no edges, and is all nose.
+    ``corners`` and ``edges`` are interior angles and lengths, counterclockwise from the cutting corner.
+    ``inscribed_circle`` is a diameter. A round insert has no corners and no edges; its nose is the whole
+    circle.
     """
 
     shape: str
@@ -138,7 +140,7 @@ class Insert:
 
     @property
     def point_angle(self) -> float:
-        """Included angle of the cutting corner; 0 of a round insert."""
+        """The included angle of the cutting corner in degrees; 0 for a round insert."""
         return self.corners[0] if self.corners else 0.0
 
 
@@ -152,14 +154,14 @@ class Insert:
 
 
 def edge_length(corner: float, following: float, circle: float) -> float:
-    """The edge between two corners (degrees) of a polygon about an inscribed circle of this diameter."""
+    """Return the edge between two corners (degrees) of a polygon around an inscribed circle (diameter)."""
     return circle / 2.0 * (1.0 / tan(radians(corner / 2.0)) + 1.0 / tan(radians(following / 2.0)))
 
 
 def insert_of(shape: str, circle: float, nose_radius: float) -> Insert:
-    """An insert of a known shape letter by its inscribed circle, mm."""
+    """Return the insert with this shape letter and inscribed circle in mm."""
     corners = CORNERS[shape]
-    if shape == "K":  # a parallelogram touches the circle with its long edges alone; the end edge is short
+    if shape == "K":  # only the long edges of a parallelogram touch the circle; the end edge is short
         edges: tuple[float, ...] = (circle / sin(radians(corners[0])), _K_EDGE) * 2
     else:
         edges = tuple(
@@ -169,23 +171,23 @@ def insert_of(shape: str, circle: float, nose_radius: float) -> Insert:
 
 
 def metric_sizes(shape: str) -> dict[str, float]:
-    """Inscribed circles (mm) by the two figures of ISO 1832: the edge in whole mm, decimals left off."""
+    """Return the inscribed circles (mm) by the two digits of ISO 1832: the edge in whole mm, rounded down."""
     if shape in "RK":
         return dict(_UNUSUAL[shape])
     corners = CORNERS[shape]
     sizes = {}
     for inch in (*(_SMALL if shape in "CDSTVW" else ()), *_SERIES):
         circle = round(inch * MM_PER_INCH, 6)
-        # A triangle about 1/4 in has 10.9985 mm, which the standard's tables have rounded to 11.
+        # A triangle for 1/4 in has an edge of 10.9985 mm, which the standard rounds to 11.
         sizes[f"{int(edge_length(corners[0], corners[1], circle) + 0.005):02d}"] = circle
     return {**sizes, **_UNUSUAL.get(shape, {})}
 
 
-@lru_cache(maxsize=256)  # asked for every feed of a program
+@lru_cache(maxsize=256)  # called for every feed of a program
 def decoded(code: str) -> Insert:
-    """The insert of an ISO or ANSI code. Raises InsertCodeError naming the character that means nothing.
+    """Return the insert of an ISO or ANSI code. Raises InsertCodeError that names the invalid character.
 
-    What follows the size (edge condition, hand, the maker's chip breaker) is not looked at.
+    Characters after the size (edge condition, hand, chip breaker of the maker) are ignored.
     """
     text = re.sub(r"[\s_]", "", code).upper()
     letters = re.match(r"[^-.\d]*?(?=[-.\d]|L\d|$)", text)
@@ -199,7 +201,7 @@ def decoded(code: str) -> Insert:
 
 
 def _check_letters(code: str, head: str, *, older: bool) -> None:
-    """The four letters; the older inch codes leave the last one out (TPG 322)."""
+    """Check the four letters. Older inch codes leave out the last one (TPG 322)."""
     for place, (what, known) in enumerate(_LETTERS, start=1):
         if len(head) < place:
             if older:
@@ -228,15 +230,15 @@ def _check_letters(code: str, head: str, *, older: bool) -> None:
 
 @dataclass(slots=True)
 class _Size:
-    """The figures of a code, read from the left."""
+    """The digits of a code, read from the left."""
 
     code: str
     shape: str
     left: str
-    place: int  # of the last character that was read, counted without blanks and dashes
+    place: int  # position of the last character read, without blanks and dashes
 
     def take(self, found: str, what: str, known: Mapping[str, float]) -> float:
-        """What the next characters stand for."""
+        """Return the value of the next characters and remove them."""
         if not found or len(found) < len(min(known, key=len)):
             place, figures = self.place + len(found) + 1, " ".join(sorted(known))
             raise InsertCodeError(
@@ -278,7 +280,7 @@ def _meaningless(code: str, place: int, found: str, what: str, known: Iterable[s
 
 
 def _metric(size: _Size) -> tuple[float, float, float]:
-    """Inscribed circle, thickness and nose radius, mm."""
+    """Return inscribed circle, thickness and nose radius in mm, read from a metric code."""
     edge = size.left[:2]
     circle = size.take(
         edge, Message("size for insert shape {shape}", shape=size.shape), metric_sizes(size.shape)
@@ -297,7 +299,7 @@ def _metric(size: _Size) -> tuple[float, float, float]:
 
 
 def _inch(size: _Size) -> tuple[float, float, float]:
-    """Inscribed circle, thickness and nose radius, mm."""
+    """Return inscribed circle, thickness and nose radius in mm, read from an inch code."""
     circle = size.take(_next(size, _FRACTION), "insert size (eighths of an inch)", _EIGHTHS)
     thickness = size.take(_next(size, _FRACTION), "insert thickness (sixteenths of an inch)", _SIXTEENTHS)
     corner = _next(size, _CORNER_FRACTION)
@@ -318,17 +320,18 @@ def _inch(size: _Size) -> tuple[float, float, float]:
 
 
 def _next(size: _Size, pattern: re.Pattern[str]) -> str:
-    """The next figure of an inch code, or the character that stands in its place."""
+    """Return the next number of an inch code, or the invalid character in its place."""
     found = pattern.match(size.left)
     return (found[0] if found else "") or size.left[:1]
 
 
 @dataclass(frozen=True, slots=True)
 class Holder:
-    """What stands behind an insert, mm; 0: not said. A bar is round, a shank square or nearly so.
+    """A tool holder in mm; 0 means not specified. A bar is round, a shank is square or nearly so.
 
-    ``reach`` goes from the tip to the far side of the shank. ``entry`` is the entering angle, degrees, and
-    ``faces`` says that it is one against a feed towards the axis. ``outline`` replaces everything.
+    ``reach`` is the distance from the tip to the far side of the shank. ``entry`` is the entering angle in
+    degrees. ``faces`` is True if this angle applies to a feed toward the axis. ``outline`` replaces all other
+    values.
     """
 
     width: float = 0.0
@@ -340,7 +343,7 @@ class Holder:
 
 
 def holder_of(text: str) -> Holder | None:
-    """The holder that a text describes; None where it is but a name, or empty."""
+    """Return the holder that a text describes, or None if the text is only a name or empty."""
     words = text.strip()
     if points := outline_points(words):
         return Holder(outline=points)
@@ -348,12 +351,12 @@ def holder_of(text: str) -> Holder | None:
 
 
 def shank(width: float) -> Holder:
-    """A standard shank of this width."""
+    """Return a standard shank of this width."""
     return Holder(width=width, reach=_reach(width))
 
 
 def outline_points(text: str) -> tuple[tuple[float, float], ...] | None:
-    """Three points or more, ``z,x z,x z,x``; None for any other text."""
+    """Return the points of an outline ``z,x z,x z,x``, or None for any other text."""
     if not re.fullmatch(rf"\s*{_PAIR}(?:\s+{_PAIR}){{2,}}\s*", text):
         return None
     try:
@@ -363,7 +366,10 @@ def outline_points(text: str) -> tuple[tuple[float, float], ...] | None:
 
 
 def _size(words: str) -> Holder | None:
-    """``20x20``, ``3/4"``, ``.75 in``, ``16mm``; a fraction is inches, a bare number is none."""
+    """Return the shank of ``20x20``, ``3/4"``, ``.75 in`` or ``16mm``; fractions are inches.
+
+    A number without a unit returns None.
+    """
     found = re.fullmatch(_SIZES, words)
     if not found:
         return None
@@ -392,7 +398,7 @@ def _reach(width: float) -> float:
 
 def _coded(words: str) -> Holder | None:
     if bar := re.fullmatch(_BAR, words):
-        metric = len(bar[3]) == 2  # an ISO bar names the edge in mm, an inch bar the circle in eighths
+        metric = len(bar[3]) == 2  # an ISO bar gives the edge in mm, an inch bar the circle in 1/8 in
         across = float(bar[1]) * (1.0 if metric else MM_PER_INCH / 16.0)
         return Holder(bar=across, entry={**_TURNS, **_FACES}.get(bar[2], 0.0))
     if found := re.fullmatch(_ISO_SHANK, words):
@@ -411,7 +417,10 @@ def _styled(style: str, width: float) -> Holder:
 
 
 def _inch_width(figures: str) -> float:
-    """Square shanks are named in 16ths of an inch, others by width in 8ths and height in quarters."""
+    """Return the width in mm of the two digits of an inch code.
+
+    Square shanks are given in 16ths of an inch, others by width in 8ths and height in quarters.
+    """
     if int(figures) in _INCH_REACH or figures in {"04", "05", "32"}:
         return int(figures) * MM_PER_INCH / 16.0
     return int(figures[0]) * MM_PER_INCH / 8.0

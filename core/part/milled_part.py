@@ -1,8 +1,8 @@
-"""A part that mills have been at: flats, slots, cross holes and pockets, cut out of a turned part.
+"""A milled part: flats, slots, cross holes and pockets that are cut out of a turned part.
 
-The part's frame turns with it. Its X and Y are those of the face as a tool sees it that looks at the end of
-the part with C at 0; polar angles count from X towards Y. The live tool stands on the negative X side of the
-lathe (see ``core.geometry.virtual_mill``): with C at 30° it stands at the angle -30° of the part.
+The part's frame rotates with the part. Its X and Y are those of the face as seen by a tool that looks at the
+end of the part with C at 0. Polar angles are measured from X toward Y. The live tool is on the negative X
+side of the lathe (see ``core.geometry.virtual_mill``). With C at 30°, it is at the angle -30° of the part.
 """
 
 from __future__ import annotations
@@ -18,15 +18,15 @@ from core.part.polar_field import NOTHING, IntArray, PolarField, Taken
 from core.part.ray_cuts import FloatArray, capsules, clipped, joined, nearest_turn, radial_mill
 from core.part.tool_polygons import PartError
 
-_SCALLOP = 0.001  # mm: what a mill that goes on in steps leaves between them
-_RAMP = 0.005  # mm of depth a step
+_SCALLOP = 0.001  # mm of scallop that a mill may leave between steps
+_RAMP = 0.005  # mm of depth per step
 _MOST_STEPS = 2000
-_NEAR = 0.001  # mm: a mill that comes no nearer than this to metal does not meet it
-_LEVELS = 8  # floors that one path may leave exactly; a surface of many levels has no floor
+_NEAR = 0.001  # mm; a mill that enters the material by less does not hit it
+_LEVELS = 8  # exact floors of one path; a surface with more levels has no floor
 
 
 class Reach(NamedTuple):
-    """A cut on rays: columns, rays, and the r from ``start`` to ``end`` that are covered."""
+    """A cut on rays: columns, rays, and the interval of r that is covered."""
 
     columns: slice
     rays: IntArray
@@ -35,9 +35,10 @@ class Reach(NamedTuple):
 
 
 class Stroke(NamedTuple):
-    """A mill on a radius with its end at r ``end``, moved from Z ``back`` to ``front``, or round by ``way``.
+    """A position or a straight move of a mill that is parallel to a radius of the part.
 
-    ``angle`` and ``way`` in radians of the part, the rest in mm.
+    The end of the mill is at r ``end``. The mill moves from Z ``back`` to ``front``, or around the axis by
+    ``way``. ``angle`` and ``way`` are in radians of the part, the others in mm.
     """
 
     end: float
@@ -48,7 +49,7 @@ class Stroke(NamedTuple):
 
 
 class MilledPart:
-    """A polar field of metal, and what mills and turning tools take off it. All lengths in mm."""
+    """A polar field of material, from which mills and turning tools remove material. Lengths are in mm."""
 
     def __init__(self, field: PolarField) -> None:
         self.field = field
@@ -56,7 +57,7 @@ class MilledPart:
     # --- turning
 
     def turn(self, first: int, start: FloatArray, end: FloatArray) -> Taken:
-        """Turn off what lies between the radii ``start`` and ``end`` (m,), columns from ``first`` on."""
+        """Remove the material between the radii ``start`` and ``end`` (m,) from column ``first`` on."""
         columns = slice(first, first + len(start))
         return self.field.take(columns, slice(None), start[:, None], end[:, None])
 
@@ -65,11 +66,10 @@ class MilledPart:
     def mill_axial(
         self, path: FloatArray, radius: float, length: float = math.inf, point: float = 0.0
     ) -> Taken:
-        """Mill with the tool parallel to Z along ``path`` (m, 3): x, y of its axis in the part's frame, z of
-        its end.
+        """Mill with the tool parallel to Z along ``path`` (m, 3): x, y of its axis and z of its end.
 
-        ``length`` is how far it cuts from its end on, ``point`` the height of its cone, 0 with a flat end.
-        A straight line is exact, rising and falling too.
+        The path is in the part's frame. ``length`` is the cutting length from the end, and ``point`` is the
+        height of its cone, 0 for a flat end. A straight line is exact, even if it rises or falls.
         """
         path = _lines(path)
         met = NOTHING
@@ -83,7 +83,7 @@ class MilledPart:
     def meets_axial(
         self, path: FloatArray, radius: float, length: float = math.inf, point: float = 0.0
     ) -> bool:
-        """Whether that mill would meet metal on its way; nothing is taken off."""
+        """Return whether this mill would hit material on its path, without removing any."""
         path, radius = _lines(path) + np.array([0.0, 0.0, _NEAR]), radius - _NEAR
 
         def met(levels: FloatArray) -> bool:
@@ -92,15 +92,15 @@ class MilledPart:
                 for rise, r in _cone(radius, point)
             )
 
-        # Columns are divided for what may be met: where the mill only comes into a column it is looked at
-        # twice.
+        # Columns are divided only if the mill may hit material, because a mill that enters a column is
+        # checked twice.
         if not met(self.field.edges[1:]):
             return False
         self.field.divide(_floors(path, length))
         return met(self.field.middles)
 
     def _axial(self, path: FloatArray, radius: float, length: float, levels: FloatArray) -> Iterator[Reach]:
-        """What each column meets, whose ``levels`` tell how deep the end has to be for that."""
+        """Yield the cut of each column; ``levels`` are the depths that the end must reach for it."""
         first = int(np.searchsorted(levels, path[:, 2].min(), side="right"))
         begin, stop = _shares(path, levels[first:], length)
         if not len(begin):
@@ -124,12 +124,12 @@ class MilledPart:
         height: float = 0.0,
         point: float = 0.0,
     ) -> Taken:
-        """Mill with the tool on a radius of the part along ``path`` (m, 3): r of its end, z, polar angle in
-        degrees.
+        """Mill with the tool on a radius of the part along ``path`` (m, 3): r of its end, z, polar angle.
 
-        ``height`` is how far its axis passes the part's, towards growing angles; ``length`` and ``point`` as
-        in ``mill_axial``. Moves in r alone, in Z alone and, through the axis, in the angle alone are exact;
-        others go on in steps that leave .001 mm.
+        The angle is in degrees. ``height`` is the offset of the tool's axis from the part's axis, positive
+        toward increasing angles. ``length`` and ``point`` are described in ``mill_axial``. Moves in r only,
+        in Z only and, through the axis, in the angle only are exact. Other moves are divided into steps that
+        leave 0.001 mm.
         """
         met = NOTHING
         runs = list(self._runs(path, radius, height))
@@ -149,7 +149,7 @@ class MilledPart:
         height: float = 0.0,
         point: float = 0.0,
     ) -> bool:
-        """Whether that mill would meet metal on its way; nothing is taken off."""
+        """Return whether this mill would hit material on its path, without removing any."""
         runs = [_lifted(run, _NEAR) for run in self._runs(path, radius, height)]
 
         def met(wide: bool) -> bool:
@@ -167,7 +167,7 @@ class MilledPart:
     def _radial(
         self, run: list[Stroke], radius: float, length: float, height: float, *, wide: bool = False
     ) -> Iterator[Reach]:
-        """What a run of strokes covers at the middles of the columns, or ``wide`` anywhere in them."""
+        """Yield the cut of a run of strokes at the middles of the columns, or anywhere if ``wide``."""
         field = self.field
         columns = field.between(min(s.back for s in run) - radius, max(s.front for s in run) + radius)
         turned = [nearest_turn(field.angles - s.angle, s.way) for s in run]
@@ -183,13 +183,13 @@ class MilledPart:
             off = np.maximum(np.maximum(stroke.back - front, back - stroke.front), 0.0)
             half = np.sqrt(np.maximum(radius * radius - off * off, 0.0))
             near, far = radial_mill(angles[rays], half, stroke.end, length, height)
-            # Strokes of a run overlap: what they cover of a ray is one interval.
+            # Strokes of a run overlap, so they cover one interval of each ray.
             np.minimum(low, near, out=low)
             np.maximum(high, far, out=high)
         yield Reach(columns, rays, low, high)
 
     def _runs(self, path: FloatArray, radius: float, height: float) -> Iterator[list[Stroke]]:
-        """Strokes one after the other that do not go on by more than the mill's radius."""
+        """Yield groups of consecutive strokes whose extent is at most the mill's radius."""
         outside = float(self.field.high.max(initial=radius))
         run: list[Stroke] = []
         for stroke in self._strokes(path, radius, height, outside):
@@ -217,12 +217,12 @@ class MilledPart:
                 yield Stroke(float(min(start[0], end[0])), back, front, float(start[2]), dc)
 
     def _refine(self, runs: list[list[Stroke]], radius: float) -> None:
-        """Divide the columns at both ends of a radial path, where the mill's round stands across them."""
+        """Divide the columns at both ends of a radial path, where the round edge of the mill crosses them."""
         back, front = min(s.back for run in runs for s in run), max(s.front for run in runs for s in run)
         round_ = radius * np.sin(np.linspace(0.0, 0.5 * math.pi, 25))
         self.field.divide(np.concatenate((back - round_, front + round_)))
 
-    # --- both
+    # --- common methods
 
     def _take(self, reaches: Iterator[Reach], met: Taken) -> Taken:
         for reach in reaches:
@@ -234,7 +234,7 @@ class MilledPart:
 
 
 class _Sweep:
-    """What a disc of this radius covers along a path, by shares of its lines; whole lines are kept."""
+    """The area that a disc covers along a path, for shares of its lines; whole lines are cached."""
 
     def __init__(self, path: FloatArray, radius: float, angles: FloatArray) -> None:
         self._start, self._way = path[:-1, :2], np.diff(path[:, :2], axis=0)
@@ -242,7 +242,7 @@ class _Sweep:
         self._whole, self._covered = np.zeros(len(self._start), dtype=np.bool_), self._layers([], 0.0, 0.0)
 
     def covered(self, begin: FloatArray, stop: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Layers (k, rays) of what is covered between two shares of each line (m,)."""
+        """Return layers (k, rays) of the area that is covered between two shares of each line (m,)."""
         whole = (begin == 0.0) & (stop == 1.0)
         if np.any(whole != self._whole):
             self._whole, self._covered = whole, self._layers(np.flatnonzero(whole), 0.0, 1.0)
@@ -262,7 +262,10 @@ class _Sweep:
 
 
 def _shares(path: FloatArray, levels: FloatArray, length: float) -> tuple[FloatArray, FloatArray]:
-    """The shares (levels, lines) between which the mill is at each level; none: the first is greater."""
+    """Return the shares (levels, lines) between which the mill is at each level.
+
+    If the mill does not reach a level, the first share is greater than the second.
+    """
     way = np.diff(path, axis=0)
     depth = levels[:, None] - path[:-1, 2]
     begin, stop = clipped(np.broadcast_to(way[:, 2], depth.shape), depth - length, depth)
@@ -272,14 +275,14 @@ def _shares(path: FloatArray, levels: FloatArray, length: float) -> tuple[FloatA
 
 
 def _lines(path: FloatArray) -> FloatArray:
-    """A path of two points at least; refused when it has other than three columns."""
+    """Return a path of at least two points. Raises PartError if it does not have three columns."""
     if path.ndim != 2 or path.shape[1] != 3 or not len(path):
         raise PartError("A mill's path has three figures a point.", "points-not-xyz")
     return path if len(path) > 1 else np.repeat(path, 2, axis=0)
 
 
 def _floors(path: FloatArray, length: float) -> FloatArray:
-    """Z at which a path leaves floors, its lowest among them, and at which the flutes end."""
+    """Return the Z of the floors that a path leaves, including its lowest, and of the ends of the flutes."""
     z = path[:, 2]
     flat = np.unique(z[:-1][np.diff(z) == 0.0])
     floors = np.append(flat, z.min()) if len(flat) <= _LEVELS else np.array([z.min()])
@@ -287,7 +290,7 @@ def _floors(path: FloatArray, length: float) -> FloatArray:
 
 
 def _cone(radius: float, point: float) -> Iterator[tuple[float, float]]:
-    """Flat-ended mills that make up one with a point ``point`` high: how much higher each ends, radius."""
+    """Yield flat mills that approximate a mill with a cone of height ``point``: end offset and radius."""
     count = min(max(math.ceil(point / 0.05), 8), 24) if point else 0
     for k in range(count):
         yield point * k / count, radius * (k + 0.5) / count
@@ -295,7 +298,7 @@ def _cone(radius: float, point: float) -> Iterator[tuple[float, float]]:
 
 
 def _inside(path: FloatArray, outside: float, reach: FloatArray) -> Iterator[tuple[FloatArray, FloatArray]]:
-    """The lines of a radial path as far as r is less than ``outside`` and Z within ``reach``."""
+    """Yield the parts of a radial path with r less than ``outside`` and Z within ``reach``."""
     way = np.diff(path, axis=0)
     first, last = np.zeros(len(way)), np.ones(len(way))
     for axis, least, most in ((0, -math.inf, outside), (1, *reach.tolist())):
@@ -311,7 +314,7 @@ def _lifted(run: list[Stroke], rise: float) -> list[Stroke]:
 
 
 def _overlap(run: list[Stroke], stroke: Stroke, radius: float, outside: float) -> bool:
-    """Whether a stroke still lies within the mill's radius of the first one of a run, all of it."""
+    """Return whether a stroke is completely within the mill's radius of the first stroke of a run."""
     first = run[0]
     along = max(stroke.front, first.front) - min(stroke.back, first.back)
     turned = outside * (abs(stroke.angle - first.angle) + max(abs(stroke.way), abs(first.way)))
@@ -324,12 +327,12 @@ def _spots(start: FloatArray, end: FloatArray, count: float) -> Iterator[Stroke]
 
 
 def _ramp(start: FloatArray, end: FloatArray, count: float) -> Iterator[Stroke]:
-    """Steps of a move whose depth changes, each at its middle depth."""
+    """Yield steps of a move whose depth changes, each at its mean depth."""
     points = np.linspace(start, end, min(math.ceil(count), _MOST_STEPS) + 1)
     for (r0, z0, c0), (r1, z1, c1) in zip(points[:-1].tolist(), points[1:].tolist(), strict=True):
         yield Stroke(0.5 * (r0 + r1), min(z0, z1), max(z0, z1), c0, c1 - c0)
 
 
 def _widest(end: float, half: float) -> float:
-    """The angle from the tool's axis within which its rays lie, radians."""
+    """Return the angle in radians from the tool's axis within which all its rays are."""
     return math.atan2(half, end) + 1e-9 if end > 0.0 else math.pi

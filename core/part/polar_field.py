@@ -1,8 +1,9 @@
-"""Metal as a polar field: in columns along Z, on rays from the axis outwards, intervals of r.
+"""Material as a polar field: intervals of r on rays from the axis, in columns along Z.
 
-A ray has one interval as a rule, two where a bore or a face groove leaves a ring, more behind a cross hole:
-they lie in layers, ascending in r, an empty one with its high not above its low. Columns need not be equally
-wide: they divide at shoulders and at the floors of pockets, so that these stand where they were cut.
+A ray usually has one interval, two if a bore or a face groove leaves a ring, and more across a cross hole.
+The intervals are stored in layers, ascending in r. An empty interval has its high not above its low. Columns
+may have different widths. They are divided at shoulders and at the floors of pockets, so that these remain
+exactly where they were cut.
 """
 
 from __future__ import annotations
@@ -24,16 +25,19 @@ COLUMNS = 900
 """How many columns a field begins with at most; it may divide into twice as many."""
 RAYS = 720
 
-_TOUCH = 1e-7  # mm; less is no metal
-_JUMP = 0.05  # mm: a rise from one fine column to the next that is a shoulder
-_LEAST = 0.002  # mm: no column is divided nearer to its edge
+_TOUCH = 1e-7  # mm; thinner material counts as none
+_JUMP = 0.05  # mm; a larger step between two fine columns is a shoulder
+_LEAST = 0.002  # mm; least distance of a division from the edge of a column
 Ends = tuple[float, float]
 """Of a column: from and to which Z."""
 
 
 class Taken(NamedTuple):
-    """What was met: volume in mm³, greatest thickness along r, from ``back`` to ``front`` of Z, and from
-    ``low`` to ``high`` of r, mm."""
+    """The material in a cut.
+
+    ``volume`` is in mm³ and ``depth`` is the greatest thickness along r. The cut extends from ``back`` to
+    ``front`` in Z and from ``low`` to ``high`` in r, in mm.
+    """
 
     volume: float = 0.0
     depth: float = 0.0
@@ -46,7 +50,7 @@ class Taken(NamedTuple):
         return self.volume > 0.0
 
     def joined(self, other: Taken) -> Taken:
-        """Both together."""
+        """Return both cuts together."""
         return Taken(
             self.volume + other.volume,
             max(self.depth, other.depth),
@@ -61,9 +65,10 @@ NOTHING = Taken()
 
 
 class PolarField:
-    """``edges`` (columns + 1,) of Z, rising; ``low`` and ``high`` (layers, columns, rays) of r; mm.
+    """The material of a part in polar coordinates, in mm.
 
-    Ray j lies at j full turns by the number of rays, counted from the part's X towards its Y.
+    ``edges`` (columns + 1,) are ascending Z, and ``low`` and ``high`` (layers, columns, rays) are r. Ray j is
+    at the angle 2π·j / rays, measured from the part's X toward its Y.
     """
 
     def __init__(self, edges: FloatArray, low: FloatArray, high: FloatArray, most: int = 2 * COLUMNS) -> None:
@@ -75,52 +80,55 @@ class PolarField:
             raise PartError("The edges of a polar field have to rise.", "edges-not-rising")
         self.edges, self.low, self.high = edges, low, high
         self.angles = np.arange(low.shape[2]) * (2.0 * math.pi / low.shape[2])
-        self.changes = 0  # counts on with every cut: what is drawn of the field is stale
+        self.changes = 0  # increases with every cut, which makes pictures of the field outdated
         self._most = max(most, len(edges) - 1)
 
     @property
     def most(self) -> int:
-        """How many columns it may have."""
+        """The largest permitted number of columns."""
         return self._most
 
     @property
     def middles(self) -> FloatArray:
-        """Z of the middle of each column, mm."""
+        """Z of the middle of each column, in mm."""
         return 0.5 * (self.edges[1:] + self.edges[:-1])
 
     @property
     def widths(self) -> FloatArray:
-        """Width of each column, mm."""
+        """Width of each column, in mm."""
         return np.diff(self.edges)
 
     @property
     def volume(self) -> float:
-        """mm³ of metal, by the middles of columns and rays."""
+        """Volume of the material in mm³, calculated at the middles of columns and rays."""
         return float(self.volumes.sum())
 
     @property
     def volumes(self) -> FloatArray:
-        """mm³ of metal of each column."""
+        """Volume of the material of each column, in mm³."""
         area = np.einsum("lcr,lcr->c", self.high, self.high) - np.einsum("lcr,lcr->c", self.low, self.low)
         return np.asarray(area * self.widths * (math.pi / len(self.angles)))
 
     @property
     def outermost(self) -> FloatArray:
-        """Greatest radius of each column, 0 where there is no metal."""
+        """The greatest radius of each column; 0 if it contains no material."""
         return np.asarray(np.where(self.high > self.low, self.high, 0.0).max(axis=(0, 2)))
 
     def between(self, back: float, front: float) -> slice:
-        """The columns that lie between these Z, or reach there."""
+        """Return the slice of the columns that overlap the range of Z."""
         first = int(np.searchsorted(self.edges, back, side="right")) - 1
         last = int(np.searchsorted(self.edges, front, side="left"))
         return slice(max(first, 0), min(last, len(self.edges) - 1))
 
     def copied(self) -> PolarField:
-        """A field of its own with the same metal."""
+        """Return an independent copy of the field."""
         return PolarField(self.edges.copy(), self.low.copy(), self.high.copy(), self._most)
 
     def divide(self, places: FloatArray) -> None:
-        """Divide the columns at these Z, as far as there is room for more; what is there already stays."""
+        """Divide the columns at these Z, as far as the permitted number of columns allows.
+
+        The material is unchanged.
+        """
         places = np.unique(places[(places > self.edges[0]) & (places < self.edges[-1])])
         at = np.searchsorted(self.edges, places)
         room = np.minimum(places - self.edges[at - 1], self.edges[at] - places) > _LEAST
@@ -140,9 +148,9 @@ class PolarField:
     def take(
         self, columns: slice, rays: IntArray | slice, start: FloatArray, end: FloatArray, *, cut: bool = True
     ) -> Taken:
-        """The metal between ``start`` and ``end``, which fit (columns, rays); taken off unless not ``cut``.
+        """Return the material between ``start`` and ``end`` (columns, rays), and remove it if ``cut``.
 
-        Where ``end`` is not above ``start`` nothing is taken.
+        Nothing is taken if ``end`` is not above ``start``.
         """
         low, high = self.low[:, columns][:, :, rays], self.high[:, columns][:, :, rays]
         there = end > start
@@ -174,7 +182,7 @@ class PolarField:
         near: FloatArray,
         far: FloatArray,
     ) -> None:
-        """Write back what lies nearer than ``near`` and further than ``far`` in each layer."""
+        """Store the material below ``near`` and above ``far`` in each layer."""
         inner, outer = near > low + _TOUCH, high > far + _TOUCH
         both = inner & outer
         new_low = np.where(inner, low, np.where(outer, far, 0.0))
@@ -191,7 +199,7 @@ class PolarField:
     def _split(
         self, low: FloatArray, high: FloatArray, far: FloatArray, top: FloatArray, both: npt.NDArray[np.bool_]
     ) -> tuple[FloatArray, FloatArray]:
-        """Layers with the pieces from ``far`` to ``top`` put in, on the rays that were split in two."""
+        """Return the layers with the pieces from ``far`` to ``top`` added on the rays that were split."""
         column, ray = np.nonzero(both.any(axis=0))
         split = both[:, column, ray]
         pieces_low = np.concatenate((low[:, column, ray], np.where(split, far[:, column, ray], 0.0)))
@@ -207,7 +215,7 @@ class PolarField:
 
 
 def in_order(low: Real, high: Real) -> tuple[Real, Real]:
-    """The same intervals ascending along the first axis, empty ones last and 0."""
+    """Return the intervals in ascending order along the first axis, with empty ones last and 0."""
     there = high > low
     order = np.argsort(np.where(there, low, np.inf), axis=0, kind="stable")
     low, high = low * there, high * there
@@ -221,10 +229,10 @@ def _deeper(layers: FloatArray, more: int) -> FloatArray:
 def turned_field(
     edges: FloatArray, low: FloatArray, high: FloatArray, columns: int = COLUMNS, rays: int = RAYS
 ) -> PolarField:
-    """The field of a half section with fine columns: ``low`` and ``high`` (layers, n) between ``edges`` (n +
-    1,).
+    """Return the field of a half section with fine columns.
 
-    Fine columns are put together to ``columns`` at most, divided at shoulders; each keeps its volume.
+    ``low`` and ``high`` (layers, n) are between ``edges`` (n + 1,). Fine columns are combined to at most
+    ``columns`` columns, divided at shoulders. Each retains its volume.
     """
     low, high = in_order(low, high)
     metal = np.flatnonzero((high > low + _TOUCH).any(axis=0))
@@ -234,14 +242,14 @@ def turned_field(
     low, high, edges = low[:, there], high[:, there], edges[there.start : there.stop + 1]
     starts = _starts(low, high, columns)
     count = np.diff(np.append(starts, low.shape[1]))
-    # A mean of squares keeps the volume; fine columns are equally wide.
+    # The mean of squares preserves the volume, because fine columns have equal widths.
     low, high = (np.sqrt(np.add.reduceat(r * r, starts, axis=1) / count) for r in (low, high))
     full = [np.repeat(r[:, :, None], rays, axis=2) for r in (low, high)]
     return PolarField(np.append(edges[starts], edges[-1]), full[0], full[1], 2 * columns)
 
 
 def _starts(low: FloatArray, high: FloatArray, columns: int) -> IntArray:
-    """First fine column of each column: one begins at every shoulder, the rest is divided evenly."""
+    """Return the first fine column of each column: one at every shoulder, the rest evenly divided."""
     fine = low.shape[1]
     rise = np.maximum(np.abs(np.diff(low)), np.abs(np.diff(high))).max(axis=0)
     steep = np.flatnonzero(rise > _JUMP)
@@ -257,7 +265,11 @@ def _starts(low: FloatArray, high: FloatArray, columns: int) -> IntArray:
 
 
 class FieldCopy(NamedTuple):
-    """``columns`` by their ends: (2, layers, rays) of low and high; one ray: it is round."""
+    """A compact copy of a field.
+
+    ``columns`` maps the ends of each column to (2, layers, rays) of low and high. A round column has one ray
+    only.
+    """
 
     columns: Mapping[Ends, FloatArray]
     edges: FloatArray
@@ -267,7 +279,7 @@ class FieldCopy(NamedTuple):
 
 
 def copied(field: PolarField, before: FieldCopy | None) -> FieldCopy:
-    """A copy; what is as it was ``before`` takes no more room."""
+    """Return a copy of a field. Columns that are unchanged since ``before`` share its memory."""
     known = before.columns if before is not None else {}
     ends = zip(field.edges[:-1].tolist(), field.edges[1:].tolist(), strict=True)
     columns = {
@@ -278,7 +290,7 @@ def copied(field: PolarField, before: FieldCopy | None) -> FieldCopy:
 
 
 def restored(copy: FieldCopy) -> PolarField:
-    """A field of its own, as it was when it was copied."""
+    """Return an independent field from a copy."""
     shape = copy.layers, len(copy.columns), copy.rays
     low, high = np.zeros(shape), np.zeros(shape)
     for at, column in enumerate(copy.columns.values()):
@@ -287,7 +299,7 @@ def restored(copy: FieldCopy) -> PolarField:
 
 
 def _shared(low: FloatArray, high: FloatArray, known: FloatArray | None) -> FloatArray:
-    """A column without its empty layers, on one ray where all are alike; the known one where that is it."""
+    """Return a column without empty layers, on one ray if all are equal, or the known equal column."""
     filled = np.flatnonzero((high > low).any(axis=1))
     deep = int(filled[-1]) + 1 if len(filled) else 0
     column = np.stack((low[:deep], high[:deep]))

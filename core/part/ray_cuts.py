@@ -1,11 +1,11 @@
-"""Paths of a mill on the part, and where it meets the rays of a part: intervals of r.
+"""Paths of a mill on the part, and the intervals of r in which the mill covers the rays of a part.
 
-The part's frame stands still on the part: its X and Y are those of XC entered with C at 0, and polar angles
-count from X towards Y. The spindle turns the part the same way: a tool on the negative X side of the lathe,
-at its height, meets the point of the part at the angle -C.
+The part's frame is fixed to the part. Its X and Y are those of XC entered with C at 0, and polar angles are
+measured from X toward Y. The spindle rotates the part in the same direction. A tool on the negative X side of
+the lathe is at the angle -C of the part.
 
-A ray runs from the axis outwards at a polar angle. A convex cross-section of what a mill sweeps covers one
-interval of it, so that a move is a handful of intervals and no raster of points.
+A ray runs from the axis outward at a polar angle. A convex cross section of the swept volume covers one
+interval of it, so a move is a few intervals instead of a grid of points.
 """
 
 from __future__ import annotations
@@ -28,15 +28,16 @@ _AWAY = 1e-6  # mm
 def capsules(
     start: FloatArray, end: FloatArray, radius: float, angles: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """The r between which discs moved from ``start`` to ``end`` (m, 2) cover rays at ``angles`` (n,).
+    """Return the r between which discs moved from ``start`` to ``end`` (m, 2) cover rays at ``angles`` (n,).
 
-    Both (m, n); where nothing is covered the first is not less than the second. mm and radians.
+    Both results have the shape (m, n). If nothing is covered, the first is not less than the second. Units
+    are mm and radians.
     """
     cos, sin = np.cos(angles), np.sin(angles)
     low0, high0 = _discs(start, radius, cos, sin)
     low1, high1 = _discs(end, radius, cos, sin)
     low2, high2 = _between(start, end, radius, cos, sin)
-    # The three overlap or touch wherever the ray meets more than one: what is swept is convex.
+    # The swept area is convex, so the three intervals of a ray overlap or touch.
     return np.minimum(np.minimum(low0, low1), low2), np.maximum(np.maximum(high0, high1), high2)
 
 
@@ -54,7 +55,7 @@ def _discs(
 def _between(
     start: FloatArray, end: FloatArray, radius: float, cos: FloatArray, sin: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """The rectangle between the first disc and the last."""
+    """Return the intervals covered by the rectangle between the first and the last disc."""
     way = end - start
     length = np.hypot(way[:, :1], way[:, 1:])
     unit = way / np.maximum(length, _TINY)
@@ -69,7 +70,10 @@ def _between(
 def clipped(
     factor: FloatArray, least: FloatArray | float, most: FloatArray | float
 ) -> tuple[FloatArray, FloatArray]:
-    """The r >= 0 for which ``factor`` r lies between two bounds; the first not less than the second: none."""
+    """Return the interval of r >= 0 in which ``factor`` · r is between two bounds.
+
+    If it is empty, the first result is not less than the second.
+    """
     upright = np.abs(factor) < _TINY
     safe = np.where(upright, 1.0, factor)
     one, other = least / safe, most / safe
@@ -87,9 +91,9 @@ def _cleaned(
 
 
 def joined(low: FloatArray, high: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """The union of intervals (m, n) along the first axis: as few layers (k, n) as hold it, ascending in r.
+    """Return the union of intervals (m, n) along the first axis, in the fewest layers (k, n), ascending.
 
-    Intervals whose high is not above their low are none; in what is returned they stand at infinity.
+    Intervals whose high is not above their low are empty. Empty intervals of the result are at infinity.
     """
     there = high > low
     low, high = np.where(there, low, np.inf), np.where(there, high, -np.inf)
@@ -111,11 +115,11 @@ def joined(low: FloatArray, high: FloatArray) -> tuple[FloatArray, FloatArray]:
 def radial_mill(
     turned: FloatArray, half: FloatArray, end: float, length: float, height: float
 ) -> tuple[FloatArray, FloatArray]:
-    """The r (columns, rays) that a mill on a radius of the part covers.
+    """Return the r (columns, rays) that a mill on a radius of the part covers.
 
-    ``turned`` (rays,) is the angle from the tool's axis to each ray, radians; ``half`` (columns,) half the
-    width that the mill has at each column, 0 where it has none; ``end`` and ``length`` where its end stands
-    and how far it reaches from there outwards; ``height`` how far its axis passes the part's, mm.
+    ``turned`` (rays,) is the angle from the tool's axis to each ray in radians. ``half`` (columns,) is half
+    the width of the mill at each column, or 0. The mill extends from ``end`` outward by ``length``.
+    ``height`` is the offset of its axis from the part's axis. Lengths are in mm.
     """
     low, high = clipped(np.cos(turned), end, end + length)
     if height:
@@ -128,7 +132,7 @@ def radial_mill(
 
 
 def nearest_turn(turned: FloatArray, way: float) -> FloatArray:
-    """The least angle between each ray and a tool's axis that goes on by ``way``, radians, signed.
+    """Return the smallest signed angle between each ray and a tool axis that rotates by ``way`` radians.
 
     ``turned`` (rays,) is the angle from the axis at its start to each ray.
     """
@@ -138,10 +142,10 @@ def nearest_turn(turned: FloatArray, way: float) -> FloatArray:
 
 
 def plane_path(move: PlaneMove, lift: float = 0.0, chord: float = CHORD) -> FloatArray:
-    """The path (n, 3) of a move of plane switching; ``lift`` leads from program Z to the part's, mm.
+    """Return the path (n, 3) of a plane switching move; ``lift`` (mm) is added to the program Z.
 
-    On the face x, y and z of the mill's end, as ``MilledPart.mill_axial`` takes them; on the side r, z and
-    the polar angle in degrees, as ``mill_radial`` does.
+    On the face, the path contains x, y and z of the mill's end, as for ``MilledPart.mill_axial``. On the
+    side, it contains r, z and the polar angle in degrees, as for ``mill_radial``.
     """
     shares = np.linspace(0.0, 1.0, _chords(move, chord) + 1)
     if isinstance(move.frame, Side):
@@ -152,25 +156,25 @@ def plane_path(move: PlaneMove, lift: float = 0.0, chord: float = CHORD) -> Floa
 
 
 def axial_path(machine: FloatArray, height: float = 0.0, lift: float = 0.0) -> FloatArray:
-    """x, y, z (n, 3) in the part's frame of a tool parallel to Z at lathe X (radius), Z, C (n, 3).
+    """Return x, y, z (n, 3) in the part's frame of a tool parallel to Z at lathe X (radius), Z, C (n, 3).
 
-    ``height`` is how far the tool stands above the axis; mm and degrees.
+    ``height`` is the height of the tool above the axis. Units are mm and degrees.
     """
     spot = np.column_stack([-machine[:, 0], np.full(len(machine), height), machine[:, 1]])
     return _turned(spot, -np.radians(machine[:, 2]), lift)
 
 
 def radial_path(machine: FloatArray, *, far_side: bool = False) -> FloatArray:
-    """r, z and polar angle in degrees (n, 3) of a tool on a radius at lathe X (radius), Z, C (n, 3).
+    """Return r, z and polar angle in degrees (n, 3) of a tool on a radius at lathe X, Z, C (n, 3).
 
-    It comes from the negative X side of the lathe, or from the ``far_side`` where X is positive.
+    X is a radius. The tool is on the negative X side of the lathe, or on the positive one if ``far_side``.
     """
     x, z, c = machine.T
     return np.column_stack([x, z, 180.0 - c]) if far_side else np.column_stack([-x, z, -c])
 
 
 def locked_path(start: FloatArray, end: FloatArray, chord: float = CHORD) -> FloatArray:
-    """Lathe X, Z, C (n, 3) along a straight move of all three, close enough for a tool parallel to Z."""
+    """Return lathe X, Z, C (n, 3) along a straight move, dense enough for a tool parallel to Z."""
     turn = math.radians(abs(float(end[2] - start[2])))
     far = max(abs(float(start[0])), abs(float(end[0])), _AWAY)
     count = max(math.ceil(turn / math.sqrt(8.0 * chord / far)), 1)
@@ -178,7 +182,7 @@ def locked_path(start: FloatArray, end: FloatArray, chord: float = CHORD) -> Flo
 
 
 def _chords(move: PlaneMove, chord: float) -> int:
-    """How many straight pieces a move is made of."""
+    """Return the number of straight pieces of a move."""
     if move.centre is None:
         return 1 if move.straight or not _unreachable(move) else 360
     half = 2.0 * math.acos(max(1.0 - chord / max(move.radius, chord), -1.0))
@@ -187,7 +191,7 @@ def _chords(move: PlaneMove, chord: float) -> int:
 
 
 def _unreachable(move: PlaneMove) -> bool:
-    """Whether a mill on the face passes nearer to the axis than its height lets it come."""
+    """Return whether a face mill passes closer to the axis than its height permits."""
     return not isinstance(move.frame, Side) and move.rho(move.nearest()) < abs(move.frame.h) - _AWAY
 
 

@@ -1,4 +1,4 @@
-"""Which fields a kind of tool has, and where the fields of a tool shape contradict each other."""
+"""Fields of each kind of tool, and rules that detect contradictions between the fields of a tool shape."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from core.tool_edges import TIP_DIRECTIONS
 
 _EDGED = ("hand", "tip", "nose_radius", "insert", "holder", "entry", "stick_out", "rear")
 _ROUND = ("tip", "diameter", "length", "stick_out")
-# The fields that mean something, in the order in which they are asked; the rest of a shape is not looked at.
+# Fields that apply to each kind, in the order of the form. The other fields of a shape are ignored.
 FIELDS_OF: Mapping[ToolKind, tuple[str, ...]] = {
     ToolKind.TURNING: _EDGED,
     ToolKind.BORING: (*_EDGED[:5], "diameter", *_EDGED[5:]),
@@ -31,15 +31,15 @@ FIELDS_OF: Mapping[ToolKind, tuple[str, ...]] = {
 
 
 class ShapeMistake(NamedTuple):
-    """What cannot be, and the field that is best changed."""
+    """A contradiction in a tool shape, with the field that should be changed."""
 
     field: str
     text: str
-    code: str  # names the fault, as that of a ``CodedError``
+    code: str  # identifies the fault, like the code of a ``CodedError``
 
 
 def shape_mistakes(shape: ToolShape) -> tuple[ShapeMistake, ...]:
-    """Everything in a shape that contradicts itself or means nothing; none: it can be drawn."""
+    """Return all contradictions and invalid values of a shape; empty if it can be drawn."""
     return tuple(mistake for rule in _RULES for mistake in rule(shape))
 
 
@@ -61,7 +61,7 @@ def _insert(shape: ToolShape) -> Iterator[ShapeMistake]:
 
 
 def _entry(shape: ToolShape, letter: str, point: float) -> Iterator[ShapeMistake]:
-    """The end cutting edge must not lie in front of the tip."""
+    """Check that the end cutting edge does not extend in front of the tip."""
     holder = holder_of(shape.holder)
     coded = holder.entry if holder and not (holder.faces and not shape.internal) else 0.0
     neutral = shape.hand is Hand.NEUTRAL or 0 in shape.direction

@@ -1,7 +1,7 @@
-"""Tool, holder and chuck in the solid picture: layers of their own, laid over the part by their depth.
+"""Tool, holder and chuck in the solid picture, as layers that are combined with the part by depth.
 
-A tool's outlines become prisms below its rake face, which lies in the plane of turning; a tool that is round
-about its own axis becomes round. Points stand a pixel apart, and nothing is kept of them: there are few.
+The outlines of a tool become prisms below its rake face, which is in the plane of turning. A rotating tool
+becomes a solid of revolution. Points are one pixel apart and are not cached, because there are few.
 """
 
 from __future__ import annotations
@@ -22,17 +22,17 @@ from core.part.surface_points import Solid, turned_solid
 Image = npt.NDArray[np.uint32]
 Depths = npt.NDArray[np.int32]
 
-_FRONT = 15.0  # mm of the body of a chuck that are drawn behind its front
-_STEP = 0.01  # mm: a shoulder of the chuck is no wider
-_CONE = 60  # columns of a centre
-_PROUD = 0.1  # mm: by how much an insert is drawn above its holder
-_INSERT, _HOLDER = 4.8, 16.0  # mm below the rake face; a holder's is its width where that is less
-_LIGHT = np.array([-0.38, 0.62, 0.69])  # to the right, up, towards the viewer
+_FRONT = 15.0  # mm of the chuck body that are drawn
+_STEP = 0.01  # mm, width of a shoulder of the chuck
+_CONE = 60  # columns of a tailstock center
+_PROUD = 0.1  # mm by which an insert is drawn above its holder
+_INSERT, _HOLDER = 4.8, 16.0  # mm below the rake face; a holder uses its width if it is less
+_LIGHT = np.array([-0.38, 0.62, 0.69])  # right, up, toward the viewer
 _GHOST = 0.3
 
 
 class Round(StrEnum):
-    """About which axis a tool is round, if it is."""
+    """The axis about which a tool is round, if any."""
 
     NOT = ""
     ALONG = "z"
@@ -40,7 +40,10 @@ class Round(StrEnum):
 
 
 class ToolBody(NamedTuple):
-    """A tool where it stands: outlines (k, 2) of Z and X, mm; ``ghost``: nobody has described its body."""
+    """A tool at its position: outlines (k, 2) of Z and X in mm.
+
+    ``ghost`` means that its body is only assumed.
+    """
 
     cutting: tuple[FloatArray, ...]
     body: tuple[FloatArray, ...]
@@ -49,15 +52,17 @@ class ToolBody(NamedTuple):
 
 
 class Layer(NamedTuple):
-    """A picture of 0xAARRGGBB and how near each pixel of it is; 0: nothing is there. ``share``: how much of
-    it covers what is behind."""
+    """An image of 0xAARRGGBB with the depth of each pixel (0: empty).
+
+    ``share`` is the opacity of the layer, from 0 to 1.
+    """
 
     image: Image
     depth: Depths
     share: float = 1.0
 
     def over(self, image: Image, depth: Depths) -> None:
-        """Lay it over a picture, whose depth becomes that of both."""
+        """Draw the layer over a picture and update the depth of the picture."""
         nearer = self.depth > depth
         if not nearer.any():
             return
@@ -69,14 +74,17 @@ class Layer(NamedTuple):
 
 
 class _Face(NamedTuple):
-    """Points (n, 3) of Z, X and height, mm, and how light they are, 0 … 1 (n,) or one for all."""
+    """Points (n, 3) of Z, X and height in mm, with their brightness from 0 to 1, (n,) or one value."""
 
     points: FloatArray
     shade: FloatArray | float
 
 
 class _Eye(NamedTuple):
-    """What looks on: ``turn`` leads to the right, up and towards the viewer; Z and X that are seen, mm."""
+    """The viewer.
+
+    ``turn`` rotates to the right, up and toward the viewer; ``z`` and ``x`` are visible ranges in mm.
+    """
 
     turn: FloatArray
     scale: float
@@ -85,9 +93,9 @@ class _Eye(NamedTuple):
 
 
 def chuck_solid(clamping: Clamping, stock: Stock) -> Solid:
-    """The front of a chuck with its jaws, or of a collet, and a tailstock's centre, all of them round."""
+    """Return the front of a chuck with its jaws, or of a collet, with the center of a tailstock."""
     edges: list[float] = []
-    columns: list[tuple[float, float]] = []  # from and to which radius
+    columns: list[tuple[float, float]] = []  # inner and outer radius
     if clamping.diameter:
         inside = clamping.around(stock).bore[0][1]
         body = -clamping.stick_out - clamping.jaws
@@ -117,7 +125,11 @@ def tool_layers(
     deep: float,
     far: float,
 ) -> Iterator[Layer]:
-    """Body and edges of a tool; ``deep`` steps of depth a pixel, counted from ``far`` pixels behind."""
+    """Yield the layers of the body and the edges of a tool.
+
+    ``deep`` is the number of depth steps per pixel. The depth is counted from a plane ``far`` pixels beyond
+    the axis.
+    """
     eye = _eye(view, width, height)
     for polygons, lift, thick, colour, ghost in (
         (tool.body, 0.0, _HOLDER, colours[0], tool.ghost),
@@ -131,7 +143,7 @@ def tool_layers(
 
 
 def _eye(view: SolidView, width: int, height: int) -> _Eye:
-    """With some more than is seen, as long as little is seen askew."""
+    """Return the viewer, with visible ranges enlarged for tilted views."""
     cos, _ = view.along
     across = (0.5 * height / view.scale + _HOLDER) / max(abs(math.sin(math.radians(view.tilt))), 0.25)
     along = (0.5 * width / view.scale + across) / max(cos, 0.25)
@@ -147,7 +159,7 @@ def _faces(polygon: FloatArray, heights: tuple[float, float], round_: Round, eye
 
 
 def _prism(polygon: FloatArray, lift: float, thick: float, eye: _Eye) -> Iterator[_Face]:
-    """The faces of a convex outline that look at the viewer, its upper one at the height ``lift``."""
+    """Yield the visible faces of a convex outline, with its upper face at the height ``lift``."""
     for height, normal in ((lift, (0.0, 0.0, 1.0)), (-thick, (0.0, 0.0, -1.0))):
         if (shade := _lit(eye, np.array(normal))) > 0.0:
             inside = _inside(polygon, eye)
@@ -172,14 +184,14 @@ def _seen(values: FloatArray, span: tuple[float, float]) -> npt.NDArray[np.bool_
 
 
 def _lit(eye: _Eye, normals: FloatArray) -> FloatArray:
-    """How light faces with these normals (…, 3) are; 0: they look away."""
+    """Return the brightness of faces with these normals (…, 3); 0 for faces that point away."""
     turned = normals @ eye.turn.T
     light = 0.35 + 0.65 * np.clip(turned @ _LIGHT, 0.0, 1.0)
     return np.where(turned[..., 2] > 0.0, light, 0.0)
 
 
 def _revolved(polygon: FloatArray, round_: Round, eye: _Eye) -> _Face:
-    """A tool that is round about the line through its control point: its outline is as wide on both sides."""
+    """Return the surface of a rotating tool, whose outline is symmetrical about its axis."""
     axis, across = (0, 1) if round_ is Round.ALONG else (1, 0)
     span = eye.z if axis == 0 else eye.x
     low, high = max(polygon[:, axis].min(), span[0]), min(polygon[:, axis].max(), span[1])
@@ -200,7 +212,7 @@ def _revolved(polygon: FloatArray, round_: Round, eye: _Eye) -> _Face:
 
 
 def _crossed(polygon: FloatArray, axis: int, at: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """From where to where a convex outline is met at these places of an axis; NaN: not at all."""
+    """Return the range in which a convex outline is crossed at these positions of an axis, or NaN."""
     a, b = polygon[None], np.roll(polygon, -1, axis=0)[None]
     place = at[:, None]
     way = b[..., axis] - a[..., axis]
@@ -214,7 +226,7 @@ def _crossed(polygon: FloatArray, axis: int, at: FloatArray) -> tuple[FloatArray
 
 
 def _inside(polygon: FloatArray, eye: _Eye) -> FloatArray:
-    """Points of a convex outline (n, 2), a pixel apart, as far as they are seen."""
+    """Return the visible points (n, 2) of a convex outline, one pixel apart."""
     low, high = max(polygon[:, 0].min(), eye.z[0]), min(polygon[:, 0].max(), eye.z[1])
     if high < low:
         return np.zeros((0, 2))
@@ -237,7 +249,7 @@ def _area(polygon: FloatArray) -> float:
 def _layer(
     faces: Sequence[_Face], view: SolidView, size: tuple[int, int], colour: int, depths: tuple[float, float]
 ) -> Layer:
-    """Points into pixels, the nearest one seen."""
+    """Convert points to pixels and retain the nearest point of each pixel."""
     width, height = size
     points = np.concatenate([face.points for face in faces])
     light = np.concatenate([np.broadcast_to(face.shade, len(face.points)) for face in faces])
@@ -256,7 +268,7 @@ def _layer(
 
 
 def _turned(view: SolidView) -> FloatArray:
-    """From Z, X (towards the operator) and height to the right, up and towards the viewer."""
+    """Return the rotation from Z, X (toward the operator) and height to right, up and toward the viewer."""
     cos, sin = view.along
     tilt = math.radians(view.tilt)
     near = np.array([0.0, math.cos(tilt), math.sin(tilt)])
@@ -272,7 +284,7 @@ def _coloured(shade: npt.NDArray[np.int64], colour: int, there: npt.NDArray[np.b
 
 
 def _mixed(over: Image, under: Image, share: float) -> Image:
-    """Both, channel by channel; where nothing is under it, it is as thin as it is."""
+    """Blend two images channel by channel; the upper image remains transparent over empty pixels."""
     mixed = np.zeros(over.shape, np.uint32)
     for off in (0, 8, 16, 24):
         a, b = (((each >> np.uint32(off)) & np.uint32(255)).astype(np.float64) for each in (over, under))

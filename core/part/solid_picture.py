@@ -1,7 +1,7 @@
-"""The solid picture of a part, drawn by numpy: points of its surfaces, the nearest at each pixel, lit.
+"""The solid picture of a part, drawn with numpy: surface points, the nearest at each pixel, with lighting.
 
-No graphics card and no Qt: what comes out is an image of 0xAARRGGBB that any of them can show. Normals are
-made for the pixels that are seen, and for no others.
+No graphics card and no Qt are needed. The result is an image of 0xAARRGGBB that both can show. Normals are
+computed only for visible pixels.
 """
 
 from __future__ import annotations
@@ -23,23 +23,24 @@ Bools = npt.NDArray[np.bool_]
 Codes = npt.NDArray[np.int16]
 Spans = tuple[tuple[float, float], ...]
 
-_POINT = 26  # bits of a key that say which point it is; the depth stands above them
+_POINT = 26  # bits of a key for the number of the point; the depth is in the higher bits
 _NUMBER = (1 << _POINT) - 1
-_DEPTH = 32.0  # steps of depth a pixel
-_FAR = 1e5  # pixels; no point lies further from the middle of the part
-_BLOCK = 1 << 15  # points put at once: what is worked on stays in the cache
-_LIGHT = (-0.38, 0.62, 0.69)  # to the right, up, towards the viewer
-_BISECTOR = (-0.207, 0.337, 0.919)  # half way between light and viewer
+_DEPTH = 32.0  # depth steps per pixel
+_FAR = 1e5  # pixels; the greatest distance of a point from the middle of the part
+_BLOCK = 1 << 15  # points processed together, so that the data fits into the CPU cache
+_LIGHT = (-0.38, 0.62, 0.69)  # right, up, toward the viewer
+_BISECTOR = (-0.207, 0.337, 0.919)  # halfway between light and viewer
 _SHADES = 256
-_STEEP = 0.5  # cosine between a wall's normal and the radius below which it is no round of the part
+_STEEP = 0.5  # cosine between a wall's normal and the radius, below which the wall is not round
 _EDGE = 8.0  # pixels of depth
-_FACING = 0.02  # radians beyond the horizon that are drawn too
+_FACING = 0.02  # radians beyond the horizon that are also drawn
 
 
 class Colours(NamedTuple):
-    """0xRRGGBB of the outside, of bores, of cut faces and of what was hit; the ground is 0xAARRGGBB.
+    """Colors of the part, as 0xRRGGBB, and of the objects around it.
 
-    Of what stands round the part: chuck, holder and insert.
+    ``outside``, ``bore``, ``section`` and ``hit`` are those of the part; ``chuck``, ``holder`` and ``insert``
+    are those around it. ``ground`` is 0xAARRGGBB.
     """
 
     outside: int = 0xB9C3CC
@@ -53,18 +54,18 @@ class Colours(NamedTuple):
 
 
 class Scene(NamedTuple):
-    """What stands round the part: chuck or collet, and a tool."""
+    """The objects around the part: chuck or collet, and a tool."""
 
     chuck: Solid | None = None
     tool: ToolBody | None = None
 
 
 _OUTSIDE, _BORE, _SECTION, _HIT = range(4)
-_AWAY = -2  # in place of a colour
+_AWAY = -2  # used instead of a color
 
 
 class _Group(NamedTuple):
-    """Points drawn together, and their first number: those of a wall, of a patch or of a cut face."""
+    """Points that are drawn together, with the number of the first: a wall, a patch or a cut face."""
 
     first: int
     points: int
@@ -77,14 +78,14 @@ class _Group(NamedTuple):
 
 
 class SolidPicture:
-    """Draws a solid again and again; what does not change between two pictures is kept."""
+    """Draws a solid repeatedly and caches what does not change between two pictures."""
 
     def __init__(self, colours: Colours | None = None) -> None:
         self.colours = colours or Colours()
         self._table = _shades(self.colours)
         self._surface: Surface | None = None
         self._made_of: tuple[object, ...] = ()
-        self._held: tuple[tuple[object, ...], Layer] | None = None  # chuck or collet, as it was seen last
+        self._held: tuple[tuple[object, ...], Layer] | None = None  # chuck or collet in the last view
 
     def draw(
         self,
@@ -98,9 +99,10 @@ class SolidPicture:
         quick: bool = False,
         around: Scene = Scene(),  # noqa: B008 - it is a tuple
     ) -> Image:
-        """The picture (height, width); ``version`` changes with the metal, ``hits`` are spans of Z in red.
+        """Return the picture (height, width).
 
-        ``quick``: in points of two by two pixels, a third of the work, for metal that is being cut.
+        ``version`` changes with the material, and ``hits`` are spans of Z drawn in red. ``quick`` draws
+        blocks of two by two pixels in a third of the time, for a part that is being cut.
         """
         if quick:
             half, small = replace(view, scale=0.5 * view.scale), (-(-width // 2), -(-height // 2))
@@ -117,7 +119,7 @@ class SolidPicture:
         return image
 
     def _chuck(self, chuck: Solid, view: SolidView, width: int, height: int) -> Layer:
-        """It is drawn anew only when it is looked at from elsewhere."""
+        """Return the layer of the chuck, drawn again only if the view has changed."""
         seen = (id(chuck), replace(view, roll=0.0), width, height)
         if self._held is None or self._held[0] != seen:
             painter = SolidPicture(
@@ -141,14 +143,14 @@ class SolidPicture:
 
 
 class _Drawing:
-    """One picture: points put into pixels, then the nearest ones lit."""
+    """One picture: points are converted to pixels, then the nearest ones are lit."""
 
     def __init__(self, surface: Surface, view: SolidView, width: int, height: int) -> None:
         self.surface, self.view, self.width, self.height = surface, view, width, height
         self.cos, self.sin = (np.float32(part) for part in view.along)
         self.phi = view.phi(surface.angles)
         self.shown = ~view.open_at(self.phi)
-        # What patches need: half way between rays too.
+        # Patches also need the angles halfway between rays.
         phi = view.phi(np.arange(2 * surface.rays) * (math.pi / surface.rays))
         self.near, self.up = np.cos(phi).astype(np.float32), np.sin(phi).astype(np.float32)
         self.halves_shown = None if view.opening is None else ~view.open_at(phi)
@@ -160,10 +162,10 @@ class _Drawing:
         self._patches()
         self._sections()
 
-    # --- points into pixels
+    # --- conversion of points to pixels
 
     def _wall(self, wall: Wall) -> None:
-        """Put what of a wall may look at the viewer; its slanted columns may do so beyond the horizon."""
+        """Draw the visible points of a wall. Slanted columns may be visible beyond the horizon."""
         if wall.inside and not self._seen_inside():
             return
         off = math.pi - np.abs(self.phi) if wall.inside else np.abs(self.phi)
@@ -201,7 +203,7 @@ class _Drawing:
                 self._put(_Group(self._next, len(r), patch=patch), z, r, up, near, masked=True)
 
     def _sections(self) -> None:
-        """Put the metal that an opening lays bare, at both its edges."""
+        """Draw the material at both edges of an opening."""
         if self.view.opening is None:
             return
         surface = self.surface
@@ -222,10 +224,11 @@ class _Drawing:
     def _put(
         self, group: _Group, z: Floats, r: Floats, up: Floats, near: Floats, *, masked: bool = False
     ) -> None:
-        """Keep the nearest point of each pixel: depth and number in one figure, of which the greatest stays.
+        """Store the nearest point of each pixel.
 
-        ``z``, ``r`` and sine and cosine of phi fit together (n, k); the points count along k first. Some are
-        away where it is ``masked``.
+        Depth and number are combined in one value, of which the greatest remains. ``z``, ``r`` and the sine
+        and cosine of phi have compatible shapes (n, k). Points are numbered along k first. With ``masked``,
+        some points are missing.
         """
         across = max(r.shape[1], up.shape[-1])
         block = max(_BLOCK // across, 1)
@@ -256,10 +259,10 @@ class _Drawing:
         keys += np.arange(first, first + keys.size).reshape(keys.shape)
         np.maximum.at(self.nearest, pixel.astype(np.intp).ravel(), keys.ravel())
 
-    # --- the nearest ones lit
+    # --- lighting of the nearest points
 
     def image(self, table: Image, ground: int, hits: Spans) -> tuple[Image, Depths]:
-        """The picture and how near each of its pixels is; ``table`` (colours, shades)."""
+        """Return the picture and the depth of each pixel; ``table`` has the shape (colors, shades)."""
         inside = self.nearest.reshape(self.height + 2, self.width + 2)[1:-1, 1:-1].ravel()
         pixel = np.flatnonzero(inside > _NUMBER)
         point = inside[pixel] & _NUMBER
@@ -282,7 +285,7 @@ class _Drawing:
         return np.append(table.ravel(), np.uint32(ground))[np.maximum(codes, -1)], depth
 
     def _smooth(self, pixel: IntArray, shade: Floats, rough: Bools) -> None:
-        """Give rough points the mean light of the rough ones around them, five by five."""
+        """Give rough points the mean brightness of the rough points around them, five by five."""
         at, wide = pixel[rough], self.width
         light, count = (np.zeros(self.height * wide, np.float32) for _ in range(2))
         light[at], count[at] = np.maximum(shade[rough], 0.0), 1.0
@@ -291,7 +294,7 @@ class _Drawing:
         shade[rough] = light[at] / count[at]
 
     def _lit(self, group: _Group, index: Numbers, hits: Spans) -> tuple[Floats, Codes | int, Bools | bool]:
-        """How light points (n,) of a group are, their colours, and which are rough."""
+        """Return the brightness of points (n,) of a group, their colors, and which of them are rough."""
         rough: Bools | bool = False
         colour: Codes | int = _SECTION
         if group.wall is not None:
@@ -320,7 +323,7 @@ class _Drawing:
         shade = self._shade(2 * ray, across, way, along)
         rough = np.abs(across) < _STEEP
         colour: Codes | int = _OUTSIDE
-        if wall.bore is not None:  # a slot through the axis is none
+        if wall.bore is not None:  # a slot through the axis is not a bore
             r = wall.r[row, 0 if self.surface.turned else ray]
             colour = np.where(np.abs(r - wall.bore[row]) < 1.0, _BORE, _OUTSIDE).astype(np.int16)
         return shade, self.surface.z[wall.columns[row]], colour, rough
@@ -341,12 +344,18 @@ class _Drawing:
         return np.repeat(np.maximum(shade, np.float32(0.5)), count)
 
     def _shade(self, halves: IntArray, across: Floats, way: Floats, along: Floats) -> Floats:
-        """How light normals along r, the part's angle and Z are. Phi counts against the part's angle."""
+        """Return the brightness of normals along r, the part's angle and Z.
+
+        Phi is opposite to the part's angle.
+        """
         near, up = self.near[halves], self.up[halves]
         return self._light(across * near + way * up, across * up - way * near, along)
 
     def _light(self, towards: Floats, above: Floats, along: Floats) -> Floats:
-        """How light normals towards the side's viewer, upwards and along Z are: 0 … 1; -1: they look away."""
+        """Return the brightness of normals from 0 to 1, or -1 if they point away.
+
+        The normals are given toward the viewer, up and along Z.
+        """
         right = along * self.cos - towards * self.sin
         towards = along * self.sin + towards * self.cos
         lit = right * _LIGHT[0] + above * _LIGHT[1] + towards * _LIGHT[2]
@@ -361,13 +370,13 @@ class _Drawing:
 
 
 def _runs(wanted: Bools) -> list[slice]:
-    """The runs of neighbours that are wanted."""
+    """Return the slices of consecutive true values."""
     bounds = np.flatnonzero(np.diff(wanted, prepend=False, append=False)).tolist()
     return [slice(a, b) for a, b in zip(bounds[::2], bounds[1::2], strict=True)]
 
 
 def _normals(wall: Wall, row: IntArray, ray: IntArray, surface: Surface) -> tuple[Floats, Floats, Floats]:
-    """Normals of a wall along r, the angle and Z, from the smoother neighbour on either side."""
+    """Return the normals of a wall along r, the angle and Z, from the smoother neighbor on either side."""
     r, here, last = wall.r, (0 if surface.turned else ray), len(wall.r) - 1
     own = r[row, here]
     along = -_smoother(own - r[np.maximum(row - 1, 0), here], r[np.minimum(row + 1, last), here] - own)
@@ -383,7 +392,7 @@ def _normals(wall: Wall, row: IntArray, ray: IntArray, surface: Surface) -> tupl
 
 
 def _summed(values: Floats, step: int) -> Floats:
-    """Sums of each with two neighbours on either side, ``step`` apart."""
+    """Return the sums of each value with two neighbors on either side, ``step`` apart."""
     total = values.copy()
     for off in (step, 2 * step):
         total[off:] += values[:-off]
@@ -396,9 +405,9 @@ def _smoother(before: Floats, behind: Floats) -> Floats:
 
 
 def _without_specks(codes: Codes) -> Codes:
-    """Points that look away, which show at a rim, give way to a neighbour; single points do so too.
+    """Replace points that point away at a rim, and single points, by their neighbors.
 
-    Of three across, then of three upright the middle one stays.
+    A median of three is applied horizontally, then vertically.
     """
     for turned in (codes, codes[:, ::-1], codes.T, codes.T[:, ::-1]):
         away = turned[:, :-1] == _AWAY
@@ -411,9 +420,9 @@ def _without_specks(codes: Codes) -> Codes:
 
 
 def _draw_edges(codes: Codes, depth: npt.NDArray[np.int32]) -> None:
-    """Darken what lies behind an edge, so that a step shows between two faces that are lit alike.
+    """Darken the deeper side of an edge, so that a step is visible between two faces of equal brightness.
 
-    Behind an edge is a point that lies deeper than the middle of its two neighbours by more than ``_EDGE``.
+    A point is on the deeper side if it is deeper than the mean of its two neighbors by more than ``_EDGE``.
     """
     for picture, deep in ((codes, depth), (codes.T, depth.T)):
         sunk = deep[:-2] + deep[2:]
@@ -425,7 +434,7 @@ def _draw_edges(codes: Codes, depth: npt.NDArray[np.int32]) -> None:
 
 
 def _shades(colours: Colours) -> Image:
-    """(colours, shades) of 0xAARRGGBB: dark at 0, the colour itself at .7, light beyond."""
+    """Return the color table (colors, shades) of 0xAARRGGBB: dark at 0, the color at 0.7, lighter above."""
     share = np.linspace(0.0, 1.0, _SHADES)
     rows = []
     for colour in colours[:4]:

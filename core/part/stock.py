@@ -1,4 +1,4 @@
-"""The stock, what holds it (chuck or collet, tailstock), and the speed at which a bar whirls."""
+"""The stock, its clamping (chuck or collet, tailstock), and the critical speed of a bar."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ FloatArray = npt.NDArray[np.float64]
 Point = tuple[float, float]
 """Z and r, mm."""
 
-_FIRST_MODE = 1.8751**2  # of a beam clamped at one end
-_SOUND = 3.5e6  # mm/s, √(E/ρ) of brass; in steel and aluminium it is 5.0e6
-_BEHIND = 100.0  # mm of body behind its front
-_QUILL = 60.0  # mm of quill behind the cone of its centre
+_FIRST_MODE = 1.8751**2  # constant of a beam clamped at one end
+_SOUND = 3.5e6  # mm/s, √(E/ρ) of brass; the value for steel and aluminum is 5.0e6
+_BEHIND = 100.0  # mm of chuck body in the model
+_QUILL = 60.0  # mm of quill in the model, after the cone of the center
 
 
 @dataclass(frozen=True, slots=True)
 class Stock:
-    """``outside`` and ``bore`` are profiles of Z and r, mm, Z never falling; no bore: solid.
+    """The stock. ``outside`` and ``bore`` are profiles of Z and r in mm with Z not decreasing.
 
-    ``given`` is what the user has said, in his words; empty where nobody has said anything.
+    An empty ``bore`` means solid stock. ``given`` is the user's specification, or empty if there was none.
     """
 
     given: str
@@ -32,7 +32,7 @@ class Stock:
 
     @property
     def back(self) -> float:
-        """Least Z of the metal, at the chuck's side."""
+        """The least Z of the stock, on the side of the chuck."""
         return self.outside[0][0]
 
     @property
@@ -46,11 +46,11 @@ class Stock:
         return max(r for _, r in self.outside)
 
     def outside_at(self, z: FloatArray) -> FloatArray:
-        """The radius of the outside at each z (n,)."""
+        """Return the outside radius at each z (n,)."""
         return _at(self.outside, z)
 
     def bore_at(self, z: FloatArray) -> FloatArray:
-        """The radius of the bore at each z (n,), 0 where it is solid."""
+        """Return the radius of the bore at each z (n,); 0 where the stock is solid."""
         return _at(self.bore, z) if self.bore else np.zeros(len(z))
 
 
@@ -61,20 +61,21 @@ def _at(profile: Sequence[Point], z: FloatArray) -> FloatArray:
 
 
 def bar(diameter: float, front: float, back: float, given: str = "") -> Stock:
-    """A round bar, mm."""
+    """Return a round bar, in mm."""
     return Stock(given, ((back, diameter / 2), (front, diameter / 2)))
 
 
 def tube(diameter: float, bore: float, front: float, back: float, given: str = "") -> Stock:
-    """A tube, mm."""
+    """Return a tube, in mm."""
     return Stock(given, ((back, diameter / 2), (front, diameter / 2)), ((back, bore / 2), (front, bore / 2)))
 
 
 def whirling_rpm(stock: Stock, stick_out: float) -> float:
-    """The first critical speed of a bar that stands ``stick_out`` mm out of its chuck up to Z0, rpm; 0: none.
+    """Return the first critical speed in rpm of a bar that extends ``stick_out`` mm from its chuck to Z0.
 
-    That of a beam clamped at one end: 1.8751² · √(E·I / (ρ·A)) / L², with brass for E and ρ, the slowest of
-    what is turned in metal. A bar that bends by itself whirls below it.
+    The result is 0 if the bar does not stick out. The formula is that of a beam clamped at one end, 1.8751² ·
+    √(E·I / (ρ·A)) / L², with E and ρ of brass, which gives the lowest speed of the turned metals. A bar that
+    is bent whirls below this speed.
     """
     length = stick_out + stock.front
     if length <= 0.0:
@@ -86,11 +87,11 @@ def whirling_rpm(stock: Stock, stick_out: float) -> float:
 
 @dataclass(frozen=True, slots=True)
 class Clamping:
-    """Chuck or collet in the part's frame, mm: its foremost face stands ``stick_out`` behind part zero.
+    """Chuck or collet in the part's frame, in mm. Its front face is at Z = -``stick_out``.
 
-    ``jaws`` is how far jaws, or the nose of a collet, stand before the body. ``max_rpm`` 0: not stated.
-    ``quill`` is the diameter of a tailstock's quill, 0: there is none; the tip of its centre, ``point``
-    degrees, stands at Z ``centre``.
+    ``jaws`` is the length by which jaws or the nose of a collet extend from the body. A ``max_rpm`` of 0
+    means not specified. ``quill`` is the diameter of a tailstock quill, or 0 without a tailstock. The tip of
+    its center, with the included angle ``point`` in degrees, is at Z ``centre``.
     """
 
     diameter: float
@@ -104,20 +105,20 @@ class Clamping:
 
     @property
     def outline(self) -> tuple[Point, ...]:
-        """Z and r of its outside, Z rising."""
+        """Z and r of the outside, with Z ascending."""
         face, body = -self.stick_out, -self.stick_out - self.jaws
         front = ((body, self.jaw_diameter / 2), (face, self.jaw_diameter / 2)) if self.jaws else ()
         return ((body - _BEHIND, self.diameter / 2), (body, self.diameter / 2), *front)
 
     def around(self, stock: Stock) -> Stock:
-        """Its metal around the stock that it holds."""
+        """Return the material of the chuck around the clamped stock."""
         inside = min(stock.radius, self.diameter / 2, (self.jaw_diameter or self.diameter) / 2)
         back, front = self.outline[0][0], self.outline[-1][0]
         return Stock("", self.outline, ((back, inside), (front, inside)))
 
     @property
     def tailstock(self) -> Stock | None:
-        """Centre and quill, None where there is none."""
+        """Center and quill of the tailstock, or None."""
         if not self.quill:
             return None
         radius = self.quill / 2.0

@@ -1,4 +1,7 @@
-"""How a user says the stock; alone here, because the command line shows it before it loads anything."""
+"""Forms of a stock specification for messages and for the help of the command line.
+
+The module imports nothing, because the command line shows the forms before it loads other modules.
+"""
 
 FORMS = (
     "bar:D, bar:D:LENGTH, tube:D:BORE, tube:D:BORE:LENGTH, profile:FILE.csv or after:FILE.nc, then +ALLOWANCE"

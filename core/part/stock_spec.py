@@ -1,6 +1,6 @@
-"""What a user says about the stock: ``bar:1.0+.02``, ``tube:25mm:10mm``, ``profile:FILE.csv``, and so on.
+"""Stock specifications of the user, such as ``bar:1.0+.02``, ``tube:25mm:10mm`` or ``profile:FILE.csv``.
 
-Lengths are inches; with ``mm`` behind them millimetres. The face stands at Z0, plus the allowance behind
+Lengths are in inches, or in millimeters if followed by ``mm``. The face is at Z0 plus the allowance after
 ``+``.
 """
 
@@ -21,18 +21,19 @@ from core.part.stock_forms import FORMS
 _INCH = 25.4
 _LENGTH = re.compile(r"(\d+\.?\d*|\.\d+)(mm|in)?", re.IGNORECASE)
 _LARGEST = 1000.0  # mm
-_BEHIND = 10.0  # mm of stock behind the last cut where no length is said
+_BEHIND = 10.0  # mm of stock past the last cut if no length is specified
 
 
 class StockError(CodedError, ValueError):
-    """The words say no stock; the message is a sentence."""
+    """Raised for an invalid stock specification. The message is a sentence."""
 
 
 @dataclass(frozen=True, slots=True)
 class StockSpec:
-    """Stock as it was said, mm. ``length`` 0: as long as the program needs.
+    """A stock specification, in mm. A ``length`` of 0 means as long as the program needs.
 
-    ``file`` is that of a profile or of the program before; of a bar or tube it is empty.
+    ``profile`` is the file of a profile, and ``after`` the program that made the stock. Both are empty for a
+    bar or a tube.
     """
 
     given: str
@@ -42,12 +43,13 @@ class StockSpec:
     allowance: float = 0.0
     profile: str = ""
     after: str = ""
-    points: str = ""  # text of the profile's file, in the unit of the program
+    points: str = ""  # text of the profile file, in the unit of the program
 
     def stock(self, back: float, unit: float) -> Stock:
         """Return the bar, tube or profile.
 
-        ``back`` is the least Z that is cut, mm; ``unit`` is that of the program, mm. Raises StockError.
+        ``back`` is the least Z that is cut, in mm. ``unit`` is the unit of the program, in mm. Raises
+        StockError.
         """
         if self.points:
             return profile_stock(self.given, self.points, unit, self.allowance)
@@ -58,7 +60,7 @@ class StockSpec:
 
 
 def stock_spec(text: str) -> StockSpec:
-    """What the words mean. Raises StockError with what is wrong and what could be said."""
+    """Return the parsed specification. Raises StockError with the fault and the permitted forms."""
     kind, _, rest = text.strip().partition(":")
     if kind in {"profile", "after"}:
         if not rest:
@@ -119,7 +121,10 @@ def _round_stock(text: str, kind: str, lengths: list[float], allowance: float) -
 
 
 def _file_and_allowance(rest: str) -> tuple[str, float]:
-    """A file's name may hold a plus sign of its own: only one before a length at the end is the allowance."""
+    """Return file name and allowance.
+
+    A file name may contain a plus sign, so only a plus sign before a length at the end is an allowance.
+    """
     name, plus, extra = rest.rpartition("+")
     if plus and _LENGTH.fullmatch(extra.strip()):
         return name, _length(extra, rest)
@@ -127,7 +132,7 @@ def _file_and_allowance(rest: str) -> tuple[str, float]:
 
 
 def _length(text: str, whole: str) -> float:
-    """mm."""
+    """Return a length in mm. Raises StockError if the text is not a length."""
     found = _LENGTH.fullmatch(text.strip())
     if found is None:
         raise StockError(
@@ -142,7 +147,7 @@ def _length(text: str, whole: str) -> float:
 
 
 def profile_stock(given: str, text: str, scale: float, allowance: float) -> Stock:
-    """A blank by the points of a CSV text: Z, r (, bore r) in units of ``scale`` mm. Raises StockError."""
+    """Return the stock from CSV points: Z, r (and bore r) in units of ``scale`` mm. Raises StockError."""
     rows = _rows(text)
     if len(rows) < 2:
         raise StockError("a profile needs at least two points, with z, r in each row", "too-few-points")
@@ -167,7 +172,7 @@ def profile_stock(given: str, text: str, scale: float, allowance: float) -> Stoc
 
 
 def _rows(text: str) -> list[list[float]]:
-    """The numbers; a head and lines that begin with # are left out."""
+    """Return the numbers of the rows, without the header and comments that begin with #."""
     import csv
 
     with failures_as(

@@ -1,8 +1,9 @@
-"""The surfaces of a part as points a pixel apart, ready to be turned: walls, faces, and walls along a radius.
+"""The surfaces of a part as points one pixel apart, ready for rotation: walls, faces and flanks.
 
-Walls lie on the rays, a point a column. Where the metal of one column ends short of the next one's, a face is
-filled with points, and where that of one ray ends short of the next one's, the flank of a slot or a flat.
-They are kept until the part or the scale changes: turning the part only multiplies them by sines and cosines.
+Walls are on the rays, with one point per column. Where the material of one column ends short of the next
+column's, a face is filled with points. Where that of one ray ends short of the next ray's, the flank of a
+slot or a flat is filled. The points are cached until the part or the scale changes, because a rotation only
+multiplies them by sines and cosines.
 """
 
 from __future__ import annotations
@@ -23,18 +24,20 @@ Cells = tuple[IntArray, IntArray]
 AWAY = np.float32(-1e6)
 """r of a point that is not there, pixels: it falls out of every picture."""
 
-_SLOPE = 2.0  # a rise less steep than this between columns is a cone or an arc, not a shoulder
+_SLOPE = 2.0  # slope between columns below which a step is a cone or an arc and not a shoulder
 _GAP = 0.7  # pixels
-_NEAR = 6.0  # pixels: neighbouring rays further apart do not go on into each other
+_NEAR = 6.0  # pixels; neighboring rays that are further apart do not form one surface
 _BEYOND = np.float32(1e6)
-_SPREAD = 3  # columns and rays over which a wall's direction is seen
-_AROUND = 90  # rays by which the radius of a bore is told
-_FINEST = 4  # rays are divided into so many at most
+_SPREAD = 3  # columns and rays over which the direction of a wall is measured
+_AROUND = 90  # rays used to find the radius of a bore
+_FINEST = 4  # largest number of interpolated rays per ray
 
 
 class Solid(NamedTuple):
-    """``edges`` (columns + 1,) of Z; ``low`` and ``high`` (layers, columns, rays) of r; one ray: a turned
-    part."""
+    """A solid in columns and rays. A turned part has one ray.
+
+    ``edges`` (columns + 1,) are Z, and ``low`` and ``high`` (layers, columns, rays) are r.
+    """
 
     edges: FloatArray
     low: FloatArray
@@ -42,26 +45,26 @@ class Solid(NamedTuple):
 
     @property
     def radius(self) -> float:
-        """The greatest radius, mm."""
+        """The greatest radius in mm."""
         return float(self.high.max(initial=0.0))
 
 
 def solid_of(part: PolarField) -> Solid:
-    """The solid of a part that mills have been at."""
+    """Return the solid of a milled part."""
     return Solid(part.edges, part.low, part.high)
 
 
 def turned_solid(edges: FloatArray, low: FloatArray, high: FloatArray) -> Solid:
-    """The solid of a half section, ``low`` and ``high`` (layers, columns)."""
+    """Return the solid of a half section with ``low`` and ``high`` (layers, columns)."""
     low, high = in_order(low, high)
     return Solid(edges, low[:, :, None], high[:, :, None])
 
 
 class Patch(NamedTuple):
-    """Points off the rays' walls: Z and r in pixels, and normals along r, the angle and Z.
+    """Points that are not on the walls of rays: Z and r in pixels, and normals along r, the angle and Z.
 
-    ``ray`` (n,) counts halves of the step from ray to ray; None: the points are rings, at every ray.
-    ``rough``: the wall goes across columns and rays, and its normals turn from point to point.
+    ``ray`` (n,) counts halves of the step between rays. None means that the points are rings, at every ray.
+    ``rough`` means that the wall crosses columns and rays, so that its normals vary from point to point.
     """
 
     z: Floats
@@ -74,12 +77,11 @@ class Patch(NamedTuple):
 
 
 class Wall(NamedTuple):
-    """One side of one layer: r (columns, rays), pixels, of these ``columns`` of the surface.
+    """One side of one layer: r (columns, rays) in pixels for these ``columns`` of the surface.
 
-    ``inside``: it looks to the axis; ``bore`` (columns,): and is the innermost, at this radius mostly;
-    ``whole``: every point is there.
-    ``leaning`` are those of the columns that rise or fall along Z, ``lean`` is the greatest angle, radians,
-    between its normals and the radius.
+    ``inside`` means that the wall faces the axis. ``bore`` (columns,) is given for the innermost wall, with
+    its usual radius. ``whole`` means that no point is missing. ``leaning`` marks the columns that rise or
+    fall along Z, and ``lean`` is the greatest angle in radians between a normal and the radius.
     """
 
     columns: IntArray
@@ -92,8 +94,10 @@ class Wall(NamedTuple):
 
 
 class Surface:
-    """Points of a solid at a scale, Z from ``centre``; ``towards`` tells which faces are seen: 1 those of
-    Z+."""
+    """The points of a solid at a scale, with Z measured from ``centre``.
+
+    ``towards`` is the sign of Z of the visible faces, or 0.
+    """
 
     def __init__(
         self, solid: Solid, scale: float, centre: float, span: tuple[float, float], towards: int
@@ -150,7 +154,10 @@ class Surface:
         return leaning, math.atan(float(steady.max(initial=0.0)) * 720.0 / (2.0 * math.pi))
 
     def _faces(self, towards: int, solid: Solid, drawn: tuple[float, float]) -> Patch:
-        """What of each column stands free of the next one; the edge of the picture is no end of the part."""
+        """Return the parts of each column that the next column does not cover.
+
+        The edge of the picture is not an end of the part.
+        """
         beside = _beside(self.low, self.high, _GAP, round_=False)
         own, other = beside if towards > 0 else beside[::-1]
         nth, first, last = _free(self.low, self.high, own, other, _GAP)
@@ -182,7 +189,7 @@ class Surface:
         )
 
     def _straight(self, column: IntArray, ray: IntArray, *, round_: bool) -> npt.NDArray[np.bool_]:
-        """Whether a step goes on as it is in the same column, or on the same ray, on both sides of a cell."""
+        """Return whether a step continues unchanged on both sides of a cell, in its column or on its ray."""
         own = self._step(column, ray, round_=round_)
         limit, thick = 0.5 * np.abs(own), self.thick[column, ray]
         straight = np.ones(len(column), np.bool_)
@@ -198,14 +205,14 @@ class Surface:
         return straight
 
     def _step(self, column: IntArray, ray: IntArray, *, round_: bool) -> Floats:
-        """By how much the metal grows from the neighbour on one side of a cell to that on the other."""
+        """Return the change of the material thickness between the two neighbors of a cell."""
         if round_:
             return self.thick[column, (ray + 1) % self.rays] - self.thick[column, ray - 1]
         ahead, behind = np.minimum(column + 1, len(self.z) - 1), np.maximum(column - 1, 0)
         return self.thick[ahead, ray] - self.thick[behind, ray]
 
     def _flanks(self) -> Patch:
-        """What of each ray's metal stands free of the next ray's, on either side."""
+        """Return the material of each ray that the next ray does not cover, on either side."""
         here, there = _beside(self.low, self.high, 1.0, round_=True)
         one, other = self._flank(here, there, 1), self._flank(there, here, -1)
         return Patch(
@@ -237,12 +244,15 @@ def _halves(patch: Patch) -> IntArray:
 
 
 def _rays(solid: Solid, scale: float) -> int:
-    """How many rays stand a pixel apart at the outside."""
+    """Return the number of rays that are one pixel apart at the outside."""
     return max(math.ceil(2.0 * math.pi * solid.radius * scale), 90)
 
 
 def _sampled(solid: Solid, layer: int, at: FloatArray, scale: float, times: int) -> tuple[Floats, Floats]:
-    """A layer at these Z, pixels, with ``times`` as many rays: no metal is 0, only shoulders are steps."""
+    """Return a layer at these Z in pixels, with ``times`` as many rays.
+
+    Missing material is 0, and only shoulders are steps.
+    """
     own, beside, share, limit = _neighbours(solid.edges, at, scale)
     shape = len(at), solid.low.shape[2] * times
     filled = np.flatnonzero((solid.high[layer] > solid.low[layer]).any(axis=1)) if layer else np.arange(1)
@@ -270,7 +280,7 @@ def _sampled(solid: Solid, layer: int, at: FloatArray, scale: float, times: int)
 
 
 def _neighbours(edges: FloatArray, at: FloatArray, scale: float) -> tuple[IntArray, IntArray, Floats, Floats]:
-    """The column of each Z, the nearest one beside it, the share of that, and what is no shoulder, pixels."""
+    """Return the column of each Z, its nearest neighbor with its share, and the step limit in pixels."""
     middles = 0.5 * (edges[1:] + edges[:-1])
     own = np.clip(np.searchsorted(edges, at, side="right") - 1, 0, len(middles) - 1)
     beside = np.clip(own + np.where(at > middles[own], 1, -1), 0, len(middles) - 1)
@@ -298,7 +308,7 @@ def _mixed(
 
 
 def _upsampled(r: Floats, there: npt.NDArray[np.bool_], times: int) -> Floats:
-    """Rays between the rays, in proportion where neighbours go on into each other."""
+    """Return interpolated rays between rays, where neighbors form one surface."""
     if times == 1:
         return r
     change = np.roll(r, -1, axis=1)
@@ -312,7 +322,10 @@ def _upsampled(r: Floats, there: npt.NDArray[np.bool_], times: int) -> Floats:
 
 
 def _beside(low: list[Floats], high: list[Floats], least: float, *, round_: bool) -> tuple[Cells, Cells]:
-    """Cells that differ by more than ``least`` from the next along Z, or ``round_`` the part, and these."""
+    """Return the cells that differ by more than ``least`` from the next cell, and these next cells.
+
+    The next cell is along Z, or around the part if ``round_``.
+    """
     differs = np.zeros(low[0].shape, np.bool_)
     change = np.zeros(low[0].shape, np.float32)
     for number, r in enumerate((*low, *high)):
@@ -331,7 +344,7 @@ def _beside(low: list[Floats], high: list[Floats], least: float, *, round_: bool
 def _free(
     low: list[Floats], high: list[Floats], own: Cells, other: Cells, least: float
 ) -> tuple[IntArray, Floats, Floats]:
-    """Which of the cells ``own`` have metal that ``other`` have none beside, from and to which r."""
+    """Return which cells of ``own`` have material that ``other`` does not cover, with its limits of r."""
     deep = np.zeros(len(own[0]), np.bool_)
     for r in high[1:]:
         if r.any():
@@ -358,7 +371,7 @@ def _free_in(
 def _without(
     low: Floats, high: Floats, other_low: Floats, other_high: Floats, least: float
 ) -> tuple[IntArray, Floats, Floats]:
-    """Of intervals (layers, n) what the others do not cover: of which of the n, from and to."""
+    """Return the parts of intervals (layers, n) that the others do not cover: index, start and end."""
     found: list[tuple[IntArray, Floats, Floats]] = []
     there = other_high > other_low
     for layer in range(len(low)):
@@ -376,14 +389,14 @@ def _without(
 
 
 def _whole(low: list[Floats], high: list[Floats], at: int) -> tuple[IntArray, Floats, Floats]:
-    """All the metal of one column: its ray, from and to."""
+    """Return all the material of one column: ray, start and end."""
     found = [(np.flatnonzero(b[at] > a[at]), a[at], b[at]) for a, b in zip(low, high, strict=True)]
     parts = [np.concatenate(each) for each in zip(*((n, a[n], b[n]) for n, a, b in found), strict=True)]
     return parts[0], parts[1], parts[2]
 
 
 def _filled(first: Floats, last: Floats) -> tuple[IntArray, Floats]:
-    """Points a pixel apart from ``first`` to ``last`` (n,): of which of them each is, and its r."""
+    """Return points one pixel apart from ``first`` to ``last`` (n,): their index and r."""
     count = np.maximum(np.ceil(last - first), 1.0).astype(np.intp)
     index = np.repeat(np.arange(len(first)), count)
     start = np.cumsum(count) - count

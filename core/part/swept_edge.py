@@ -1,7 +1,7 @@
-"""What a tool's edge sweeps along a straight move: of each column along Z the radius that it reaches.
+"""The area that a tool's edge sweeps on a straight move, as the least radius in each column along Z.
 
-An edge is one side of a convex outline, towards the axis or away from it. Swept along a straight line it
-bounds the convex hull of the edge at both ends: the part of the edge up to the point where it is tangent to
+An edge is one side of a convex outline, toward the axis or away from it. Its sweep along a straight line is
+the convex hull of the edge at both ends. The hull consists of the edge up to the point where it is tangent to
 the move, the move itself, and the rest of the edge.
 """
 
@@ -17,11 +17,14 @@ FloatArray = npt.NDArray[np.float64]
 Point = tuple[float, float]
 """Z and r, mm."""
 
-_UPRIGHT = 1e-9  # mm; a side no wider than this bounds no column
+_UPRIGHT = 1e-9  # mm; a narrower side does not bound a column
 
 
 class Columns(NamedTuple):
-    """Columns along Z: ``number`` of them, ``step`` apart, the first one's middle at ``first``; mm."""
+    """Equally spaced columns along Z, in mm.
+
+    ``number`` is the number of columns, ``step`` the spacing, and ``first`` the middle of the first one.
+    """
 
     first: float
     step: float
@@ -29,17 +32,20 @@ class Columns(NamedTuple):
 
     @property
     def middles(self) -> FloatArray:
-        """Z of each, (number,)."""
+        """Z of the middle of each column, (number,)."""
         middles: FloatArray = self.first + self.step * np.arange(self.number, dtype=np.float64)
         return middles
 
     def at(self, z: float) -> int:
-        """The first column that does not lie before ``z``, held within what there is."""
+        """Return the first column that is not before ``z``, limited to the existing columns."""
         return min(max(math.ceil((z - self.first) / self.step), 0), self.number)
 
 
 class Edge(NamedTuple):
-    """The side of a convex outline that looks to the axis: Z rising (k,), r (k,), slopes rising (k - 1,)."""
+    """The side of a convex outline that faces the axis.
+
+    ``z`` (k,) ascends, ``r`` has the shape (k,), and ``slope`` (k - 1,) ascends.
+    """
 
     z: FloatArray
     r: FloatArray
@@ -47,12 +53,12 @@ class Edge(NamedTuple):
 
 
 def towards_axis(outline: FloatArray) -> Edge:
-    """The side of a convex outline (k, 2) of Z and r that looks to the axis: its lower convex chain."""
+    """Return the side of a convex outline (k, 2) that faces the axis, its lower convex chain in Z and r."""
     ordered = outline[np.lexsort((outline[:, 1], outline[:, 0]))]
     chain: list[Point] = []
     for z, r in ordered.tolist():
         if chain and z - chain[-1][0] <= _UPRIGHT:
-            continue  # straight above: the sides of the outline bound no column
+            continue  # directly above, because vertical sides do not bound a column
         while len(chain) > 1 and _turn(chain[-2], chain[-1], (z, r)) <= 0.0:
             chain.pop()
         chain.append((z, r))
@@ -65,9 +71,9 @@ def _turn(a: Point, b: Point, c: Point) -> float:
 
 
 def sweep(edge: Edge, start: Point, end: Point, columns: Columns) -> tuple[int, FloatArray]:
-    """The first column that is reached, and the least r (m,) that the edge has in each on its way.
+    """Return the first column that the edge reaches, and the least r (m,) in each column on the move.
 
-    ``start`` and ``end`` are where the outline's origin stands.
+    ``start`` and ``end`` are the positions of the outline's origin.
     """
     (z1, r1), (z0, r0) = (start, end) if start[0] <= end[0] else (end, start)
     way = z0 - z1

@@ -1,10 +1,9 @@
-"""Outlines of tools in the plane of turning: what cuts and what must not touch metal, by kind and size.
+"""Outlines of tools in the plane of turning: cutting edges and bodies, by kind and size.
 
-Every tool is drawn in one pose, the end towards the chuck and the axis (quadrant 3, or 8 where it is
-symmetrical, or 7 for a drill), and mirrored to the side on which its tip lies. X keeps its sign: the holder
-of a tool in front lies at X+ of its tip, that of a tool behind at X−, and a boring bar may reach across the
-axis, where what counts is |X|. Sizes that nobody has stated are those of the standards' usual holders, and
-their names are told.
+Every tool is drawn in one pose, pointing to the chuck and the axis (quadrant 3, 8 for a symmetrical tool, 7
+for a drill), and mirrored to the side of its tip. X retains its sign. The holder of a front tool is at X+ of
+its tip, that of a rear tool at X−. A boring bar may extend across the axis, where |X| applies. Dimensions
+that are not specified are those of the usual standard holders, and their names are listed.
 """
 
 from __future__ import annotations
@@ -40,24 +39,24 @@ ENTRIES: Mapping[str, float] = {
     **{"P": 60.0, "H": 50.0, "O": 40.0},
 }
 BORING_ENTRIES: Mapping[str, float] = {**ENTRIES, "T": 91.0}  # STFC
-NOSE = 0.4  # mm, of an insert of which nothing is known
+NOSE = 0.4  # mm, nose radius of an unknown insert
 # Bars of ISO 5609: diameter → tip to axis, mm.
 _BARS = (
     (0.0, 8.0, 10.0, 12.0, 16.0, 20.0, 25.0, 32.0, 40.0),
     (0.0, 6.0, 7.0, 9.0, 11.0, 13.0, 17.0, 22.0, 27.0),
 )
-_PROUD = 0.1  # of the inscribed circle: how far an insert stands out of its seat, at most 1 mm
-_BLADE = 0.8  # of the width of the edge
+_PROUD = 0.1  # fraction of the inscribed circle by which an insert extends from its seat, at most 1 mm
+_BLADE = 0.8  # fraction of the width of the edge
 _TAP_LEAD = 3.0  # pitches
 _POINTS = {ToolKind.DRILL: 118.0, ToolKind.CENTRE_DRILL: 60.0, ToolKind.THREADING: 60.0}
 
 
 @dataclass(frozen=True, slots=True)
 class ToolOutline:
-    """Convex polygons (k, 2) of (z, r) about the control point, mm, counter-clockwise.
+    """Convex polygons (k, 2) of (z, r) about the control point, in mm, counterclockwise.
 
-    ``cutting`` takes metal off, ``body`` must not meet any. ``axial``: the tool is round about an axis
-    parallel to Z. ``assumed`` names the fields of the shape for which a standard size stands.
+    ``cutting`` removes material, and ``body`` must not touch any. ``axial`` means that the tool is round
+    about an axis parallel to Z. ``assumed`` lists the fields of the shape for which a standard size is used.
     """
 
     cutting: tuple[FloatArray, ...]
@@ -68,7 +67,7 @@ class ToolOutline:
 
 @dataclass(slots=True)
 class _Drawing:
-    """One tool on the drawing board, in the pose that all are drawn in."""
+    """The drawing of one tool in the common pose."""
 
     shape: ToolShape
     cutting: list[FloatArray] = field(default_factory=list)
@@ -76,7 +75,7 @@ class _Drawing:
     assumed: list[str] = field(default_factory=list)
 
     def size(self, name: str, usual: float) -> float:
-        """A field of the shape, or the usual size, which is noted."""
+        """Return a field of the shape, or the usual size, whose name is then recorded."""
         stated = float(getattr(self.shape, name))
         if stated > 0.0:
             return stated
@@ -85,11 +84,11 @@ class _Drawing:
 
     @property
     def holder(self) -> Holder:
-        """The holder as far as it is described."""
+        """The holder, as far as it is specified."""
         return holder_of(self.shape.holder) or Holder()
 
     def shank(self, usual: float) -> Holder:
-        """The shank, or the usual one of this width."""
+        """Return the specified shank, or the usual one of this width."""
         holder = self.holder
         if holder.width:
             return holder
@@ -98,21 +97,21 @@ class _Drawing:
 
     @property
     def sided(self) -> bool:
-        """Whether the tip lies in a quadrant between the axes."""
+        """True if the tip is in a quadrant between the axes."""
         return 0 not in self.shape.direction
 
     @property
     def tip(self) -> FloatArray:
-        """Where the tip lies from the nose centre, in nose radii, in the pose of the drawing."""
+        """Position of the tip from the center of the nose, in nose radii, in the pose of the drawing."""
         if self.shape.tip in {0, 9}:
             return np.zeros(2)
         return np.array([-1.0 if self.sided else 0.0, -1.0])
 
 
 def outline(shape: ToolShape) -> ToolOutline:
-    """The outline of a tool. Raises InsertCodeError for a code that means nothing.
+    """Return the outline of a tool. Raises InsertCodeError for an invalid code.
 
-    What else contradicts itself is told by ``core.part.shape_rules`` before.
+    ``core.part.shape_rules`` checks for other contradictions first.
     """
     drawing = _Drawing(shape)
     _DRAW[shape.kind](drawing)
@@ -132,13 +131,13 @@ def outline(shape: ToolShape) -> ToolOutline:
 
 
 def nose_circle(radius: float, tip: int) -> ToolOutline:
-    """What is known of a tool without a shape: its nose, or less than a hundredth where it has none."""
+    """Return the outline of a tool without a shape: its nose circle, or a very small one without a radius."""
     size = radius or CHORD * 10.0
     z, r = TIP_DIRECTIONS[tip]
     return ToolOutline((circle(size) - size * np.array([z, r], dtype=np.float64),), assumed=("kind",))
 
 
-# --- poses: from the drawing to the side of the tip ---------------------------------------------------------
+# --- poses: mirroring to the side of the tip ----------------------------------------------------------------
 
 
 def _as_drawn(points: FloatArray, _direction: tuple[int, int]) -> FloatArray:
@@ -146,15 +145,15 @@ def _as_drawn(points: FloatArray, _direction: tuple[int, int]) -> FloatArray:
 
 
 def _pose(points: FloatArray, direction: tuple[int, int]) -> FloatArray:
-    """From quadrant 3 or 8."""
+    """Return points mirrored from quadrant 3 or 8."""
     z, r = direction
-    if r == 0:  # 7 and 5: the end that points to the axis points along it
+    if r == 0:  # quadrants 7 and 5: the end points along the axis instead of to it
         return counter_clockwise(points[:, ::-1] * np.array([-z, 1.0]))
     return counter_clockwise(points * np.array([-z or 1.0, -r]))
 
 
 def _round_pose(points: FloatArray, direction: tuple[int, int]) -> FloatArray:
-    """From quadrant 7."""
+    """Return points of a round tool rotated from quadrant 7."""
     z, r = direction
     if z == 0:
         return counter_clockwise(points[:, ::-1] * np.array([1.0, -r]))
@@ -176,7 +175,7 @@ def _insert(drawing: _Drawing, usual_circle: float) -> Insert:
 
 
 def _heading(drawing: _Drawing, insert: Insert, usual: Mapping[str, float]) -> float:
-    """Direction of the end cutting edge from the tip, degrees from +z to +r."""
+    """Return the direction of the end cutting edge from the tip, in degrees from +z to +r."""
     shape, holder, point = drawing.shape, drawing.holder, insert.point_angle
     entry = shape.entry or holder.entry
     if not entry and (not drawing.sided or shape.hand is Hand.NEUTRAL):
@@ -187,7 +186,7 @@ def _heading(drawing: _Drawing, insert: Insert, usual: Mapping[str, float]) -> f
 
 
 def _seated(drawing: _Drawing, insert: Insert, usual: Mapping[str, float]) -> tuple[FloatArray, FloatArray]:
-    """The insert, and the part of it that lies on its seat, about the control point."""
+    """Return the insert, and the part of it that is on its seat, about the control point."""
     radius = insert.nose_radius
     seat = 1.0 - 2.0 * min(1.0, _PROUD * insert.inscribed_circle) / insert.inscribed_circle
     if not insert.corners:
@@ -220,7 +219,7 @@ _SHANKS = ((18.0, 32.0), (15.0, 25.0), (12.0, 20.0), (9.0, 16.0), (0.0, 12.0))  
 
 
 def _shank_behind(drawing: _Drawing, seat: FloatArray, side: tuple[float, float], head: float) -> None:
-    """A head from the seat to the shank, and the shank as far as it sticks out."""
+    """Add a head from the seat to the shank, and the shank up to its stick-out."""
     drawing.body.append(hull(np.concatenate([seat, [(side[0], head), (side[1], head)]])))
     end = drawing.shape.stick_out or head + 3.0 * (side[1] - side[0])
     if end > head:
@@ -245,7 +244,7 @@ _INSERT_BARS = ((12.0, 32.0), (9.0, 20.0), (6.0, 12.0), (0.0, 8.0))  # inscribed
 
 
 def _bar_behind(drawing: _Drawing, seat: FloatArray, bar: float, axis: float, head: float) -> None:
-    """A bar towards +z, its axis so far from the tip; a back-boring tool's too, so its z is turned back."""
+    """Add a bar toward +z with its axis at a distance from the tip; z is mirrored for back boring."""
     back = -1.0 if drawing.shape.direction[0] > 0 else 1.0
     away = np.array([back, 1.0])
     low, high = axis - bar / 2.0, axis + bar / 2.0
@@ -258,7 +257,7 @@ def _bar_behind(drawing: _Drawing, seat: FloatArray, bar: float, axis: float, he
         drawing.body.append(rectangle((end, end + 2.0 * bar), (axis - bar, axis + bar)) * away)
 
 
-# --- grooving, parting, threading: an edge, a blade behind it, then the shank or a bar ----------------------
+# --- grooving, parting, threading: edge, blade, then shank or bar -------------------------------------------
 
 
 def _grooving(drawing: _Drawing) -> None:
@@ -275,7 +274,7 @@ def _grooving(drawing: _Drawing) -> None:
 
 
 def _left_end(drawing: _Drawing, width: float, nose: float) -> float:
-    """Where an edge of this width begins: the control point is its corner, its middle, or a nose centre."""
+    """Return the left end of an edge, whose control point is its corner, its middle or a nose center."""
     if not drawing.sided:
         return -width / 2.0
     return -nose * (1.0 + float(drawing.tip[0]))
@@ -301,7 +300,7 @@ def _blade_behind(drawing: _Drawing, side: tuple[float, float], high: float, dep
 
 
 def _threading(drawing: _Drawing) -> None:
-    """A V with a nose, or with the flat of an eighth of the pitch (ISO 68-1)."""
+    """Draw a V with a nose radius, or with a flat of one eighth of the pitch (ISO 68-1)."""
     shape = drawing.shape
     angle = math.radians(drawing.size("point", _POINTS[ToolKind.THREADING]))
     high = shape.length or max(shape.pitch, 3.0)
@@ -320,7 +319,7 @@ def _threading(drawing: _Drawing) -> None:
     _blade_behind(drawing, (left, left + 2.0 * half), top, top + 2.0 * half)
 
 
-# --- round tools: their axis is r = 0, their end at z = 0 ---------------------------------------------------
+# =
 
 
 def _cylinder(start: float, end: float, radius: float) -> FloatArray:
@@ -328,12 +327,12 @@ def _cylinder(start: float, end: float, radius: float) -> FloatArray:
 
 
 def _symmetrical(upper: list[tuple[float, float]]) -> FloatArray:
-    """A convex polygon from its half at r ≥ 0, along z."""
+    """Return a convex polygon from its half at r ≥ 0, ordered along z."""
     return hull(np.array([*upper, *((z, -r) for z, r in upper)], dtype=np.float64))
 
 
 def _shank_of(drawing: _Drawing, length: float, diameter: float) -> None:
-    """The shank to where it is held, and what holds it when that is stated."""
+    """Add the shank up to its clamping, and the clamping if its position is specified."""
     end = drawing.shape.stick_out or length + 2.0 * diameter
     if end > length:
         drawing.body.append(_cylinder(length, end, diameter / 2.0))
@@ -347,13 +346,16 @@ def _drill(drawing: _Drawing) -> None:
     length = drawing.size("length", 8.0 * diameter)
     cone = radius / math.tan(math.radians(drawing.size("point", _POINTS[ToolKind.DRILL]) / 2.0))
     length = max(length, cone)
-    point = [(0.0, 0.0)] if cone > CHORD else []  # a flat drill has none
+    point = [(0.0, 0.0)] if cone > CHORD else []  # a flat drill has no point
     drawing.cutting.append(_symmetrical([*point, (cone if point else 0.0, radius), (length, radius)]))
     _shank_of(drawing, length, diameter)
 
 
 def _centre_drill(drawing: _Drawing) -> None:
-    """DIN 333 form A: a pilot of .4 of the body, a point of 120°, then the cone; ``width`` is the pilot's."""
+    """Draw DIN 333 form A: pilot of 0.4 body diameters, 120° point, then the cone.
+
+    ``width`` is the diameter of the pilot.
+    """
     diameter = drawing.size("diameter", 6.0)
     pilot = drawing.shape.width or 0.4 * diameter
     tip = pilot / 2.0 / math.tan(math.radians(60.0))
@@ -377,7 +379,7 @@ def _reamer(drawing: _Drawing) -> None:
 
 
 def _tap(drawing: _Drawing) -> None:
-    """The lead is three pitches from below the core of the thread (ISO 68-1: 1.0825 pitches less) on."""
+    """Draw a tap whose lead is three pitches long and starts below the core (ISO 68-1)."""
     diameter = drawing.size("diameter", 6.0)
     pitch = drawing.size("pitch", diameter / 6.0)
     length = drawing.size("length", 2.5 * diameter + _TAP_LEAD * pitch)

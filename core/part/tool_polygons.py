@@ -1,6 +1,6 @@
-"""Convex polygons of tools: corners rounded by chords, insert forms, mirror images, pieces of any outline.
+"""Convex polygons of tools: rounded corners, insert shapes, mirror images, and convex pieces of outlines.
 
-A polygon is a float array (k, 2) of (z, r), mm, counter-clockwise.
+A polygon is a float array (k, 2) of (z, r) in mm, counterclockwise.
 """
 
 from __future__ import annotations
@@ -15,42 +15,42 @@ from numpy.typing import NDArray
 from core.message import CodedError
 
 FloatArray = NDArray[np.float64]
-CHORD = 0.0005  # mm between a nose and its chords
-COARSE = 0.02  # mm; corners that do not cut the part
+CHORD = 0.0005  # mm of deviation between a nose and its chords
+COARSE = 0.02  # mm of deviation for corners that do not cut
 _RIGHT_ANGLE = math.pi / 2.0
 
 
 class PartError(CodedError, ValueError):
-    """Points, edges or outlines from which no part, cut or tool can be computed."""
+    """Raised for points, edges or outlines from which no part, cut or tool can be computed."""
 
 
 def polygon(points: Iterable[tuple[float, float]]) -> FloatArray:
-    """The points as an array, counter-clockwise."""
+    """Return the points as an array, counterclockwise."""
     return counter_clockwise(np.array(tuple(points), dtype=np.float64))
 
 
 def rectangle(z: tuple[float, float], r: tuple[float, float]) -> FloatArray:
-    """A rectangle between two z and two r."""
+    """Return the rectangle between two z and two r."""
     (left, right), (low, high) = sorted(z), sorted(r)
     return polygon([(left, low), (right, low), (right, high), (left, high)])
 
 
 def area(points: FloatArray) -> float:
-    """Area of a polygon by the shoelace formula; negative when it runs clockwise."""
+    """Return the area of a polygon by the shoelace formula; negative for a clockwise polygon."""
     z, r = points[:, 0], points[:, 1]
     return 0.5 * float(np.dot(z, np.roll(r, -1)) - np.dot(r, np.roll(z, -1)))
 
 
 def counter_clockwise(points: FloatArray) -> FloatArray:
-    """The polygon the other way about when it runs clockwise."""
+    """Return the polygon in counterclockwise order."""
     return points if area(points) >= 0.0 else points[::-1].copy()
 
 
 def arc(start: float, sweep: float, radius: float, chord: float = CHORD) -> FloatArray:
-    """Points (k, 2) on an arc about the origin, radians; its extremes in z and r are among them.
+    """Return points (k, 2) on an arc about the origin, in radians, including its extremes in z and r.
 
-    Half a chord of angle t falls short of the arc by radius (1 - cos t): a diameter that is turned with a
-    quadrant's extreme is exact.
+    A chord with the half angle t deviates by radius·(1 - cos t). A diameter turned with the extreme of a
+    quadrant is exact.
     """
     most = 2.0 * math.acos(max(0.0, 1.0 - chord / radius)) if radius > chord else _RIGHT_ANGLE
     first = math.floor(start / _RIGHT_ANGLE + 1e-9) + 1
@@ -63,12 +63,12 @@ def arc(start: float, sweep: float, radius: float, chord: float = CHORD) -> Floa
 
 
 def circle(radius: float) -> FloatArray:
-    """A circle about the origin."""
+    """Return a circle about the origin."""
     return arc(0.0, 2.0 * math.pi, radius)[:-1]
 
 
 def walked(corners: Sequence[float], edges: Sequence[float], heading: float) -> FloatArray:
-    """A polygon from its interior angles and edges, the first corner at the origin, degrees.
+    """Return a polygon from its interior angles and edges, with the first corner at the origin, in degrees.
 
     ``heading`` is the direction of the first edge from +z to +r.
     """
@@ -81,7 +81,7 @@ def walked(corners: Sequence[float], edges: Sequence[float], heading: float) -> 
 
 
 def nose_centre(points: FloatArray, radius: float, at: int = 0) -> FloatArray:
-    """Centre of the circle of this radius that touches both edges of a corner."""
+    """Return the center of the circle with this radius that touches both edges of a corner."""
     before, corner, after = points[at - 1], points[at], points[(at + 1) % len(points)]
     one, other = _unit(before - corner), _unit(after - corner)
     half = math.acos(float(np.clip(np.dot(one, other), -1.0, 1.0))) / 2.0
@@ -89,7 +89,7 @@ def nose_centre(points: FloatArray, radius: float, at: int = 0) -> FloatArray:
 
 
 def rounded(points: FloatArray, radii: Sequence[float], chords: Sequence[float]) -> FloatArray:
-    """The convex polygon with its corners rounded; each has a radius, and a limit for its chords' error."""
+    """Return the convex polygon with rounded corners, each with its radius and its chord error limit."""
     parts = []
     for at, (radius, chord) in enumerate(zip(radii, chords, strict=True)):
         if radius <= 0.0:
@@ -103,7 +103,7 @@ def rounded(points: FloatArray, radii: Sequence[float], chords: Sequence[float])
 
 
 def largest_radius(points: FloatArray) -> float:
-    """The largest radius that fits into every corner at once."""
+    """Return the largest radius that fits into all corners at the same time."""
     fits = []
     for at in range(len(points)):
         one, other = points[at - 1] - points[at], points[(at + 1) % len(points)] - points[at]
@@ -113,7 +113,7 @@ def largest_radius(points: FloatArray) -> float:
 
 
 def hull(points: FloatArray) -> FloatArray:
-    """The convex polygon about points, counter-clockwise (Andrew's monotone chain)."""
+    """Return the convex hull of points, counterclockwise (Andrew's monotone chain)."""
     ordered = [tuple(point) for point in points[np.lexsort((points[:, 1], points[:, 0]))]]
     return np.array(_chain(ordered)[:-1] + _chain(ordered[::-1])[:-1], dtype=np.float64)
 
@@ -128,7 +128,10 @@ def _chain(ordered: list[tuple[float, ...]]) -> list[tuple[float, ...]]:
 
 
 def convex_pieces(points: Sequence[tuple[float, float]]) -> tuple[FloatArray, ...]:
-    """A simple polygon in convex pieces: itself, or triangles by clipping ears. Raises PartError else."""
+    """Return a simple polygon in convex pieces: the polygon itself, or triangles by ear clipping.
+
+    Raises PartError if the outline crosses or touches itself.
+    """
     left = [(float(z), float(r)) for z, r in counter_clockwise(np.array(points, dtype=np.float64))]
     if _crosses(left):
         raise PartError("the outline crosses itself", "crosses-itself")
@@ -150,7 +153,7 @@ def _convex(points: list[tuple[float, float]]) -> bool:
 
 
 def _crosses(points: list[tuple[float, float]]) -> bool:
-    """Whether two edges that are no neighbours cross."""
+    """Return whether two edges that are not neighbors cross."""
     edges = list(pairwise([*points, points[0]]))
     return any(
         _turn(*edges[one], edges[other][0]) * _turn(*edges[one], edges[other][1]) < 0.0
@@ -174,7 +177,7 @@ def _is_ear(points: list[tuple[float, float]], at: int) -> bool:
 
 
 def _turn(first: Sequence[float], second: Sequence[float], third: Sequence[float]) -> float:
-    """Positive when the way over three points turns left."""
+    """Return a positive value if the path over three points turns left."""
     return (second[0] - first[0]) * (third[1] - first[1]) - (second[1] - first[1]) * (third[0] - first[0])
 
 

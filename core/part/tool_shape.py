@@ -1,4 +1,4 @@
-"""The shape of a tool: its kind, hand, insert, holder and sizes, as a tool sheet states them."""
+"""The shape of a tool: its kind, hand, insert, holder and dimensions, as in a setup sheet."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from core.tool_edges import TIP_DIRECTIONS
 
 
 class ToolKind(StrEnum):
-    """What a tool is for; it decides which of the sizes mean anything."""
+    """The purpose of a tool, which determines the dimensions that apply to it."""
 
     TURNING = "turning"
     BORING = "boring"
@@ -25,14 +25,14 @@ class ToolKind(StrEnum):
 
 
 class Hand(StrEnum):
-    """A right-hand turning tool cuts towards the chuck, a left-hand one away from it."""
+    """The hand of a tool. A right-hand turning tool cuts toward the chuck, a left-hand tool away from it."""
 
     RIGHT = "right"
     LEFT = "left"
     NEUTRAL = "neutral"
 
 
-# Turning about their own axis: their control point is on it, at the very end.
+# Rotating tools, whose control point is on their axis at the end.
 ROUND_TOOLS = frozenset(
     {ToolKind.DRILL, ToolKind.CENTRE_DRILL, ToolKind.REAMER, ToolKind.TAP, ToolKind.END_MILL}
 )
@@ -42,17 +42,19 @@ Point = tuple[float, float]
 
 @dataclass(frozen=True, slots=True)
 class ToolShape:
-    """One tool, mm and degrees; 0 or empty stands for "not stated", and a standard size is taken then.
+    """The shape of one tool, in mm and degrees. A value of 0 or empty means not specified.
 
-    ``tip`` is the quadrant 0…9 in which the tip lies as seen from the nose centre; of a tool that turns
-    about its own axis it says where its end points to: 7 (or 0) along the spindle towards the chuck, 8
-    across it from the front, 6 from behind. ``insert`` is an ISO 1832 or ANSI B212.4 code. ``holder`` is a
-    shank's size (``20x20``, ``3/4"``), a holder's code or any name. ``width`` is that of a groove.
-    ``diameter`` is that of a round tool or of a boring bar. ``point`` is the included angle of a drill's
-    point, of a centre drill or of a thread. ``length`` is what can cut: flutes of a drill, depth of a
-    thread's flanks. ``stick_out`` ends the tool, beyond it stands what holds it. ``entry`` is the entering
-    angle of the main edge; 0: that of the holder, or the usual one for the insert. ``rear``: the tool works
-    at X negative. ``profile`` is a form tool's outline, (z, r) from the control point.
+    A standard size is then used.
+
+    ``tip`` is the quadrant 0 to 9 of the tip as seen from the nose center. For a rotating tool, it is the
+    direction of its end: 7 (or 0) along the spindle toward the chuck, 8 across the spindle from the front, 6
+    from the rear. ``insert`` is an ISO 1832 or ANSI B212.4 code. ``holder`` is a shank size (``20x20``,
+    ``3/4"``), a holder code or any name. ``width`` is that of a groove. ``diameter`` is that of a round tool
+    or of a boring bar. ``point`` is the included angle of the point of a drill or center drill, or of a
+    thread. ``length`` is the cutting length: the flutes of a drill, or the depth of the flanks of a thread.
+    ``stick_out`` is the length up to the clamping. ``entry`` is the entering angle of the main edge; 0 means
+    that of the holder, or the usual one for the insert. ``rear`` means that the tool works at negative X.
+    ``profile`` is the outline of a form tool, (z, r) from the control point.
     """
 
     kind: ToolKind = ToolKind.TURNING
@@ -74,24 +76,24 @@ class ToolShape:
 
     @property
     def turns_itself(self) -> bool:
-        """Whether the tool is round about its own axis: drill, centre drill, reamer, tap, end mill."""
+        """True for a rotating tool: drill, center drill, reamer, tap or end mill."""
         return self.kind in ROUND_TOOLS
 
     @property
     def internal(self) -> bool:
-        """Whether it works in a bore on a bar: a boring tool, or a groove or thread tool on a bar."""
+        """True if the tool works in a bore: a boring tool, or a groove or thread tool on a bar."""
         on_a_bar = self.kind in {ToolKind.GROOVING, ToolKind.THREADING} and self.diameter > 0.0
         return self.kind is ToolKind.BORING or on_a_bar
 
     @property
     def behind(self) -> bool:
-        """Whether it works at X negative: it says so, or its tip lies where only a tool behind has it."""
+        """True if the tool works at negative X, as specified or as its tip quadrant implies."""
         across = TIP_DIRECTIONS[self.tip][1]
         return self.rear or (across != 0 and (across > 0) is not self.internal)
 
     @property
     def direction(self) -> tuple[int, int]:
-        """Where the tip points, (z, x): by the quadrant, and without one by kind, hand and side."""
+        """The direction of the tip as (z, x), from the quadrant, or else from kind, hand and side."""
         if self.turns_itself and self.tip in {0, 9}:
             return (-1, 0)
         if self.tip not in {0, 9}:

@@ -1,8 +1,8 @@
-"""The metal of a turned part: in columns along Z the radii between which there is some.
+"""The material of a turned part: intervals of r in columns along Z.
 
-A column has one interval of r as a rule, more where a face groove or a ring is; they lie in layers from the
-axis outwards. Radii are exact in the middle of a column, so a cylinder, a cone and an arc are as exact as
-the outline that cuts them, and a shoulder stands within half a column of its place.
+A column usually has one interval of r, more with a face groove or a ring. The intervals are stored in layers
+from the axis outward. Radii are exact in the middle of a column, so cylinders, cones and arcs are as exact as
+the cutting outline. A shoulder is within half a column of its position.
 """
 
 from __future__ import annotations
@@ -20,16 +20,16 @@ from core.part.swept_edge import Columns, FloatArray, Point
 
 STEP = 0.008
 """Width of a column, mm, up to ``_FINE`` of them: a shoulder is off by .004 mm (.00016 in) at most."""
-_FINE = 40_000  # columns: 320 mm
-_TOUCH = 1e-6  # mm; less is no metal
-_FIT = 0.004  # mm by which a profile that is told may be off
-_STEEP = 8.0  # a rise of so many steps from one column to the next is a shoulder
+_FINE = 40_000  # columns; 320 mm
+_TOUCH = 1e-6  # mm; thinner material counts as none
+_FIT = 0.004  # mm of tolerance of a reported profile
+_STEEP = 8.0  # column widths; a larger step between two columns is a shoulder
 Profile = list[tuple[float, float]]
 """Z and r, mm, Z falling: from the face towards the chuck."""
 
 
 def simplified(points: FloatArray, tolerance: float) -> FloatArray:
-    """Points (k, 2) of (n, 2), ends included: no other lies further off their polyline than ``tolerance``."""
+    """Return a subset (k, 2) of points (n, 2), including the ends, within ``tolerance`` of their polyline."""
     kept = np.zeros(len(points), dtype=bool)
     kept[[0, -1]] = True
     todo = [(0, len(points) - 1)]
@@ -47,7 +47,7 @@ def simplified(points: FloatArray, tolerance: float) -> FloatArray:
 
 
 def _distances(points: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:
-    """How far each point (n, 2) lies from the straight line between two."""
+    """Return the distance of each point (n, 2) from the straight line between two points."""
     way: FloatArray = end - start
     length = float(np.hypot(*way))
     away = points - start
@@ -58,9 +58,10 @@ def _distances(points: FloatArray, start: FloatArray, end: FloatArray) -> FloatA
 
 
 class Cut(NamedTuple):
-    """What one move meets. Lengths mm, area (mm²) that of the half section, volume mm³.
+    """The material that one move cuts. Lengths are in mm, the area of the half section in mm², volume in mm³.
 
-    ``depth`` is the greatest thickness along r, ``width`` how much of Z it meets, from ``back`` to ``front``.
+    ``depth`` is the greatest thickness along r. ``width`` is the length of Z that is cut, from ``back`` to
+    ``front``.
     """
 
     area: float = 0.0
@@ -69,13 +70,13 @@ class Cut(NamedTuple):
     width: float = 0.0
     back: float = 0.0
     front: float = 0.0
-    parts: bool = False  # a column has no metal any more that had some
+    parts: bool = False  # a column has lost all its material
 
     def __bool__(self) -> bool:
         return self.area > 0.0
 
     def joined(self, other: Cut) -> Cut:
-        """Both together."""
+        """Return both cuts together."""
         if not self or not other:
             return self or other
         return Cut(
@@ -89,7 +90,7 @@ class Cut(NamedTuple):
         )
 
     def followed(self, other: Cut) -> Cut:
-        """This, then the other: pieces of one move, none of which is deeper because of the others."""
+        """Return this cut followed by another one of the same move, with the greater of both depths."""
         return self.joined(other)._replace(depth=max(self.depth, other.depth))
 
 
@@ -97,7 +98,7 @@ NOTHING = Cut()
 
 
 class Piece(NamedTuple):
-    """What was parted off: its volume, mm³, its outside, and its bore (None where it is solid throughout)."""
+    """A piece that was parted off: volume in mm³, outside profile, and bore (None if it is solid)."""
 
     volume: float
     outside: Profile
@@ -106,13 +107,13 @@ class Piece(NamedTuple):
 
 
 def _span(r0: float, r1: float) -> tuple[float, float]:
-    """The least and the greatest distance from the axis on a straight way from ``r0`` to ``r1``."""
+    """Return the least and the greatest distance from the axis on a straight move from ``r0`` to ``r1``."""
     nearest = 0.0 if r0 * r1 < 0.0 else min(abs(r0), abs(r1))
     return nearest, max(abs(r0), abs(r1))
 
 
 class TurnedPart:
-    """A part in the lathe: metal from ``low`` to ``high`` (layers, columns), radii in mm."""
+    """A part in the lathe: material from ``low`` to ``high`` (layers, columns), as radii in mm."""
 
     def __init__(self, stock: Stock, step: float = STEP) -> None:
         length = stock.front - stock.back
@@ -124,35 +125,35 @@ class TurnedPart:
         self.high = stock.outside_at(middles)[np.newaxis, :].copy()
         self.low = np.minimum(stock.bore_at(middles), self.high[0])[np.newaxis, :].copy()
         self.largest = stock.radius
-        self.whole = self.volume  # mm³ of the stock
+        self.whole = self.volume  # volume of the stock, mm³
         self.pieces: list[Piece] = []
-        self.holds = False  # what is cut off stays where it is until ``let_fall``
+        self.holds = False  # parted material remains in place until ``let_fall``
         self._parted = False
-        self.removed = 0.0  # mm³, by cuts alone
+        self.removed = 0.0  # mm³ removed by cuts only
 
-    # --- what is there
+    # --- present material
 
     @property
     def volume(self) -> float:
-        """mm³ of all metal that the chuck holds."""
+        """Volume in mm³ of all the material in the chuck."""
         return self._volume(slice(None))
 
     @property
     def outermost(self) -> FloatArray:
-        """The greatest radius of each column (columns,), 0 where there is no metal."""
+        """The greatest radius of each column (columns,); 0 if it contains no material."""
         there = self.high > self.low
         radii: FloatArray = np.max(np.where(there, self.high, 0.0), axis=0)
         return radii
 
     @property
     def innermost(self) -> FloatArray:
-        """The least radius of each column (columns,) at which there is metal, 0 where there is none."""
+        """The least radius of the material in each column (columns,); 0 if it contains none."""
         there = self.high > self.low
         inner = np.min(np.where(there, self.low, np.inf), axis=0)
         return np.where(np.isfinite(inner), inner, 0.0)
 
     def highest(self, back: float, front: float) -> float:
-        """The greatest radius of the columns from Z ``back`` to ``front``, 0 where there are none."""
+        """Return the greatest radius of the columns from Z ``back`` to ``front``; 0 without columns."""
         there = slice(self.columns.at(back), self.columns.at(front))
         return float(self.high[:, there].max(initial=0.0))
 
@@ -161,13 +162,13 @@ class TurnedPart:
         return math.pi * self.columns.step * float(np.sum(high * high - low * low))
 
     def contains(self, points: Sequence[Point], depth: float) -> bool:
-        """Whether a path of Z and r, mm, runs more than ``depth`` inside the material somewhere."""
+        """Return whether a path of Z and r in mm is more than ``depth`` inside the material anywhere."""
         return any(self._crossed(start, end, depth) for start, end in pairwise(points))
 
     def _crossed(self, start: Point, end: Point, depth: float) -> bool:
         (z0, r0), (z1, r1) = (start, end) if start[0] <= end[0] else (end, start)
         first, last = self.columns.at(z0), self.columns.at(z1)
-        if first == last:  # square to the axis: within one column
+        if first == last:  # perpendicular to the axis, within one column
             if not 0 < first < self.columns.number:
                 return False
             nearest, farthest = _span(r0, r1)
@@ -180,10 +181,13 @@ class TurnedPart:
         low, high = self.low[:, first:last], self.high[:, first:last]
         return bool(np.any((r > low + depth) & (r < high - depth)))
 
-    # --- what a cut meets and takes off
+    # --- cuts
 
     def outwards(self, first: int, reach: FloatArray, *, cut: bool = True) -> Cut:
-        """All metal further out than ``reach`` (m,) from column ``first`` on; left there without ``cut``."""
+        """Return all material further out than ``reach`` (m,) from column ``first`` on.
+
+        The material is removed if ``cut`` is True.
+        """
         there = slice(first, first + len(reach))
         met = NOTHING
         for low, high in zip(self.low[:, there], self.high[:, there], strict=True):
@@ -194,7 +198,7 @@ class TurnedPart:
         return self._taken(met, cut=cut)
 
     def inwards(self, first: int, reach: FloatArray, *, cut: bool = True) -> Cut:
-        """All metal nearer to the axis than ``reach`` (m,); as ``outwards``."""
+        """Return all material closer to the axis than ``reach`` (m,); remove it if ``cut``."""
         there = slice(first, first + len(reach))
         met = NOTHING
         for low, high in zip(self.low[:, there], self.high[:, there], strict=True):
@@ -205,7 +209,7 @@ class TurnedPart:
         return self._taken(met, cut=cut)
 
     def between(self, first: int, near: FloatArray, far: FloatArray, *, cut: bool = True) -> Cut:
-        """All metal between the radii ``near`` and ``far`` (m,); as ``outwards``."""
+        """Return all material between the radii ``near`` and ``far`` (m,); remove it if ``cut``."""
         there = slice(first, first + len(near))
         met = NOTHING
         for layer in range(len(self.low)):
@@ -218,7 +222,7 @@ class TurnedPart:
         return self._taken(met, cut=cut)
 
     def _split(self, layer: int, there: slice, start: FloatArray, end: FloatArray) -> None:
-        """Take out [start, end] of one layer: what is left further out goes into a layer of its own."""
+        """Remove [start, end] from one layer, and move the material further out to a separate layer."""
         low, high = self.low[layer, there].copy(), self.high[layer, there].copy()
         taken = end > start
         outer = taken & (high > end)
@@ -243,7 +247,7 @@ class TurnedPart:
         self._layer_for(there, low, high, wanted)
 
     def _met(self, first: int, low: FloatArray, high: FloatArray, start: FloatArray, end: FloatArray) -> Cut:
-        """What lies between ``start`` and ``end`` of a layer, both within its metal."""
+        """Return the material between ``start`` and ``end`` of a layer, both within its interval."""
         thick = end - start
         deep = float(thick.max(initial=0.0))
         if deep <= _TOUCH:
@@ -270,7 +274,7 @@ class TurnedPart:
         return met
 
     def let_fall(self) -> None:
-        """Let fall what has been cut off while it was held."""
+        """Drop the pieces that were parted off while they were supported."""
         self.holds = False
         if self._parted:
             self._parted = False
@@ -279,7 +283,7 @@ class TurnedPart:
     # --- parting off
 
     def _part_off(self) -> None:
-        """What no metal joins to the end in the chuck any more falls off; chips are no pieces."""
+        """Drop the material that is not connected to the end in the chuck. Chips are not counted."""
         metal = np.any(self.high > self.low + _TOUCH, axis=0)
         there = np.flatnonzero(metal)
         if not len(there):
@@ -298,7 +302,7 @@ class TurnedPart:
         self.low[:, there] = self.high[:, there] = 0.0
 
     def rest(self) -> Piece:
-        """What the chuck holds, as a piece."""
+        """Return the material in the chuck as a piece."""
         return self._piece(slice(None), self.volume)
 
     def _piece(self, there: slice, volume: float) -> Piece:
@@ -314,7 +318,7 @@ class TurnedPart:
         return Piece(volume, self._profile(z, high), bore, wall)
 
     def _profile(self, z: FloatArray, r: FloatArray) -> Profile:
-        """Points from the face towards the chuck; shoulders stand upright between two columns."""
+        """Return the points from the face toward the chuck, with vertical shoulders between columns."""
         half = self.columns.step / 2
         rise = np.abs(np.diff(r))
         beside = np.maximum(np.append(rise[1:], 0.0), np.insert(rise[:-1], 0, 0.0))

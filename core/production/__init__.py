@@ -1,1 +1,1 @@
-"""What tools have cut: their lives by parts and by minutes."""
+"""Production data of tools: tool life by parts and by cutting time."""

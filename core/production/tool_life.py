@@ -1,4 +1,4 @@
-"""Tool life by parts and by cutting minutes: what is counted, when to warn, when the insert is spent."""
+"""Tool life by parts and by cutting time: counts, warning and end of life."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ from core.message import CodedError, Message
 
 PARTS_MOST = 1_000_000
 SECONDS_MOST = 60.0 * 100_000
-WARN = 0.9  # share of the life at which it is told
+WARN = 0.9  # share of the life at which a warning is shown
 
 
 class ToolLifeError(CodedError, ValueError):
-    """Limits of a tool life that nobody can mean; the text says which and what to do."""
+    """Raised for invalid limits of a tool life. The message names the limit and the remedy."""
 
 
 class LifeState(Enum):
-    """How far a tool's life is gone."""
+    """The state of a tool's life."""
 
     NO_LIMIT = "no limit"
     GOOD = "good"
@@ -28,7 +28,10 @@ class LifeState(Enum):
 
 @dataclass(frozen=True, slots=True)
 class ToolLife:
-    """Of one tool since its insert was changed; a limit of 0 is none. ``stops``: no other part when spent."""
+    """The life of one tool since its insert was changed. A limit of 0 means no limit.
+
+    ``stops`` means that no other part starts after the end of life.
+    """
 
     number: int
     limit_parts: int = 0
@@ -40,14 +43,14 @@ class ToolLife:
 
     @property
     def share(self) -> float:
-        """How much of the life is gone, by the limit that is nearer; 0 without one."""
+        """The used share of the life, by the limit that is closer; 0 without a limit."""
         by_parts = self.parts / self.limit_parts if self.limit_parts else 0.0
         by_time = self.seconds / self.limit_seconds if self.limit_seconds else 0.0
         return max(by_parts, by_time)
 
     @property
     def state(self) -> LifeState:
-        """Spent at the limit, warned from its share on."""
+        """The state of the life: warned from the share ``warn`` on, spent at the limit."""
         if not (self.limit_parts or self.limit_seconds):
             return LifeState.NO_LIMIT
         if self.share >= 1.0 - 1e-9:
@@ -56,7 +59,7 @@ class ToolLife:
 
     @property
     def parts_left(self) -> int | None:
-        """Whole parts that the insert still makes, by what a part has taken of it; None: nobody knows."""
+        """The number of complete parts until the end of life, from the use per part; None if unknown."""
         left = []
         if self.limit_parts:
             left.append(max(0, self.limit_parts - self.parts))
@@ -68,7 +71,7 @@ class ToolLife:
 
     @property
     def words(self) -> str:
-        """What is used of it: ``50 of 50 parts``, ``31 of 30 min``; the limit that is nearer."""
+        """The used life as a text, such as ``50 of 50 parts`` or ``31 of 30 min``, by the closer limit."""
         by_parts = self.parts / self.limit_parts if self.limit_parts else -1.0
         by_time = self.seconds / self.limit_seconds if self.limit_seconds else -1.0
         if by_parts < 0.0 and by_time < 0.0:
@@ -85,7 +88,7 @@ class ToolLife:
 
 
 def check_life(life: ToolLife) -> None:
-    """Raises ToolLifeError for limits that nobody can mean."""
+    """Raise ToolLifeError if a limit of the tool life is not valid."""
     if not 0 <= life.limit_parts <= PARTS_MOST:
         raise ToolLifeError(
             Message(

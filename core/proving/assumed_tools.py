@@ -1,7 +1,7 @@
-"""Tools that nobody has described: what a comment and the moves say about them, so that the part can be seen.
+"""Assumed shapes of tools without a specified shape, derived from comments and moves.
 
-A comment beside T counts first, in the words that shops use; without one the moves decide. What is assumed is
-told with the proof, and no holder is assumed: what cannot be known is not checked.
+A comment next to T has priority, with the words that shops use. Without a comment, the moves decide. The
+proof reports all assumptions. No holder is assumed, so it is not checked.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ from core.proving.tip_moves import QUICK, LiveStep, TipMove
 from core.tool_edges import edge_name
 
 _BY_MOVES = "based on the tool moves"
-_ON_AXIS = 0.05  # mm; a tool that feeds along Z no further off it is a drill
-_SQUARE = 0.02  # mm of Z, in a plunge
+_ON_AXIS = 0.05  # mm; a tool that feeds along Z within this distance of the axis is a drill
+_SQUARE = 0.02  # mm of Z in a plunge
 _NAMES = {
     ToolKind.TURNING: "a turning tool",
     ToolKind.BORING: "a boring tool",
@@ -33,20 +33,20 @@ _NAMES = {
     ToolKind.END_MILL: "an end mill",
     ToolKind.FORM: "a form tool",
 }
-_GROOVE = 2.0  # mm; width of a grooving or parting tool that nobody has given
-_WIDEST = 8.0  # mm, of what a groove is plunged with
-_USUAL, _SMALLEST, _ALLOWANCE = 6.35, 1.0, 0.5  # mm; diameter of a drill that nobody has given
-_BAR = 5.0  # mm; the bar of a grooving or threading tool in a bore
-_SLIM = "VNMG160404"  # reaches into contours that a stouter insert would not: a doubt speaks for the program
-_MILL = 3.175  # mm; diameter of a mill that nobody has given
+_GROOVE = 2.0  # mm; assumed width of a grooving or parting tool
+_WIDEST = 8.0  # mm, largest assumed width of a grooving tool
+_USUAL, _SMALLEST, _ALLOWANCE = 6.35, 1.0, 0.5  # mm; assumed diameters of a drill
+_BAR = 5.0  # mm; assumed bar of a grooving or threading tool in a bore
+_SLIM = "VNMG160404"  # a slim insert that reaches most contours, so that an unknown insert gives no finding
+_MILL = 3.175  # mm; assumed diameter of a mill
 _WIDTH = r"(\d+\.\d*|\.\d+|\d{3}|\d+(?=\s*MM))\s*(MM)?\s*(?:IN\b\.?|INCH)?\s*WIDE\b"
 _AT_FACE = 0.1  # mm
-_WIDE = 1.6  # widths; what feeds further along Z than that turns
+_WIDE = 1.6  # widths; a tool that feeds further along Z is a turning tool
 
 OPENS = frozenset({ToolKind.DRILL, ToolKind.REAMER})
 GROOVERS = frozenset({ToolKind.GROOVING, ToolKind.PARTING})
 
-# Words of shop comments, the more telling first; as text, since few programs need one of them compiled.
+# Words of shop comments, the most specific first. They are not compiled, because few programs need them.
 _WORDS = (
     (r"\b(WORK|BAR)? ?STOP(PER)?\b|\bGRIPPER\b|\bPULLER\b|\bTOPE\b", None),
     (r"\bCENT(ER|RE)[ -]?DRILL|\bSPOT|\bBROCA DE (CENTROS?|CENTRAR|PUNTO)|\bPUNTEAR", ToolKind.CENTRE_DRILL),
@@ -70,37 +70,41 @@ _METRIC_COARSE = {
     **{2.0: 0.4, 2.5: 0.45, 3.0: 0.5, 4.0: 0.7, 5.0: 0.8, 6.0: 1.0, 8.0: 1.25, 10.0: 1.5, 12.0: 1.75},
     **{14.0: 2.0, 16.0: 2.0, 20.0: 2.5, 24.0: 3.0},
 }  # ISO 261, mm
-_POINT_SIGN = re.compile(r"(?<=\d)P(?=\d)")  # 0P062 WIDE: a comment of this control has no point
+_POINT_SIGN = re.compile(r"(?<=\d)P(?=\d)")  # 0P062 WIDE: comments of this control cannot contain a point
 _RELEASES = r"TAPMATIC|REVERSING|RELEAS|COLLAPS|DIE\s?HEAD|SELF[\s-]?REV"
 _LEFT_HAND = r"\bL\.?H\b|\bLEFT[ -]?HAND"
 
 
 @dataclass(slots=True)
 class ToolUse:
-    """What a program does with one tool: its comments, its moves, and whether the collet was open in them."""
+    """The comments and moves of one tool in a program."""
 
     number: int
     comments: list[str] = field(default_factory=list)
     moves: list[TipMove] = field(default_factory=list)
     nose_radius: float = 0.0
-    pushes_bar: bool = False  # it fed while the collet was open
-    paused: bool = False  # the program waits, or switches something, while it stands ready
-    live: list[LiveStep] = field(default_factory=list)  # with C held, or in a plane of the virtual mill
+    pushes_bar: bool = False  # the tool fed while the collet was open
+    paused: bool = False  # the program waits or switches an output while the tool is at the part
+    # blocks with C engaged or in a plane of the virtual mill
+    live: list[LiveStep] = field(default_factory=list)
 
     @property
     def metric(self) -> bool:
-        """Whether the program counts in mm where it uses this tool."""
+        """True if the program uses mm while it uses this tool."""
         modals = [*(move.modal for move in self.moves[:1]), *(block.modal for block, _ in self.live[:1])]
         return any(modal.metric for modal in modals)
 
     @property
     def live_blocks(self) -> list[Block]:
-        """The blocks of a live tool that go along; C alone only indexes."""
+        """The blocks of a live tool that move X, Z or the virtual mill. Indexing of C is left out."""
         return [b for b, _ in self.live if b.plane is not None or (b.x, b.z) != (b.x0, b.z0)]
 
     @property
     def never_fed(self) -> TipMove | Block | None:
-        """Where a tool comes to the part whose moves are all rapids, with the spindle or C in work."""
+        """The first position at the part of a tool whose moves are all rapids, while spindle or C is active.
+
+        None if the tool feeds or if its rapids have another purpose.
+        """
         if self.pushes_bar:
             return None
         if blocks := self.live_blocks:
@@ -113,13 +117,13 @@ class ToolUse:
         first = [m for m in self.moves if m.points[-1][0] < -_SQUARE][:1]
         drawn = any(m.kind is Kind.ARC and not m.modal.rapid for m in self.moves)
         if drawn and first and not first[0].modal.rapid and any(m.modal.rapid for m in self.moves):
-            return None  # it cuts at the first line's F, and has a G00 beside it
+            return None  # the tool cuts at the F of the first line and also makes rapids with G00
         there = [m for m in self.moves if m.rpm and m.points[-1][0] < _AT_FACE]
         return there[0] if there and all(m.quick for m in self.moves) else None
 
     @property
     def across(self) -> bool:
-        """Whether a live tool goes into the part along X, and not along Z; in the plane ZC it does."""
+        """True if a live tool enters the part along X instead of Z, such as in the plane ZC."""
         if any(b.plane is not None and b.plane.on_side for b, _ in self.live):
             return True
         feeds = [b for b, _ in self.live if b.plane is None and not b.rapid and b.feed < QUICK]
@@ -129,15 +133,21 @@ class ToolUse:
 
 @dataclass(frozen=True, slots=True)
 class Assumed:
-    """``shape`` None: no cutting tool, but a bar stop. ``named``: a comment says what kind of tool it is."""
+    """The assumed shape of a tool, or None for a bar stop, with a sentence about the assumption.
+
+    ``named`` is True if a comment states the kind of tool.
+    """
 
     shape: ToolShape | None
     words: str
     named: bool = False
-    sized: bool = False  # its diameter is assumed
+    sized: bool = False  # the diameter is assumed
 
     def with_diameter(self, use: ToolUse, bore: Sequence[TipMove]) -> Assumed:
-        """A drill without a diameter gets one: just under what is cut in the ``bore`` behind it."""
+        """Return the tool with a diameter if it is a round tool without one.
+
+        The diameter of a drill is slightly less than the ``bore`` that is cut after it.
+        """
         shape = self.shape
         if shape is None or not shape.turns_itself or shape.diameter:
             return self
@@ -150,7 +160,10 @@ class Assumed:
         return replace(self, shape=replace(shape, diameter=diameter), words=words, sized=True)
 
     def with_width(self, use: ToolUse, threads: Sequence[TipMove]) -> Assumed:
-        """A grooving or parting tool without a width gets one: see ``groove_width``."""
+        """Return the tool with a width if it is a grooving or parting tool without one.
+
+        See ``groove_width``.
+        """
         shape = self.shape
         if shape is None or shape.kind not in GROOVERS or shape.width:
             return self
@@ -160,11 +173,13 @@ class Assumed:
 
 
 def groove_width(shape: ToolShape, moves: Iterable[TipMove], threads: Iterable[TipMove]) -> float:
-    """mm, of an edge whose width nobody has said: 2, or as much as a thread that begins in its groove needs.
+    """Return the width in mm of an edge without a specified width.
 
-    That is a thread that leads out of the part. Its edge is as wide as its lead at most, half to either side.
+    The width is 2 mm, or the width that a thread needs to start in the groove. This applies to threads that
+    lead out of the part. The edge of a threading tool is at most as wide as the lead, with half on either
+    side.
     """
-    forward = shape.direction[0]  # the corner that is set lies there; the edge reaches back from it
+    forward = shape.direction[0]  # direction of the corner that is set; the edge extends back from it
     plunged = {m.points[-1][0] for m in moves if not m.quick and _square(m)}
     needed = [0.0]
     for z0, lead in {(m.points[0][0], m.per_rev) for m in threads if m.points[-1][0] > m.points[0][0]}:
@@ -174,7 +189,7 @@ def groove_width(shape: ToolShape, moves: Iterable[TipMove], threads: Iterable[T
 
 
 def assumed_tool(use: ToolUse, said: ToolShape | None = None) -> Assumed:
-    """The shape to be taken for a tool that has none, or for one that lacks a size, and a sentence of it."""
+    """Return the assumed shape of a tool without a shape, or with an incomplete shape ``said``."""
     kind, why = (said.kind, "based on the tool shape") if said is not None else _kind(use)
     if kind is None:
         return Assumed(None, Message("{number} is treated as a bar stop", number=edge_name(use.number)))
@@ -217,7 +232,10 @@ def _on_axis(cuts: Iterable[TipMove]) -> bool:
 
 
 def _plunges(cuts: Sequence[TipMove]) -> bool:
-    """Square to the axis and behind the face, and along Z at most as far as a groove is cleaned."""
+    """Return whether a tool cuts perpendicular to the axis inside the part.
+
+    The cuts along Z are at most as long as the cleaning of a groove.
+    """
     if not cuts or any(move.kind is Kind.ARC for move in cuts):
         return False
     along = [abs(move.points[-1][0] - move.points[0][0]) for move in cuts]
@@ -230,7 +248,7 @@ def _to_centre(cuts: Iterable[TipMove]) -> bool:
 
 
 def in_bore(moves: Sequence[TipMove]) -> bool:
-    """Whether a tool leaves what it has cut towards the axis more often than away from it."""
+    """Return whether a tool retracts toward the axis more often than away from it."""
     votes = 0
     for before, move in pairwise(moves):
         inside = move.points[0][0] < 0.0
@@ -242,7 +260,10 @@ def in_bore(moves: Sequence[TipMove]) -> bool:
 
 
 def _enters_before_cutting(feeds: Sequence[TipMove], moves: Sequence[TipMove]) -> bool:
-    """Without a retract that tells: a contour whose radii fall from the face to the chuck is a bore's."""
+    """Return whether a contour is that of a bore because its radii decrease from face to chuck.
+
+    Used if no retract gives a decision.
+    """
     behind = [m for m in feeds if m.points[-1][0] < m.points[0][0] - _SQUARE]
     falls = sum(abs(m.points[-1][1]) - abs(m.points[0][1]) for m in feeds if m.points[-1][0] < -_SQUARE)
     return len(behind) > 1 and falls < -1.0 and bool(moves) and not _to_centre(feeds)
@@ -274,12 +295,12 @@ def _groover(kind: ToolKind, use: ToolUse, *, rear: bool) -> ToolShape:
 
 
 def _plain(comment: str) -> str:
-    """In capitals, and with a point where a P stands for one between two digits."""
+    """Return the comment in capitals, with a decimal point for a P between two digits."""
     return _POINT_SIGN.sub(".", comment.upper())
 
 
 def edge_width(comment: str) -> float:
-    """mm, as a comment gives it: .045 WIDE, 045 WIDE (thousandths), 3MM WIDE; 0 where none does."""
+    """Return the width in mm given in a comment (.045 WIDE, 045 WIDE in thousandths, 3MM WIDE), or 0."""
     found = re.search(_WIDTH, _plain(comment))
     if found is None:
         return 0.0
@@ -301,9 +322,9 @@ def _round_tool(kind: ToolKind, use: ToolUse) -> ToolShape:
 
 
 def tap_size(comment: str) -> tuple[float, float]:
-    """Return diameter and pitch, mm, as a comment names a tap; 0 where it does not.
+    """Return diameter and pitch in mm of a tap named in a comment, or 0 for a value that is missing.
 
-    1/4-20, 10-32, M6X1, and in the letters that the control allows: 1 4 20, 10 32, 20 TPI.
+    Examples are 1/4-20, 10-32, M6X1, and with the characters of the control 1 4 20, 10 32, 20 TPI.
     """
     text = _plain(comment)
     if found := re.search(_TAP_METRIC, text):
@@ -320,12 +341,12 @@ def tap_size(comment: str) -> tuple[float, float]:
 
 
 def releases(use: ToolUse) -> bool:
-    """Whether a comment says that the holder of a tap turns it back, or lets it go, by itself."""
+    """Return whether a comment names a tap holder that reverses or releases the tap automatically."""
     return re.search(_RELEASES, " ".join(use.comments).upper()) is not None
 
 
 def _rear(moves: Sequence[TipMove]) -> bool:
-    """Whether a tool works at X negative; one that faces a little beyond the axis does not."""
+    """Return whether a tool works at negative X, ignoring facing slightly beyond the axis."""
     cuts = [move for move in moves if not move.quick]
     behind = [r for move in cuts for z, r in move.points if z < -_SQUARE]
     radii = behind or [r for move in cuts for _, r in move.points]
@@ -333,9 +354,9 @@ def _rear(moves: Sequence[TipMove]) -> bool:
 
 
 def _away_from_chuck(moves: Iterable[TipMove]) -> bool:
-    """Whether a tool cuts along Z from the chuck to the face, as one of the left hand does.
+    """Return whether a tool cuts along Z from the chuck toward the face, like a left-hand tool.
 
-    What ends before the face is a retract at a feed.
+    A move that ends before the face is a retract at feed.
     """
     cuts = [move for move in moves if not move.quick]
     along = [m.points[-1][0] - m.points[0][0] for m in cuts if max(z for z, _ in m.points) < 0.0]
@@ -347,13 +368,13 @@ def _square(move: TipMove) -> bool:
 
 
 def _plunges_outwards(moves: Iterable[TipMove]) -> bool:
-    """Whether the cuts square to the axis lead away from it: a groove in a bore."""
+    """Return whether the cuts perpendicular to the axis lead away from it, as for a groove in a bore."""
     square = [m for m in moves if not m.quick and _square(m)]
     return bool(square) and abs(square[0].points[-1][1]) > abs(square[0].points[0][1])
 
 
 def _edge(use: ToolUse, *, rear: bool) -> int:
-    """The tip quadrant of the corner that is set: the left one unless a comment says the other."""
+    """Return the tip quadrant of the corner that is set: the left one unless a comment names the right."""
     text = " ".join(use.comments).upper()
     if "RIGHT EDGE" in text or "RIGHT SIDE" in text:
         return 1 if rear else 4
@@ -361,7 +382,7 @@ def _edge(use: ToolUse, *, rear: bool) -> int:
 
 
 def _diameter(comment: str) -> float:
-    """mm, as a comment such as 1/4 DRILL or DRILL .250 DIA gives it; 0 where none does."""
+    """Return the diameter in mm given in a comment such as 1/4 DRILL or DRILL .250 DIA, or 0."""
     text = _plain(comment)
     if found := re.search(_MILLIMETRES, text):
         return float(found[1])
@@ -372,7 +393,7 @@ def _diameter(comment: str) -> float:
 
 
 def _size(mm: float, use: ToolUse) -> str:
-    """As the program counts."""
+    """Return a length as text in the unit of the program."""
     return Message("{unit} mm", unit=f"{mm:.2f}") if use.metric else Message("{mm} in", mm=f"{mm / 25.4:.3f}")
 
 

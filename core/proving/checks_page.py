@@ -1,4 +1,4 @@
-"""The page of the checks of the part: ``python -m core.proving.checks_page docs/checks.md``."""
+"""Generator of the page about the checks: ``python -m core.proving.checks_page docs/checks.md``."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ check that is turned off become notes with the reason, and are counted (`silence
 
 
 def page() -> str:
-    """The whole page."""
+    """Return the text of the page."""
     head = _HEAD.format(contents=contents([_PART, _PROGRAM]))
     return f"{head}\n## {_PART}\n\n{_rows(CHECKS)}\n## {_PROGRAM}\n\n{_rows(PROGRAM_CHECKS)}"
 
@@ -82,7 +82,7 @@ def _lines(name: str, check: Check) -> Iterator[str]:
 
 
 def main(argv: list[str]) -> int:
-    """Write the page to the file that is named."""
+    """Write the page to the named file."""
     Path(argv[0]).write_text(page(), encoding="utf-8")
     return 0
 

@@ -1,4 +1,4 @@
-"""Live tools at work on what has been turned: their moves, and the polar field that they cut."""
+"""Live tools on a turned part: their moves, and the polar field that they cut."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from core.proving.tip_moves import QUICK, Place
 
 _CONES = frozenset({ToolKind.DRILL, ToolKind.CENTRE_DRILL})
 _DEEPER = 0.0254  # mm
-_BESIDE = 0.002  # mm: what a wider column may leave of a slope
+_BESIDE = 0.002  # mm of tolerance for a slope in a wider column
 
 
 class MillMove(NamedTuple):
-    """One elementary block of a live tool: its path (n, 3) as ``MilledPart`` takes it, along Z or across."""
+    """One elementary block of a live tool, with its path (n, 3) for ``MilledPart``, axial or radial."""
 
     n: int
     line: int
@@ -32,8 +32,11 @@ class MillMove(NamedTuple):
 
 
 def mill_move(block: Block, place: Place, shape: ToolShape) -> MillMove | None:
-    """The block's path in the part's frame, to which ``place`` leads from X and Z; None without a move."""
-    turns_only = (block.x, block.z) == (block.x0, block.z0)  # its feed is in degrees
+    """Return the path of a block in the part's frame, or None without a move.
+
+    ``place`` is added to X and Z of the block.
+    """
+    turns_only = (block.x, block.z) == (block.x0, block.z0)  # the feed of the block is in degrees
     quick = block.rapid or (not block.per_rev and not turns_only and block.feed >= QUICK)
     dx, dz = place
     if block.plane is not None:
@@ -53,21 +56,21 @@ def mill_move(block: Block, place: Place, shape: ToolShape) -> MillMove | None:
 
 
 def between(path: FloatArray, first: float, last: float) -> FloatArray:
-    """The piece of a path from one share of it to another, 0 … 1."""
+    """Return the piece of a path between two shares of it, from 0 to 1."""
     at = np.linspace(0.0, 1.0, len(path))
     shares = np.concatenate(([first], at[(at > first) & (at < last)], [last]))
     return np.column_stack([np.interp(shares, at, figures) for figures in path.T])
 
 
 def cone_height(shape: ToolShape) -> float:
-    """How high the point of a live drill is, mm; 0 of a mill."""
+    """Return the height in mm of the point of a live drill; 0 for a mill."""
     if shape.kind not in _CONES or not shape.point:
         return 0.0
     return float(shape.diameter / 2.0 / np.tan(np.radians(shape.point / 2.0)))
 
 
 class Milling:
-    """A turned part and the field of its metal; what is turned off later leaves the field as well."""
+    """A turned part with its polar field. Material that is turned off later is removed from the field too."""
 
     def __init__(self, part: TurnedPart) -> None:
         self._turned = part
@@ -76,38 +79,38 @@ class Milling:
             np.arange(columns.number + 1, dtype=np.float64) - 0.5
         )
         self._part = MilledPart(turned_field(edges, part.low, part.high))
-        self._volume = part.volume  # of the turned part, when its field was last made even with it
+        self._volume = part.volume  # volume of the turned part at the last update of the field
 
     @classmethod
     def of(cls, part: TurnedPart, field: PolarField, volume: float) -> Milling:
-        """With a field that is known already; ``volume`` is that of the turned part it was made even with."""
+        """Return the state with an existing field; ``volume`` is the turned volume at its last update."""
         milling = cls.__new__(cls)
         milling._turned, milling._part, milling._volume = part, MilledPart(field), volume
         return milling
 
     @property
     def even_with(self) -> float:
-        """mm³ of the turned part that the field is made even with."""
+        """The volume in mm³ of the turned part at the last update of the field."""
         return self._volume
 
     @property
     def field(self) -> PolarField:
-        """The metal, even with what has been turned."""
+        """The material, updated with the turned cuts."""
         self._follow()
         return self._part.field
 
     @property
     def nbytes(self) -> int:
-        """Memory of the field."""
+        """The memory of the field in bytes."""
         return self._part.field.low.nbytes + self._part.field.high.nbytes
 
     @property
     def left(self) -> float:
-        """mm³ that the chuck holds."""
+        """The volume in mm³ of the material in the chuck."""
         return self.field.volume
 
     def cut(self, move: MillMove, shape: ToolShape) -> Taken:
-        """Take off what a live tool sweeps."""
+        """Remove the material that a live tool sweeps, and return it."""
         self._follow()
         part, (radius, length, point) = self._part, _sizes(shape)
         if move.axial:
@@ -115,7 +118,7 @@ class Milling:
         return part.mill_radial(move.path, radius, length, point=point)
 
     def touches(self, move: MillMove, shape: ToolShape) -> bool:
-        """Whether a live tool would meet metal if its end stood .001 in deeper: it goes along a face."""
+        """Return whether a live tool moves along a face: it would hit material .001 in deeper."""
         self._follow()
         part, (radius, length, point) = self._part, _sizes(shape)
         if move.axial:
@@ -123,7 +126,7 @@ class Milling:
         return part.meets_radial(move.path - [_DEEPER, 0.0, 0.0], radius, length, point=point)
 
     def less_milled(self, piece: Piece) -> Piece:
-        """A piece that has just been parted off, less what live tools had taken out of it before it fell."""
+        """Return a piece that was just parted off, without the volume that live tools had removed."""
         if not piece.outside:
             return piece
         field = self._part.field
@@ -132,16 +135,16 @@ class Milling:
         return piece._replace(volume=min(float(field.volumes[there].sum()), piece.volume))
 
     def sides(self) -> tuple[Piece, Piece]:
-        """Both halves of the section with C at 0: X+, then X-."""
+        """Return both halves of the section with C at 0: X+, then X-."""
         field = self.field
-        rays = field.low.shape[2]  # X+ of the lathe with C at 0 is at 180° of the part
+        rays = field.low.shape[2]  # =
         upper, lower = (
             _side(field.edges, field.low[:, :, ray], field.high[:, :, ray]) for ray in (rays // 2, 0)
         )
         return upper, lower
 
     def _follow(self) -> None:
-        """Take out of the field what has been turned off since."""
+        """Remove from the field the material that has been turned off since the last update."""
         turned = self._turned
         if turned.volume == self._volume:
             return
@@ -158,7 +161,7 @@ class Milling:
 
 
 def _side(edges: FloatArray, low: FloatArray, high: FloatArray) -> Piece:
-    """One half of a section, as the profiles of a piece without its volume."""
+    """Return one half of a section as the profiles of a piece without volume."""
     there = high > low
     outer = np.max(np.where(there, high, 0.0), axis=0)
     inner = np.min(np.where(there, low, np.inf), axis=0)
@@ -171,12 +174,12 @@ def _side(edges: FloatArray, low: FloatArray, high: FloatArray) -> Piece:
 
 
 def _sizes(shape: ToolShape) -> tuple[float, float, float]:
-    """Radius, length that cuts, and height of the point."""
+    """Return radius, cutting length and height of the point."""
     return shape.diameter / 2.0, shape.length or math.inf, cone_height(shape)
 
 
 def _gaps(low: FloatArray, high: FloatArray) -> Iterator[tuple[FloatArray, FloatArray]]:
-    """Where a section of sorted layers (layers, columns) has no metal, from the axis outwards."""
+    """Yield the ranges without material in sorted layers (layers, columns), from the axis outward."""
     there = high > low
     begins = np.where(there, low - _BESIDE, np.inf)
     ends = np.maximum.accumulate(np.where(there, high + _BESIDE, 0.0), axis=0)

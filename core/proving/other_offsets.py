@@ -1,10 +1,10 @@
-"""Other offsets and the part: what a program makes with them, feature by feature, and finds then.
+"""Comparison of the part with other offsets: features and findings with one and the other set.
 
-Tools stand where the offsets of the proof say that they do; with the others in force the slides bring them
-elsewhere, and the part comes out as much larger, smaller, longer or shorter.
+The tools are at the positions that the offsets of the proof specify. With the other offsets the axes move
+elsewhere, and the part becomes larger, smaller, longer or shorter.
 
-A feature is a straight of the profile: along Z it is a diameter, across it a shoulder. Cones, arcs and what
-a nose leaves in a corner are none.
+A feature is a straight line of the profile: a diameter along Z, or a shoulder across Z. Cones, arcs and the
+nose radius in a corner are not features.
 """
 
 from __future__ import annotations
@@ -28,15 +28,15 @@ from core.proving.proof_report import PartReport, Report
 from core.proving.prove_program import Progress
 
 _SHORTEST = 0.25  # mm
-_STRAIGHT = 0.006  # mm of r along a diameter, or of Z along a shoulder: a profile is told within .004
-_FAR = 6.35  # mm; two features further apart are not one
+_STRAIGHT = 0.006  # mm of r along a diameter, or of Z along a shoulder; profiles have a tolerance of 0.004
+_FAR = 6.35  # mm; features further apart are not matched
 FINE = 0.001
 """Width of a column of the part, mm, where parts are compared: a shoulder is off by .00002 in at most."""
-SAME = 0.0012  # mm; less is no difference
+SAME = 0.0012  # mm; smaller differences are ignored
 
 
 class FeatureKind(StrEnum):
-    """What a straight of a profile is."""
+    """The kind of a straight line of a profile."""
 
     DIAMETER = "diameter"
     SHOULDER = "shoulder"
@@ -45,34 +45,34 @@ class FeatureKind(StrEnum):
 
 
 class Feature(NamedTuple):
-    """``at``: the diameter or the Z, mm; ``reach``: from where to where, in Z of a diameter, else in r."""
+    """A feature with its diameter or Z in mm (``at``), and its extent in Z or r (``reach``)."""
 
     kind: FeatureKind
     at: float
     reach: tuple[float, float]
 
     def apart(self, other: Feature) -> float:
-        """How far another lies from it, mm: a radius counts as much as a length."""
+        """Return the distance to another feature in mm, where a radius counts like a length."""
         half = 0.5 if self.kind in {FeatureKind.DIAMETER, FeatureKind.BORE} else 1.0
         return abs(self.at - other.at) * half + math.dist(self.reach, other.reach)
 
 
 class Pair(NamedTuple):
-    """A feature here and there; None where the other part has none like it."""
+    """A feature on both parts; None if the other part has no similar feature."""
 
     here: Feature | None
     there: Feature | None
 
     @property
     def difference(self) -> float | None:
-        """There less here, mm."""
+        """The value of the other part minus the value here, in mm, or None."""
         if self.here is None or self.there is None:
             return None
         return self.there.at - self.here.at
 
 
 def features(piece: Piece) -> list[Feature]:
-    """Those of the outside from the face on, then those of the bore."""
+    """Return the features of the outside from the face on, then those of the bore."""
     outside, bore = piece.outside, piece.bore or []
     if not outside:
         return []
@@ -92,15 +92,17 @@ def _of(profile: Profile, along: FeatureKind, across: FeatureKind) -> Iterator[F
 
 
 def _sharp_end(profile: Profile, k: int) -> tuple[float, float]:
-    """The end of straight ``k`` that no fillet rounds: behind it comes the longer one. What a nose has left
-    at the other end is in the straight too, as far as it lies within the tolerance of the profile."""
+    """Return the end of straight ``k`` that has no fillet, which is next to the longer neighbor.
+
+    The nose radius at the other end is part of the straight if it is within the tolerance of the profile.
+    """
     before = math.dist(profile[k - 1], profile[k]) if k else math.inf
     behind = math.dist(profile[k + 1], profile[k + 2]) if k + 2 < len(profile) else math.inf
     return profile[k] if before >= behind else profile[k + 1]
 
 
 def matched(here: Sequence[Feature], there: Sequence[Feature]) -> list[Pair]:
-    """Features of one kind that lie nearest to each other, as ``here`` has them; then those only there."""
+    """Return pairs of the closest features of one kind, in the order of ``here``, then the remaining ones."""
     near = sorted(
         (a.apart(b), i, j)
         for i, a in enumerate(here)
@@ -119,7 +121,7 @@ def matched(here: Sequence[Feature], there: Sequence[Feature]) -> list[Pair]:
 
 @dataclass(frozen=True, slots=True)
 class OtherPart:
-    """What the other offsets make: its proof and part, the features of both, and findings of one alone."""
+    """The result of the other offsets: proof, part, pairs of features, and findings of only one proof."""
 
     report: Report
     part: PartReport | None
@@ -129,13 +131,13 @@ class OtherPart:
 
     @property
     def differing(self) -> int:
-        """How many features differ, or have none like them."""
+        """The number of features that differ or have no counterpart."""
         return sum(pair.difference is None or abs(pair.difference) > SAME for pair in self.pairs)
 
 
 @dataclass(frozen=True, slots=True)
 class ThisPart:
-    """A program as it was proved: its setup, what was said of its part, and what came of it."""
+    """A proved program with its setup, its part settings and the resulting part."""
 
     setup: Setup
     setting: PartSetting
@@ -147,7 +149,7 @@ def other_part(
     program: Source | ReadProgram, this: ThisPart, there: Setup, machine: Machine,
     watch: Progress | None = None, *, ideal: bool = False,
 ) -> OtherPart:  # fmt: skip
-    """The same program, stock and tools with the offsets of ``there``; ``watch`` may give up."""
+    """Prove the same program, stock and tools with the offsets of ``there``. ``watch`` may cancel."""
     setting = this.setting
     if this.part is not None:
         setting = replace(setting, stock=this.part.stock, tips=_tips(this.setup))
@@ -161,7 +163,7 @@ def other_part(
 
 
 def _tips(setup: Setup) -> dict[int, tuple[float, float]]:
-    """Where the tips stand on part zero, by T and by G54 to G59."""
+    """Return the positions at which the tips are at part zero, by T and by G54 to G59."""
     own = {n: (tool.x, tool.z) for n, tool in setup.tools.items()}
     return own | {n: (zero.x, zero.z) for n, zero in setup.zero.items()}
 
@@ -169,7 +171,7 @@ def _tips(setup: Setup) -> dict[int, tuple[float, float]]:
 def _only(
     here: Iterable[Diagnostic], there: Iterable[Diagnostic]
 ) -> tuple[tuple[Diagnostic, ...], tuple[Diagnostic, ...]]:
-    """The findings that only one of them has: figures in a sentence may differ, place and code may not."""
+    """Return the findings that only one side has, compared by line and code."""
 
     def key(each: Diagnostic) -> tuple[int, str]:
         return each.line, each.code

@@ -1,9 +1,9 @@
-"""The part at any time of a program, replayed from copies, and the finished part for a picture.
+"""The part at any time of a program, replayed from stored copies, and the finished part for a picture.
 
-What is given out are arrays of their own: whoever shows them may be another thread.
+All results are independent arrays, because another thread may show them.
 
-The finished part is what the chuck holds just before the last piece is parted off; where nothing is, at the
-end or before the collet opens for the next one, whichever has less metal left.
+The finished part is the material in the chuck just before the last piece is parted off. If no piece is parted
+off, it is the material at the end or before the collet opens, whichever is less.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from core.proving.program_timeline import MotionSpan, Part, RestSpan
 from core.proving.program_tools import PartSetting, ProgramTools
 from core.proving.tip_moves import LiveStep, Step, Steps, TipMove, ends_of, slides_at, zero_of
 
-_LOOKED = 20  # blocks between two looks at whether the work is still wanted
+_LOOKED = 20  # blocks between two calls of ``watch``
 
 Go = Callable[[], None]
 Watch = Callable[[float], None]
@@ -40,7 +40,7 @@ Watch = Callable[[float], None]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PartMoves:
-    """All blocks of a program in their order, and what has been said about stock and tools."""
+    """All blocks of a program in their order, with the settings of stock and tools."""
 
     parts: tuple[Part, ...]
     setting: PartSetting
@@ -48,14 +48,14 @@ class PartMoves:
 
 @dataclass(slots=True)
 class PartGathering:
-    """Collects the blocks of a pass through a program, as long as they are not too many for a desk."""
+    """Collects the blocks of a pass through a program, up to the limit for the operator screen."""
 
     setting: PartSetting
     _parts: list[Part] = field(default_factory=list)
     _blocks: int = 0
 
     def see(self, span: MotionSpan | RestSpan) -> None:
-        """The next span of the program."""
+        """Add the next span of the program."""
         if isinstance(span, MotionSpan):
             parts = span.parts
         else:
@@ -68,7 +68,7 @@ class PartGathering:
 
     @property
     def too_many(self) -> str:
-        """Why there is no part, in a sentence; empty where it can be made."""
+        """The reason why the part cannot be made, as a sentence, or an empty string."""
         if self._blocks <= MOST_MOVES:
             return ""
         way = "use 'turndesk prove --stock' for longer programs"
@@ -81,12 +81,15 @@ class PartGathering:
         )
 
     def moves(self) -> PartMoves | None:
-        """What was gathered; None: nothing, or too much."""
+        """Return the collected blocks, or None if there are none or too many."""
         return PartMoves(tuple(self._parts), self.setting) if self._parts else None
 
 
 class PartHistory:
-    """Goes through a program forwards and, by what it has kept, backwards. For one thread at a time."""
+    """Makes the part at any block of a program, forward and, from stored copies, backward.
+
+    Used by one thread at a time.
+    """
 
     def __init__(self, moves: PartMoves) -> None:
         reading = Steps()
@@ -107,18 +110,18 @@ class PartHistory:
         if held is not None and (held.diameter or held.quill) and self.stock is not None:
             self._chuck = chuck_solid(held, self.stock)
         self._making = PartMaking(self._tools, self.stock, moves.setting)
-        self._seen = self._making  # as it was given out last
+        self._seen = self._making  # the part as last returned
         self._ahead: tuple[int, float, PartMaking] | None = (
-            None  # behind so many steps, so much of the next done
+            None  # number of steps, share of the next one, and its part
         )
         self._done = 0  # steps
         self._last: PartInstant | None = None
         self._kept.keep(0, self._making)
 
     def at(self, block: int, share: float = 0.0, watch: Go | None = None) -> PartInstant:
-        """The part when so many blocks are done, and ``share`` (0 … 1) of the next one.
+        """Return the part when ``block`` blocks and the ``share`` (0 to 1) of the next one are done.
 
-        ``watch`` is called now and then on a long way and may raise: what was made until then is kept.
+        ``watch`` is called regularly during long work and may raise. The work done until then is stored.
         """
         self._last = None
         done = int(np.searchsorted(self._numbers, block, side="right"))
@@ -128,7 +131,7 @@ class PartHistory:
         return self._last
 
     def making_at(self, block: int, tip: Point | None = None, watch: Go | None = None) -> PartMaking:
-        """Return a copy of the part before a block, or with it done up to the ``tip`` (Z, r; mm)."""
+        """Return a copy of the part before a block, or with the block done up to the ``tip`` (Z, r in mm)."""
         share = 0.0
         step = self._step(block)
         if tip is not None and isinstance(step, TipMove):
@@ -142,7 +145,7 @@ class PartHistory:
         return self._tools
 
     def zero(self, tool: int) -> Point | None:
-        """Return machine X and Z with the tip of this tool on part zero, None: the program never moves it."""
+        """Return machine X and Z at which the tip of this tool is at part zero, or None if it never moves."""
         for step in reversed(self.steps):
             if isinstance(step, TipMove) and step.modal.tool == tool:
                 return step.zero
@@ -152,14 +155,14 @@ class PartHistory:
 
     @property
     def end(self) -> Point | None:
-        """Machine X and Z at the end of the program; None where no axis moves."""
+        """Machine X and Z at the end of the program, or None if no axis moves."""
         for step in reversed(self.steps):
             if isinstance(step, TipMove):
                 return step.points[-1][1] + step.zero[0], step.points[-1][0] + step.zero[1]
         return None
 
     def share_at(self, block: int, behind_end: Point) -> float:
-        """How much of a block is done when the tool is ``behind_end`` (Z, r; mm) off the place of its end."""
+        """Return the share of a block that is done when the tool is ``behind_end`` (Z, r) from its end."""
         step = self._step(block)
         if isinstance(step, LiveStep):
             ends = ends_of(step)
@@ -175,16 +178,16 @@ class PartHistory:
         return int(self._numbers[-1]) if len(self._numbers) else 0
 
     def now(self) -> PartInstant:
-        """The part as far as it has been made on a long way."""
+        """Return the part as far as the present work has made it."""
         done = self._done
         return self._instant(int(self._numbers[done - 1]) if done else 0, 0.0, None)
 
     def is_current(self, instant: PartInstant) -> bool:
-        """Whether the part is still as it was at this instant, the last that was given out."""
+        """Return whether ``instant`` is the last one returned, so that the part is unchanged."""
         return instant is self._last
 
     def solid(self, instant: PartInstant) -> Solid | None:
-        """The solid of the last instant, for this thread alone. None: there is no metal."""
+        """Return the solid of the last instant, for this thread only, or None without material."""
         if instant.near is None:
             return None
         milling = self._seen.milling
@@ -193,7 +196,7 @@ class PartHistory:
         return turned_solid(*instant.near)
 
     def scene_at(self, instant: PartInstant) -> Scene:
-        """What stands round the part at an instant: chuck or collet, and the tool."""
+        """Return the objects around the part at an instant: chuck or collet, and the tool."""
         tool = instant.tool
         if tool is None or not (tool.cutting or tool.body):
             return Scene(self._chuck)
@@ -203,7 +206,7 @@ class PartHistory:
         there = int(np.searchsorted(self._numbers, block))
         return self.steps[there] if there < len(self.steps) and self._numbers[there] == block else None
 
-    # --- going through the program
+    # --- execution of the program
 
     def _go_to(self, done: int, watch: Go | None) -> None:
         if self._ahead is not None and self._ahead[0] != done:
@@ -219,7 +222,7 @@ class PartHistory:
             self._kept.perhaps(self._done, self._making)
 
     def _see(self, step: Step) -> None:
-        """The next block; what it hits is kept, to be seen."""
+        """Apply the next block and store its hits."""
         making, known = self._making, len(self._making.findings.diagnostics)
         before = metal_of(making.part)
         making.see(step)
@@ -228,7 +231,7 @@ class PartHistory:
             if hit is not None:
                 self._hits[found.check, found.line] = hit
 
-    # --- what is to be seen
+    # --- displayed state
 
     def _instant(self, block: int, share: float, under_way: Step | None) -> PartInstant:
         making, place = self._making, self._place()
@@ -262,7 +265,7 @@ class PartHistory:
         )
 
     def _milled(self, step: LiveStep, share: float) -> PartMaking:
-        """The part with a block of a live tool begun, gone on with from where it was seen last."""
+        """Return the part with a live tool's block in progress, continued from the last view if possible."""
         done, gone, ahead = self._ahead or (-1, 0.0, self._making)
         if done != self._done or gone > share:
             gone, ahead = 0.0, self._making.copy()
@@ -272,7 +275,7 @@ class PartHistory:
         return ahead
 
     def _reach(self, under_way: Step | None) -> tuple[Point, Point] | None:
-        """The limits of the machine as the tip meets them, by the offset of the last block that moves."""
+        """Return the machine limits in tip positions, with the offset of the last moving block."""
         last = self.steps[max(0, self._done - 200) : self._done]
         for step in (*((under_way,) if under_way is not None else ()), *reversed(last)):
             if self._travel is None or not isinstance(step, TipMove | LiveStep):
@@ -283,7 +286,7 @@ class PartHistory:
         return None
 
     def _c(self, under_way: Step | None, share: float) -> float:
-        """C of the block under way, or of the last one that held the part."""
+        """Return C of the block in progress, or of the last block that engaged C."""
         if isinstance(under_way, LiveStep):
             return _c_at(under_way, share)
         for step in reversed(self.steps[max(0, self._done - 200) : self._done]):
@@ -292,7 +295,7 @@ class PartHistory:
         return 0.0
 
     def _place(self) -> Point | None:
-        """Where the last block that moves has ended."""
+        """Return the end of the last moving block."""
         for step in reversed(self.steps[max(0, self._done - 200) : self._done]):
             if isinstance(step, TipMove):
                 return step.points[-1]
@@ -325,7 +328,7 @@ def _round(shape: ToolShape | None, axial: bool) -> Round:
 
 
 def share_along(points: Sequence[Point], at: Point) -> float:
-    """How much of the way along points lies behind the place of it that is nearest to a point."""
+    """Return the share of a polyline that is before its nearest position to a point."""
     gone = best = 0.0
     least = math.inf
     total = sum(math.dist(a, b) for a, b in pairwise(points))
@@ -341,7 +344,7 @@ def share_along(points: Sequence[Point], at: Point) -> float:
 
 
 def _begun(move: TipMove, share: float) -> TipMove:
-    """The beginning of a move."""
+    """Return the first part of a move."""
     left, points = share * move.length, [move.points[0]]
     for a, b in pairwise(move.points):
         size = math.dist(a, b)
@@ -365,7 +368,7 @@ def _line(step: Step | None) -> int:
 
 
 def _c_at(step: LiveStep, share: float) -> float:
-    """C on the way of a live tool's block, degrees."""
+    """Return C in degrees at a share of a live tool's block."""
     block = step.block
     if block.plane is not None:
         return float(block.plane.machine(np.array([share]))[0, 2])
@@ -380,7 +383,7 @@ def _halves(making: PartMaking) -> tuple[Half | None, Half | None]:
         field, rays = making.milling.field, making.milling.field.low.shape[2]
         sides = [
             Half(field.edges.copy(), field.low[:, :, ray].copy(), field.high[:, :, ray].copy())
-            for ray in (rays // 2, 0)  # X+ of the lathe with C at 0 lies at 180° of the part
+            for ray in (rays // 2, 0)  # X+ of the lathe with C at 0 is at 180° of the part
         ]
         return sides[0], sides[1]
     columns = part.columns
@@ -390,7 +393,10 @@ def _halves(making: PartMaking) -> tuple[Half | None, Half | None]:
 
 
 class FinishedPart(NamedTuple):
-    """``back`` and ``front`` are the ends of its stock along Z, ``radius`` that of the stock; mm."""
+    """The finished part. ``back`` and ``front`` are the ends of its stock in Z, ``radius`` that of the stock.
+
+    Lengths are in mm.
+    """
 
     solid: Solid
     back: float
@@ -399,7 +405,10 @@ class FinishedPart(NamedTuple):
 
 
 def finished_part(moves: PartMoves, watch: Watch) -> FinishedPart | None:
-    """None where nothing is cut. ``watch`` is told now and then, and may raise to give up."""
+    """Return the finished part, or None if nothing is cut.
+
+    ``watch`` receives the block number regularly and may raise to cancel.
+    """
     history = PartHistory(moves)
 
     def at(block: int) -> PartInstant:
@@ -418,7 +427,7 @@ def finished_part(moves: PartMoves, watch: Watch) -> FinishedPart | None:
 
 
 def _before_last_opening(history: PartHistory) -> list[int]:
-    """The block before the collet opens for the last time."""
+    """Return the block before the last opening of the collet."""
     for step in reversed(history.steps):
         if not isinstance(step, TipMove | LiveStep) and step.action == Collet(closed=False):
             return [max(step.n - 1, 0)]
@@ -426,7 +435,10 @@ def _before_last_opening(history: PartHistory) -> list[int]:
 
 
 def _before_last_piece(at: Callable[[int], PartInstant], last: int, pieces: int) -> int:
-    """The last block before the last piece has come off; there are never fewer of them later."""
+    """Return the last block before the last piece was parted off.
+
+    A binary search is possible, because the number of pieces never decreases.
+    """
     before, behind = 0, last
     while behind - before > 1:
         middle = (before + behind) // 2
@@ -435,7 +447,7 @@ def _before_last_piece(at: Callable[[int], PartInstant], last: int, pieces: int)
 
 
 def _volume(half: Half | None) -> float:
-    """Of the section, turned about the axis, mm³."""
+    """Return the volume of the section rotated about the axis, in mm³."""
     if half is None:
         return 0.0
     wide = half.edges[1:] - half.edges[:-1]

@@ -1,6 +1,6 @@
-"""The part at one time of a program: section, tool, what was hit, and copies to go on from.
+"""The part at one time of a program: section, tool and hits, and copies from which to continue.
 
-Arrays of their own, which another thread may keep.
+All arrays are independent, so another thread may store them.
 """
 
 from __future__ import annotations
@@ -21,22 +21,25 @@ from core.proving.part_making import PartMaking
 from core.proving.tip_moves import LiveStep, Step
 
 _TOUCH = 1e-6  # mm
-_PLACES = 40  # along a hit in chuck or tailstock
+_PLACES = 40  # points along a hit in chuck or tailstock
 _OF_CLAMPING = frozenset({"into-chuck", "into-tailstock"})
-# What a block that is found to be wrong for another reason takes off is what it shall take off.
+# For other findings, the material that a block removes is the intended cut.
 _OF_METAL = frozenset(
     {"rapid-into-stock", "feed-into-holder", "holder-into-stock", "through-part", "neighbour-tool"}
 )
 Metal = tuple[FloatArray, FloatArray]
 """Lowest and highest radius of each column's layers, mm."""
-_EVERY = 16  # blocks from one copy to the next, at first
+_EVERY = 16  # initial number of blocks between two copies
 _MOST_COPIES = 96
-_MOST_BYTES = 96e6  # of all copies
+_MOST_BYTES = 96e6  # bytes of all copies
 
 
 class Half(NamedTuple):
-    """One side of the section: ``edges`` (columns + 1,) of Z, rising; metal from ``low`` to ``high`` (layers,
-    columns), radii; mm."""
+    """One side of the section.
+
+    ``edges`` (columns + 1,) are ascending Z. The material is from ``low`` to ``high`` (layers, columns), as
+    radii in mm.
+    """
 
     edges: FloatArray
     low: FloatArray
@@ -44,8 +47,11 @@ class Half(NamedTuple):
 
 
 class Hit(NamedTuple):
-    """Metal that was met where nothing may be met: ``finding``, and from ``low`` to ``high`` at each ``z``
-    (n,), ``wide`` mm of Z each."""
+    """Material that was hit by a fault of the program.
+
+    ``finding`` is the diagnostic. The hit is from ``low`` to ``high`` at each ``z`` (n,), with a width of
+    ``wide`` mm in Z each.
+    """
 
     finding: Diagnostic
     z: FloatArray
@@ -55,9 +61,10 @@ class Hit(NamedTuple):
 
 
 class PlacedTool(NamedTuple):
-    """A tool where it stands: its control point ``at``, its outlines (k, 2) of Z and r, mm.
+    """A tool at its position: its control point ``at``, and its outlines (k, 2) of Z and r in mm.
 
-    ``assumed``: nobody has described it, its body is what such tools have. ``round``: about which axis it is.
+    ``assumed`` means that its shape is not specified, so its body is a typical one. ``round`` is the axis
+    about which it is round.
     """
 
     number: int
@@ -69,11 +76,10 @@ class PlacedTool(NamedTuple):
 
 
 class PartInstant(NamedTuple):
-    """The part when ``block`` blocks are done and ``share`` of the next.
+    """The part when ``block`` blocks and the ``share`` of the next one are done.
 
-    ``near`` is the side of the section at X+, ``far`` that beyond the axis; None: there is no metal.
-    ``hits`` and ``findings`` are those that have come up by then. ``reach`` is how far the tip may go, from
-    and to which Z and r.
+    ``near`` is the side of the section at X+, and ``far`` the opposite side; None means no material. ``hits``
+    and ``findings`` are those up to this time. ``reach`` is the range of the tip in Z and r.
     """
 
     block: int
@@ -89,16 +95,19 @@ class PartInstant(NamedTuple):
     clamping: Clamping | None = None
     is_open: bool = False
     reach: tuple[Point, Point] | None = None
-    c: float = 0.0  # degrees at which the part is held, or was last
+    c: float = 0.0  # present or last angle of an engaged C axis, degrees
 
 
 def metal_of(part: TurnedPart | None) -> Metal | None:
-    """The metal of this moment, to be compared with later."""
+    """Return a copy of the present material, for a later comparison."""
     return None if part is None else (part.low.copy(), part.high.copy())
 
 
 def hit_of(found: Diagnostic, step: Step, making: PartMaking, before: Metal | None) -> Hit | None:
-    """What the block just seen has hit, for one of its findings; ``before`` is the metal before it."""
+    """Return the hit of the last block for one of its findings, or None.
+
+    ``before`` is the material before that block.
+    """
     if not is_serious(found):
         return None
     if found.check in _OF_CLAMPING:
@@ -114,7 +123,7 @@ def hit_of(found: Diagnostic, step: Step, making: PartMaking, before: Metal | No
 
 
 def _held_hit(found: Diagnostic, met: Cut | None, held: Clamping | None, stock: Stock | None) -> Hit | None:
-    """Where a tool would come into chuck, collet or tailstock: from its outside as deep as it does."""
+    """Return the hit of a tool in chuck, collet or tailstock, from its outside to the depth of the cut."""
     if met is None or held is None or stock is None:
         return None
     body = held.tailstock if found.check == "into-tailstock" else held.around(stock)
@@ -127,7 +136,7 @@ def _held_hit(found: Diagnostic, met: Cut | None, held: Clamping | None, stock: 
 
 
 def _hit(found: Diagnostic, before: Metal, part: TurnedPart) -> Hit | None:
-    """What a block has taken off, from the lowest to the highest of each column."""
+    """Return the material that a block has removed, from the lowest to the highest of each column."""
     layers = len(before[0])
     low, high = part.low[:layers], part.high[:layers]
     was = before[1] > before[0]
@@ -149,7 +158,7 @@ def _hit(found: Diagnostic, before: Metal, part: TurnedPart) -> Hit | None:
 
 
 def _milled_hit(found: Diagnostic, met: Taken) -> Hit | None:
-    """What a live tool has met."""
+    """Return the material that a live tool has hit."""
     if not met:
         return None
     middle, low, high = (np.array([each]) for each in (0.5 * (met.back + met.front), met.low, met.high))
@@ -157,9 +166,9 @@ def _milled_hit(found: Diagnostic, met: Taken) -> Hit | None:
 
 
 class PartCopies:
-    """By how many steps were done; of too many every other goes.
+    """Copies of the part by the number of steps done. If there are too many, every second one is dropped.
 
-    Of a milled part they share the columns that were not touched between two of them.
+    Copies of a milled part share the columns that did not change between them.
     """
 
     def __init__(self) -> None:
@@ -167,11 +176,11 @@ class PartCopies:
         self._every = _EVERY
 
     def before(self, done: int) -> int:
-        """The last copy that is not behind so many steps."""
+        """Return the number of steps of the last copy at or before ``done`` steps."""
         return max(each for each in self._copies if each <= done)
 
     def copy(self, done: int) -> PartMaking:
-        """One to go on from."""
+        """Return a part from which to continue."""
         kept, field, even_with = self._copies[done]
         making = kept.copy()
         if field is not None and making.part is not None:
@@ -179,12 +188,12 @@ class PartCopies:
         return making
 
     def perhaps(self, done: int, making: PartMaking) -> None:
-        """Keep one when it is time."""
+        """Store a copy if the interval has passed."""
         if done % self._every == 0 and done not in self._copies:
             self.keep(done, making)
 
     def keep(self, done: int, making: PartMaking) -> None:
-        """Keep a copy of what there is after so many steps."""
+        """Store a copy of the part after ``done`` steps."""
         milling = making.milling
         field, even_with = None, 0.0
         if milling is not None:
@@ -201,7 +210,7 @@ class PartCopies:
 
     @property
     def _size(self) -> int:
-        """Bytes of all of them; what is shared counts once."""
+        """The memory of all copies in bytes; shared columns count once."""
         columns = {
             id(column): column.nbytes
             for _, field, _ in self._copies.values()

@@ -1,4 +1,4 @@
-"""The part while a program makes it, block by block; what could not be checked for want of data."""
+"""The part while a program makes it block by block, and the list of checks that lacked data."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def unchecked(
     clamping: Clamping | None,
     gang: Mapping[int, Point],
 ) -> tuple[str, ...]:
-    """Short phrases, one for each kind of thing; ``uses`` are the tools of the program."""
+    """Return short phrases, one for each kind of missing data; ``uses`` are the tools of the program."""
     return tuple(_phrases([n for n in sorted(uses) if uses[n].moves or uses[n].live], shapes, clamping, gang))
 
 
@@ -99,7 +99,7 @@ class PartMaking:
         self._is_open = False
         self._removed = 0.0
         self._pieces: list[Piece] = []
-        self._last: Piece | None = None  # the last piece that a collet let go or a parting tool cut off
+        self._last: Piece | None = None  # the last piece that a collet released or a parting tool cut off
         self._milled = False
         self.findings = PartFindings(
             tools.shape,
@@ -112,43 +112,43 @@ class PartMaking:
             tools.parted_at,
         )
         self._unchecked = unchecked(tools.uses, setting.shapes, setting.clamping, setting.gang)
-        self.milling: Milling | None = None  # from the first cut of a live tool on
-        self.milled_last = NOTHING  # by the last block of a live tool
+        self.milling: Milling | None = None  # set at the first cut of a live tool
+        self.milled_last = NOTHING  # material cut by the last block of a live tool
         self._live_codes = setting.live_codes
-        self._turned = False  # the spindle has
-        self._in_cut = False  # of a spindle that stands
-        self._standing: dict[int, int] = {}  # by T: the first line that cuts while it stands again
+        self._turned = False  # the spindle has turned in the program
+        self._in_cut = False  # a tool is in a cut with a stopped spindle
+        self._standing: dict[int, int] = {}  # by T: the first line that cuts with the spindle stopped again
         self.part = TurnedPart(stock, self._step) if stock is not None and not tools.feeds_first else None
 
     @property
     def tool(self) -> int:
-        """T of the tool that is in work; 0: none."""
+        """T of the active tool; 0 without a tool."""
         return self._tool
 
     @property
     def stock(self) -> Stock | None:
-        """What is in the chuck before anything is cut; None: nobody knows."""
+        """The stock in the chuck before the first cut, or None if it is unknown."""
         return self._stock
 
     @property
     def is_open(self) -> bool:
-        """Whether the collet is."""
+        """True if the collet is open."""
         return self._is_open
 
     @property
     def parted_off(self) -> int:
-        """How many pieces have been parted off."""
+        """The number of pieces that have been parted off."""
         return len(self._pieces) + (len(self.part.pieces) if self.part is not None else 0)
 
     @property
     def nbytes(self) -> int:
-        """Memory of the metal, about."""
+        """The approximate memory of the material in bytes."""
         part, milling = self.part, self.milling
         turned = part.low.nbytes + part.high.nbytes if part is not None else 0
         return turned + (milling.nbytes if milling is not None else 0)
 
     def _not_said(self, rests_on: tuple[str, ...]) -> tuple[str, ...]:
-        """What a finding of this check rests on and nobody has described, at the tool in work."""
+        """Return the unspecified data on which a finding depends, for the active tool."""
         names = [STOCK] if STOCK in rests_on and not self._stock_said else []
         assumed = self._tools.assumed.get(self._tool)
         if assumed is not None and (TOOL in rests_on or (KIND in rests_on and not assumed.named)):
@@ -158,16 +158,16 @@ class PartMaking:
         return tuple(names)
 
     def copy(self) -> PartMaking:
-        """The same once more, to be gone on with later; what never changes is shared."""
+        """Return an independent copy that shares the constant data."""
         found = self.findings
         shared: tuple[object, ...] = (self._tools, self._stock, found.clamping, found.neighbours)
         shared += (*self._cutters.values(), *found.diagnostics)
         return copy.deepcopy(self, {id(each): each for each in shared})
 
     def see(self, step: Step) -> None:
-        """The next block."""
+        """Apply the next block."""
         if isinstance(step, TipMove):
-            if not self._begun:  # from wherever the slides stand
+            if not self._begun:  # the first move starts at an unknown position
                 step, self._begun = step._replace(points=step.points[-1:] * 2), True
             self._turned = self._turned or step.rpm != 0.0
             if self.part is not None and not self._is_open:
@@ -187,7 +187,7 @@ class PartMaking:
                 pass
 
     def _clamp(self, closed: bool) -> None:
-        """A collet that opens lets the bar come: behind it stands a new face."""
+        """Open or close the collet. After it has opened and closed, the bar has a new face."""
         self.findings.pause()
         if not closed:
             self._is_open = True
@@ -198,7 +198,7 @@ class PartMaking:
         self._is_open = False
 
     def mill(self, step: LiveStep, first: float = 0.0, last: float = 1.0) -> None:
-        """A block of a live tool, or the piece of it from one share to another."""
+        """Apply a block of a live tool, or the piece of it between two shares."""
         move, shape = self.mill_move(step), self._tools.shape(self._tool)
         if move is None or shape is None or self.part is None or self._is_open:
             return
@@ -217,7 +217,7 @@ class PartMaking:
         self.findings.milled(move, self.milled_last, shape, modal, self._tool, touches=touches)
 
     def mill_move(self, step: LiveStep) -> MillMove | None:
-        """The way of a live tool in the part's frame; None where nothing is known that would cut."""
+        """Return the path of a live tool in the part's frame, or None if no cutting shape is known."""
         shape = self._tools.shape(self._tool)
         if shape is None or not shape.diameter:
             return None
@@ -244,9 +244,9 @@ class PartMaking:
             self.findings.parted(move, piece)
 
     def _stands(self, move: TipMove, cutter: Cutter, part: TurnedPart) -> bool:
-        """Whether metal is met while the spindle stands again, or left behind such a cut: that turns nothing.
+        """Return whether a cut with a stopped spindle removes nothing, or follows such a cut.
 
-        A spindle that never turns is one that is switched by hand.
+        A spindle that never turns in the program is switched manually.
         """
         behind, self._in_cut = self._in_cut, False
         shape = self._tools.shape(self._tool)
@@ -266,9 +266,9 @@ class PartMaking:
         return self._in_cut
 
     def _is_still(self, modal: Modal, shape: ToolShape) -> bool:
-        """Whether a tool that has to turn, or needs a part that turns, does neither.
+        """Return whether a tool that must rotate, or needs a rotating part, has neither.
 
-        Other tools may be broaches; a live tool of a machine without a code for it is switched by hand.
+        Other tools may be broaches. On a machine without a code for the live tool, it is switched manually.
         """
         live = any(name.startswith(LIVE) for name in modal.outputs)
         return shape.kind in _TURN and self._live_codes and not live and not modal.spindle
@@ -280,7 +280,7 @@ class PartMaking:
         pieces = part.pieces
         if self.milling is None:
             self._removed += part.removed
-        else:  # a turning tool takes nothing where a live tool was before it
+        else:  # a turning tool removes nothing where a live tool has been before
             self._removed += part.whole - self.milling.left - sum(piece.volume for piece in pieces)
         self._pieces += pieces
         if part.removed or self.milling is not None or self._last is None:
@@ -288,7 +288,7 @@ class PartMaking:
         self.part = self.milling = None
 
     def report(self) -> PartReport:
-        """What became of the stock."""
+        """Return the result of the program for the stock."""
         left = self.part.volume if self.part is not None else 0.0
         if self.milling is not None:
             left = self.milling.left

@@ -1,6 +1,6 @@
-"""The proof of the part: the blocks of a program take metal off the stock, and what goes wrong is found.
+"""The proof of the part: the blocks of a program remove material from the stock, and faults are reported.
 
-All moves are gathered first, because stock and tools that nobody has described follow from them.
+All moves are collected first, because unspecified stock and tools are derived from them.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ MOST_MOVES = 50_000
 On the desk, where it would be in the way of a machine, never: ``part_history``.
 """
 
-_WATCHED = 200  # moves between two looks at whether the part is still wanted
+_WATCHED = 200  # moves between two calls of ``watch``
 
 
 def prove_with_part(
@@ -38,9 +38,9 @@ def prove_with_part(
     seen: Callable[[MotionSpan | RestSpan], None] | None = None,
     watch: Callable[[float], None] | None = None,
 ) -> tuple[Report, PartReport | None]:  # fmt: skip
-    """The proof of a program with the findings of its part among the others; no part on a mill.
+    """Return the proof of a program including the findings of its part. A mill has no part proof.
 
-    ``seen`` is given each span, as ``prove`` gives it; ``watch`` may give up while the part is made.
+    ``seen`` receives each span, as in ``prove``. ``watch`` may cancel while the part is made.
     """
     if machine.kind != "lathe":
         return prove(program, setup, machine, progress, ideal=ideal, seen=seen), None
@@ -53,16 +53,17 @@ def prove_with_part(
 
     report = prove(program, setup, machine, progress, ideal=ideal, seen=see)
     part = gathered.report(watch)
-    known = {(each.line, each.code) for each in report.diagnostics}  # of reading, which knows no stock
+    # findings of the reading, which does not know the stock
+    known = {(each.line, each.code) for each in report.diagnostics}
     found = [each for each in part.findings if (each.line, each.code) not in known]
     left = _without_weaker(report.diagnostics, found)
     return replace(report, diagnostics=in_order((*left, *found))), part
 
 
 def refusing_missing_offsets(report: Report, setup: Setup) -> Report:
-    """Return the report of ``prove``: where offsets are known, a tool without one is an error.
+    """Return the report of ``prove`` with a missing tool offset as an error if offsets are known.
 
-    The machine would not start. The operator screen and ``run`` refuse such a start themselves.
+    The machine would not start with it. The operator screen and ``run`` refuse such a start themselves.
     """
     if not setup.tools:
         return report
@@ -82,7 +83,10 @@ _WEAKER = {
 
 
 def _without_weaker(report: Iterable[Diagnostic], found: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """Leave out each warning that an error of the part on its line, or after it, says for certain."""
+    """Return the report without warnings that an error of the part confirms.
+
+    The error must be on the same line or later.
+    """
     left = list(report)
     for error in found:
         if error.severity is not Severity.ERROR or error.code not in _WEAKER:
@@ -105,7 +109,7 @@ def _not_made(moves: int) -> PartReport:
 
 
 class PartProof:
-    """Gathers the blocks of a pass, and makes the part of them."""
+    """Collects the blocks of a pass and makes the part from them."""
 
     def __init__(self, setting: PartSetting, parts: Iterable[Part] = ()) -> None:
         self._setting = setting
@@ -113,7 +117,7 @@ class PartProof:
         self._moves = sum(map(len, self._parts))
 
     def see(self, span: MotionSpan | RestSpan) -> None:
-        """The next span of the program."""
+        """Add the next span of the program."""
         if isinstance(span, MotionSpan):
             parts = span.parts
         else:
@@ -129,9 +133,9 @@ class PartProof:
         return self._moves > MOST_MOVES and self._setting.stock is None
 
     def report(self, watch: Callable[[float], None] | None = None) -> PartReport:
-        """The part, when the whole program has been seen; of a very long one only where a stock is said.
+        """Return the part after the whole program. A very long program needs a specified stock.
 
-        ``watch`` is told how many moves are done, now and then, and may raise to give up.
+        ``watch`` receives the number of moves done regularly and may raise to cancel.
         """
         if self._too_many:
             return _not_made(self._moves)
@@ -143,7 +147,7 @@ class PartProof:
         return making.report()
 
     def metal_at(self, blocks: Collection[int]) -> dict[int, Piece]:
-        """What was held before each of these elementary blocks, by number; live tools are left out."""
+        """Return the material before each of these elementary blocks, by number, without live tools."""
         making, steps = self._begun()
         held: dict[int, Piece] = {}
         for step in steps:
@@ -153,7 +157,7 @@ class PartProof:
         return held
 
     def _begun(self) -> tuple[PartMaking, list[Step]]:
-        """The stock in the chuck, and the steps to come."""
+        """Return the part with the stock in the chuck, and the steps of the program."""
         reading = Steps(self._setting.tips)
         steps = [step for part in self._parts for step in reading.of(part)]
         tools = ProgramTools(steps, self._setting)

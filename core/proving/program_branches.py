@@ -1,8 +1,8 @@
-"""Every way through a program: at M95 and M97 both states of the input are proved, before anything moves.
+"""All paths through a program: at M95 and M97, both states of the input are proved before the start.
 
-The first way is that of the inputs as they are given. At each conditional call a copy of the pass waits to be
-sent the other way; it ends where it comes to a line in a state in which another way has been there before,
-because all that follows has been gone through then. What is not gone through is named.
+The first path uses the given inputs. At each conditional call, a copy of the pass is stored for the other
+state. A path ends where it reaches a line in the same state as an earlier path, because everything after that
+has been proved. Paths that are not proved are listed.
 """
 
 from __future__ import annotations
@@ -32,11 +32,11 @@ from core.proving.proof_pass import MAX_FINDINGS, ProofPass
 from core.proving.proof_report import Range, Report, Ways, in_order
 from core.proving.spindle_forecast import SETTLING
 
-# --- cycle time of all ways -----------------------------------------------------------------------------
+# --- cycle times of all paths ---------------------------------------------------------------------------
 
 
 class Fork(NamedTuple):
-    """Where one way through the program leaves another: blocks made before, the time there, and that way."""
+    """The place where another path leaves a path: blocks executed before, the time, and the other path."""
 
     blocks: int
     t: float
@@ -45,19 +45,22 @@ class Fork(NamedTuple):
 
 @dataclass(slots=True, eq=False)
 class Branch:
-    """One way through the program, s from its start. ``ends``: times of its blocks from ``first`` + 1 on."""
+    """One path through the program, in seconds from its start.
+
+    ``ends`` contains the end times of its blocks from ``first`` + 1 on.
+    """
 
     first: int = 0
     start: float = 0.0
-    duration: float = 0.0  # when it is over, or has come to where another way has been
+    duration: float = 0.0  # time of its end, or of the point where it meets an earlier path
     ends: array[float] = field(default_factory=lambda: array("d"))
     forks: list[Fork] = field(default_factory=list)
-    merged: tuple[Branch, int] | None = None  # the other way, and the blocks made there before
+    merged: tuple[Branch, int] | None = None  # the earlier path, and its number of blocks at this point
     proved: bool = False
     failed: bool = False
 
     def at(self, blocks: int) -> float:
-        """When so many blocks have been executed, s."""
+        """Return the time in seconds when ``blocks`` blocks have been executed."""
         made = blocks - self.first
         if made <= 0 or not self.ends:
             return self.start
@@ -69,7 +72,7 @@ _Node = tuple[Branch, int]
 
 
 def cycle_range(first: Branch) -> Range:
-    """Least and greatest time from the start of the program to its end, of all ways that were proved."""
+    """Return the least and the greatest cycle time of all proved paths."""
     known: dict[tuple[int, int], Range] = {}
     todo: list[_Node] = [(first, 0)]
     while todo:
@@ -96,7 +99,7 @@ def _time(node: _Node) -> float:
 
 
 def _next(node: _Node) -> list[tuple[_Node, float]]:
-    """What comes from there, each with the seconds to it."""
+    """Return the nodes that follow, each with the seconds to it."""
     branch, at = node
     if at < len(branch.forks):
         here, other = branch.forks[at].t, branch.forks[at].other
@@ -116,7 +119,7 @@ def _next(node: _Node) -> list[tuple[_Node, float]]:
 
 
 def uncalled(reading: ReadProgram) -> Iterator[Diagnostic]:
-    """A note for each subroutine that no line of the main program leads to."""
+    """Yield a note for each subroutine that the main program never calls."""
     program = reading.program
     if program is None or not program.structure.subroutines:
         return
@@ -146,7 +149,7 @@ def _reached(program: Program) -> set[int]:
 
 
 def _home(program: Program, at: int) -> int:
-    """The subroutine in which the line with this index stands; 0: the main program."""
+    """Return the number of the subroutine that contains the line with this index; 0 for the main program."""
     structure = program.structure
     if at < structure.main_end:
         return 0
@@ -167,7 +170,7 @@ _MOST_STATES = 500_000
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """One input at one line."""
+    """The assumed state of one input at one line."""
 
     line: int
     terminal: str
@@ -175,7 +178,7 @@ class Choice:
 
     @property
     def words(self) -> str:
-        """As an operator reads it."""
+        """The choice as a text for the operator."""
         name = "7" if self.terminal == "TB2-9" else self.terminal
         return Message(
             "input {number} is {state} at line {line}",
@@ -187,19 +190,19 @@ class Choice:
 
 @dataclass(slots=True)
 class _BranchPass:
-    """One way through the program that is proved, or waits to be."""
+    """One path through the program that is being proved or waits for its proof."""
 
     branch: Branch
     source: Branching | None
     choices: tuple[Choice, ...] = ()
-    rest_state: RestState | None = None  # None: nothing comes there, because the way before it has errors
+    rest_state: RestState | None = None  # None: not reached, because the path before it has errors
     checks: CuttingChecks | None = None
-    asked: list[_BranchPass | None] = field(default_factory=list)  # in the order of its questions
+    asked: list[_BranchPass | None] = field(default_factory=list)  # in the order of its conditional calls
     answered: int = 0
 
 
 def _with(choices: Sequence[Choice], message: str) -> str:
-    """A finding and its way: the last two of its inputs, which are what an operator looks at."""
+    """Return a message with the last two inputs of its path, which the operator can check."""
     if len(choices) == 1:
         return Message("If {input}: {message}", input=choices[0].words, message=message)
     return Message(
@@ -211,7 +214,7 @@ def _with(choices: Sequence[Choice], message: str) -> str:
 
 
 class Branches:
-    """Proves all ways of one program: the first of them in ``spans``, the others in ``report_of_all``."""
+    """Proves all paths of a program: the first one in ``spans``, the others in ``report_of_all``."""
 
     def __init__(self, reading: ReadProgram, setup: Setup, machine: Machine, *, ideal: bool) -> None:
         self._reading, self._setup, self._machine, self._ideal = reading, setup, machine, ideal
@@ -219,8 +222,8 @@ class Branches:
         self._current = _BranchPass(Branch(), self.root)
         self._known: dict[Hashable, tuple[Branch, int]] = {}
         self._waiting: list[tuple[tuple[int, ...], _BranchPass]] = []
-        self._seen: Counter[tuple[int, bool]] = Counter()  # how often the other way of a line was kept
-        self._covered: set[tuple[int, bool]] = set()  # lines, and the states of their inputs that were proved
+        self._seen: Counter[tuple[int, bool]] = Counter()  # number of stored copies by line and state
+        self._covered: set[tuple[int, bool]] = set()  # lines with the states of their inputs that were proved
         self._turn = count()
         self._unproved = 0
         self._proved = 1
@@ -230,10 +233,10 @@ class Branches:
         self._missing: set[int] = set()
         self._work = 0
 
-    # what the interpreter asks
+    # Called by the interpreter:
 
     def known(self, branch: Branching) -> bool:
-        """Whether another way has been in this state."""
+        """Return whether an earlier path has been in this state."""
         key = branch.key
         found = self._known.get(key)
         if found is not None and found[0] is not self._current.branch:
@@ -244,7 +247,7 @@ class Branches:
         return False
 
     def asked(self, branch: Branching, made: Statement, takes: bool) -> None:
-        """A conditional call is met: keep a copy of the pass for the other way."""
+        """Store a copy of the pass for the other state of a conditional call."""
         on = takes == (made.flow == "M95" or made.value("C") == 1)
         self._covered.add((made.line, on))
         if branch.stopped:
@@ -264,10 +267,10 @@ class Branches:
         rank = (int(other.unlikely), seen, len(branch_pass.choices), next(self._turn))
         heapq.heappush(self._waiting, (rank, branch_pass))
 
-    # what proving asks
+    # Called by the proof:
 
     def spans(self, proof_pass: ProofPass, timeline: Timeline) -> Iterator[MotionSpan | RestSpan]:
-        """The spans of the present way, which is gone through while they are taken."""
+        """Yield the spans of the present path while it is executed."""
         if self.root is None:
             yield from timeline.spans()
             return
@@ -284,11 +287,11 @@ class Branches:
                     self._stands(now, proof_pass, timeline)
         now.branch.duration = timeline.t
         if now.branch.merged is not None and proof_pass.last is proof_pass.last_move:
-            now.branch.duration -= 0.0 if self._ideal else SETTLING  # the motion would have gone on
+            now.branch.duration -= 0.0 if self._ideal else SETTLING  # the motion would have continued
         now.branch.failed = timeline.errors
 
     def _stands(self, now: _BranchPass, proof_pass: ProofPass, timeline: Timeline) -> None:
-        """The way has come to its next question: from here the copy goes on."""
+        """Record the state at a conditional call, from which the copy continues."""
         branch_pass = now.asked[now.answered] if now.answered < len(now.asked) else None
         now.answered += 1
         if branch_pass is not None:
@@ -297,7 +300,7 @@ class Branches:
             now.branch.forks.append(Fork(branch_pass.branch.first, timeline.t, branch_pass.branch))
 
     def report_of_all(self, report: Report, progress: Callable[[float], None] | None) -> Report:
-        """The report of the first way, with what was found in all the others."""
+        """Return the report of the first path together with the findings of all other paths."""
         found = [*report.diagnostics, *uncalled(self._reading)]
         if self.root is None:
             return replace(report, diagnostics=in_order(found), ways=Ways(cycle=(report.times.cycle,) * 2))
@@ -335,7 +338,7 @@ class Branches:
                 progress(proof_pass.last.n)
             if self._work > most:
                 self._unproved += 1
-                branch_pass.branch.failed = True  # its time is not known
+                branch_pass.branch.failed = True  # the time of this path is unknown
                 break
         branch_pass.branch.proved = True
         report = proof_pass.report(timeline, self._reading.source)
@@ -357,7 +360,7 @@ class Branches:
             )
 
     def _unreached(self) -> Iterator[Diagnostic]:
-        """What was not gone through, by name."""
+        """Yield a warning that names the paths that were not proved."""
         left = self._unproved + len(self._waiting)
         if not left:
             return

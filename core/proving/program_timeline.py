@@ -1,4 +1,4 @@
-"""A program laid out in time: every elementary block with its start and end, by the law that a run obeys."""
+"""A program on a time scale: every elementary block with its start and end, planned as in a run."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ from core.motion.window_planner import Chunk, ChunkPlanner
 from core.proving.proof_report import in_order
 from core.proving.spindle_forecast import SETTLING, THREAD_EARLY, SpindleForecast, orienting
 
-# --- blocks that are not timed yet ----------------------------------------------------------------------
+# --- blocks without times -------------------------------------------------------------------------------
 
 
 Part = list[Block] | Series
@@ -40,18 +40,18 @@ Part = list[Block] | Series
 
 
 class BlocksInMotion:
-    """Blocks that the planner has and that are not timed yet; series are kept whole where they can be."""
+    """Blocks that were passed to the planner but are not timed yet. Series remain whole if possible."""
 
     def __init__(self) -> None:
         self._parts: deque[Part] = deque()
 
     @property
     def first(self) -> Block | None:
-        """The block that has waited longest."""
+        """The oldest block, or None."""
         return self._parts[0][0] if self._parts else None
 
     def append(self, each: Block | Series) -> None:
-        """Put in behind the others."""
+        """Append a block or a series."""
         if isinstance(each, Series):
             self._parts.append(each)
         elif self._parts and isinstance(self._parts[-1], list):
@@ -60,7 +60,7 @@ class BlocksInMotion:
             self._parts.append([each])
 
     def take(self, count: int) -> tuple[Part, ...]:
-        """Take so many out, those that have waited longest."""
+        """Remove and return the ``count`` oldest blocks."""
         taken: list[Part] = []
         while count:
             part = self._parts.popleft()
@@ -80,7 +80,7 @@ TimedBlock = tuple[Block, float, float]
 
 
 class MotionSpan(NamedTuple):
-    """A span of motion from ``t0`` on, and the blocks that end in it with when they start and end."""
+    """A span of motion from ``t0`` on, with the blocks that end in it and their times."""
 
     t0: float
     chunk: Chunk
@@ -88,21 +88,21 @@ class MotionSpan(NamedTuple):
 
     @property
     def blocks(self) -> list[Block]:
-        """The blocks that end in it, those of series made for whoever asks."""
+        """The blocks that end in the span. Blocks of series are created on each access."""
         return list(chain.from_iterable(self.parts))
 
     @property
     def last(self) -> Block | None:
-        """The last block that ends in it."""
+        """The last block that ends in the span, or None."""
         return self.parts[-1][-1] if self.parts else None
 
     @property
     def t1(self) -> float:
-        """When the span ends; the next one may go on without a stop."""
+        """The end of the span. The next span may continue without a stop."""
         return self.t0 + self.chunk.profile.duration
 
     def times(self) -> Iterator[TimedBlock]:
-        """Each block with its start and end on the program's clock."""
+        """Yield each block with its start and end on the program's clock."""
         for each in self.times_of_parts():
             if isinstance(each, TimedSeries):
                 yield from zip(each.series, each.t0.tolist(), each.t1.tolist(), strict=True)
@@ -110,7 +110,7 @@ class MotionSpan(NamedTuple):
                 yield each
 
     def times_of_parts(self) -> Iterator[TimedBlock | TimedSeries]:
-        """The same, series in one."""
+        """Yield the same as ``times``, but each series as one item."""
         shift, first = self.t0 - self.chunk.t, 0
         for part in self.parts:
             there = slice(first, first + len(part))
@@ -123,28 +123,27 @@ class MotionSpan(NamedTuple):
 
 
 class RestSpan(NamedTuple):
-    """At rest from ``t0`` to ``t1``: a block that does not move, or (None) a wait before the next motion."""
+    """A rest from ``t0`` to ``t1``: a block without motion, or (None) a wait before the next motion."""
 
     t0: float
     t1: float
     block: Block | None
 
     def times(self) -> Iterator[TimedBlock]:
-        """The block, if any, with its start and end on the program's clock."""
+        """Yield the block, if any, with its start and end on the program's clock."""
         if self.block is not None:
             yield self.block, self.t0, self.t1
 
     def times_of_parts(self) -> Iterator[TimedBlock | TimedSeries]:
-        """The same."""
+        """Yield the same as ``times``."""
         return self.times()
 
 
-_AT_ONCE = 1e12  # mm/s²: the ramps of an ideal machine are shorter than any digit that is shown
+_AT_ONCE = 1e12  # mm/s²; the ramps of an ideal machine are shorter than the displayed resolution
 
 
 class RestState(NamedTuple):
-    """A place between two blocks at rest: time, spindle, whether a feed has to wait for its speed, and where
-    path sections end from there on."""
+    """The state at rest between two blocks: time, spindle, pending speed wait, and path section rules."""
 
     t: float
     spindle: SpindleForecast
@@ -153,10 +152,10 @@ class RestState(NamedTuple):
 
 
 class Timeline:
-    """One pass through a program, once. Constant memory: spans are handed out as they are settled.
+    """One pass through a program in constant memory; spans are yielded as they become final.
 
-    Where the machine cannot do what a block asks, the pass ends with an error in ``diagnostics``. An
-    ``ideal`` machine needs no time to accelerate, to settle or to plan; its limits of speed are the same.
+    If the machine cannot execute a block, the pass ends with an error in ``diagnostics``. An ``ideal``
+    machine needs no time to accelerate, settle or plan, but has the same speed limits.
     """
 
     def __init__(
@@ -173,27 +172,27 @@ class Timeline:
             limits = replace(limits, amax=(_AT_ONCE,) * len(limits.amax))
         self._planner = ChunkPlanner(limits, rpm_max=machine.spindle.rpm_max)
         self._source = self.interpreter.series()
-        self._back: Block | Series | None = None  # what ended a motion and is still to come
+        self._back: Block | Series | None = None  # the next item after a motion, already read
         self._moving = BlocksInMotion()
         self._ends = SectionEnds()
-        self._speed_wanted = False  # a speed was commanded that no feed has waited for yet
+        self._speed_wanted = False  # a speed was commanded, and no feed has waited for it yet
         self._refused: list[Diagnostic] = []
 
     @classmethod
     def of(
         cls, program: Source | ReadProgram, setup: Setup, machine: Machine, *, ideal: bool = False
     ) -> Timeline:
-        """The timeline of a program's text, or of its reading."""
+        """Return the timeline of a program's text, or of its parsed form."""
         reading = program if isinstance(program, ReadProgram) else ReadProgram(program, strict=setup.strict)
         return cls(reading.begin(setup), setup, machine, ideal=ideal)
 
     @property
     def rest_state(self) -> RestState:
-        """What another way through the program, which leaves this one here, goes on with."""
+        """The state from which another path through the program continues."""
         return RestState(self.t, copy(self.spindle), self._speed_wanted, copy(self._ends))
 
     def go_on(self, rest_state: RestState) -> None:
-        """Begin where another timeline has stood at rest, not at the start of the program."""
+        """Continue from the state of another timeline at rest instead of the start of the program."""
         self.t, self.spindle, self._speed_wanted = (
             rest_state.t,
             copy(rest_state.spindle),
@@ -203,16 +202,16 @@ class Timeline:
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
-        """What reading and interpreting have found so far, in the order of lines."""
+        """The diagnostics of reading and interpreting so far, in the order of lines."""
         return in_order([*self.interpreter.diagnostics, *self._refused])
 
     @property
     def errors(self) -> bool:
-        """Whether the program will be refused."""
+        """True if the diagnostics contain an error."""
         return any(d.severity is Severity.ERROR for d in self.diagnostics)
 
     def spans(self) -> Iterator[MotionSpan | RestSpan]:
-        """The program in time order, without gaps."""
+        """Yield the program in time order, without gaps."""
         while (each := self._next()) is not None:
             if isinstance(each, Series) or each.moves:
                 yield from self._motion(each)
@@ -226,7 +225,7 @@ class Timeline:
         return next(self._source, None)
 
     def _motion(self, each: Block | Series) -> Iterator[MotionSpan | RestSpan]:
-        """One path section, from rest to rest."""
+        """Yield one path section, from rest to rest."""
         first = _like(each)
         if self._ends.rests_before(first):
             self._ends.rested(first)
@@ -246,7 +245,7 @@ class Timeline:
             self._refuse(str(error))
 
     def _moves(self, each: Block | Series | None) -> Iterator[Block | Series]:
-        """The blocks of a path section that begins with ``each``."""
+        """Yield the blocks of a path section that starts with ``each``."""
         while each is not None:
             self._moving.append(each)
             yield each
@@ -256,8 +255,10 @@ class Timeline:
         self._back = each
 
     def _index(self, block: Block) -> RestSpan:
-        """Until the slides may start, so that they are in step with an index of the spindle: see the
-        executor's rule in docs/decisions/0016-threads-follow-the-spindle.md. Up to one turn."""
+        """Return the wait until the axes may start in step with the spindle index, up to one revolution.
+
+        The rule of the executor is in docs/decisions/0016-threads-follow-the-spindle.md.
+        """
         turn = abs(self.spindle.speed(self.t)) / 60.0
         if not turn:
             return self._rest(0.0)
@@ -274,20 +275,20 @@ class Timeline:
         return span
 
     def _follow(self, rpm: float) -> None:
-        """Constant surface speed has led to this speed; one not reached yet is still being ramped to."""
+        """Set the speed reached by constant surface speed, or ramp to it if it has not been reached."""
         if self._speed_wanted:
             self.spindle.command(self.t, rpm)
         else:
             self.spindle.settle(self.t, rpm)
 
     def _at_speed(self) -> Iterator[RestSpan]:
-        """Before a feed the spindle must have been at speed for as long as the machine file says."""
+        """Yield the wait for the spindle to be at speed before a feed."""
         if self._speed_wanted:
             self._speed_wanted = False
             yield self._rest(self._wait(max(0.0, self.spindle.ready_at() - self.t)))
 
     def _wait(self, seconds: float) -> float:
-        """What a real machine waits for; an ideal one does not."""
+        """Return the wait of a real machine; 0 for an ideal machine."""
         return 0.0 if self._ideal else seconds
 
     def _rest(self, seconds: float, block: Block | None = None) -> RestSpan:
@@ -335,17 +336,17 @@ class Timeline:
 
 
 def _like(each: Block | Series) -> Block:
-    """The block, or one such as each of the series."""
+    """Return the block, or the pattern of a series."""
     return each.pattern if isinstance(each, Series) else each
 
 
 def timed_blocks(timeline: Timeline) -> Iterator[TimedBlock]:
-    """Every elementary block with its start and end, s; waits belong to no block."""
+    """Yield every elementary block with its start and end in seconds. Waits belong to no block."""
     for span in timeline.spans():
         yield from span.times()
 
 
 def timed_series(timeline: Timeline) -> Iterator[TimedBlock | TimedSeries]:
-    """The same, series of moves in one."""
+    """Yield the same as ``timed_blocks``, but each series of moves as one item."""
     for span in timeline.spans():
         yield from span.times_of_parts()

@@ -1,4 +1,4 @@
-"""The stock and tools of a program: described by somebody, or assumed by what it does with them."""
+"""The stock and tools of a program, either specified or assumed from its moves."""
 
 from __future__ import annotations
 
@@ -23,45 +23,45 @@ from core.tool_edges import edge_name
 
 _PLUNGE = 0.5  # mm
 _FED_AWAY = 1.0  # mm
-_MORE = 0.25  # mm of radius that a bar is larger
-_BEHIND = 10.0  # mm of bar behind the last cut
+_MORE = 0.25  # mm of radius added to a bar
+_BEHIND = 10.0  # mm of bar past the last cut
 _SAME = 0.01
-_NEAR_FACE, _CENTRE = 1.0, 1.0  # mm; a cut from outside to the axis here is the face
-_BEYOND = 6.35  # mm; what is fed further out than the outside is no bore
+_NEAR_FACE, _CENTRE = 1.0, 1.0  # mm; a cut from outside to the axis within this range is the face
+_BEYOND = 6.35  # mm; feeds further outside do not belong to a bore
 _LEAST = 0.5  # mm of radius
-_WALL = 2.0  # mm around a bore
-_BEFORE = 5.0  # mm before Z0; a lost minus is nearer, or one move of many
-_MOST = 0.5  # of what is fed
+_WALL = 2.0  # mm of wall around a bore
+_BEFORE = 5.0  # mm before Z0; a missing minus sign gives smaller values or affects one move only
+_MOST = 0.5  # fraction of all feeds
 
 
 @dataclass(frozen=True, slots=True)
 class PartSetting:
-    """What has been said about stock, tools (by T) and clamping; nose radii, mm, come from the offsets."""
+    """The specified stock, tools (by T) and clamping. Nose radii in mm come from the offsets."""
 
     stock: Stock | StockSpec | None = None
     shapes: Mapping[int, ToolShape] = field(default_factory=dict)
     nose_radii: Mapping[int, float] = field(default_factory=dict)
     clamping: Clamping | None = None
-    gang: Mapping[int, Point] = field(default_factory=dict)  # Z and X of the tools that ride one plate
-    tips: Mapping[int, Place] = field(default_factory=dict)  # as ``Steps`` has them
+    gang: Mapping[int, Point] = field(default_factory=dict)  # Z and X of the tools on a gang plate
+    tips: Mapping[int, Place] = field(default_factory=dict)  # as described in ``Steps``
     drives: Drives = UNKNOWN
     live_codes: bool = False  # the machine has M codes that switch live tools
     step: float = STEP  # width of a column of the part, mm
-    silenced: Mapping[str, str] = field(default_factory=dict)  # why, by check
-    travel: tuple[Point, Point] | None = None  # of X and of Z, from home, mm
+    silenced: Mapping[str, str] = field(default_factory=dict)  # reason by check
+    travel: tuple[Point, Point] | None = None  # travel of X and of Z from home, mm
 
     @property
     def may_refuse(self) -> bool:
-        """Whether enough is said for an error of the part to rest on nothing that is assumed."""
+        """True if enough is specified for an error of the part that depends on no assumption."""
         return self.stock is not None or self.clamping is not None
 
 
 class ProgramTools:
-    """By T. What is assumed of one follows from all moves of the program, so these are gathered first."""
+    """The tools of a program by T. All moves are collected first, because assumptions depend on them."""
 
     def __init__(self, steps: Sequence[Step], setting: PartSetting) -> None:
         self.uses: dict[int, ToolUse] = {}
-        self.fed_at: float | None = None  # Z, mm, where a stop has held the bar
+        self.fed_at: float | None = None  # Z of the bar stop in mm
         self.feeds_first = False  # the bar is fed before the first cut
         self._setting = setting
         self._gather(steps)
@@ -69,7 +69,7 @@ class ProgramTools:
             n: assumed_tool(use, setting.shapes.get(n))
             for n, use in self.uses.items()
             if self._lacks_something(n) and (use.moves or use.live) and (n or len(self.uses) == 1)
-        }  # T0 is none, but where the program names none at all
+        }  # T0 counts as a tool only if the program names no other
         self._give_sizes()
 
     def _gather(self, steps: Sequence[Step]) -> None:
@@ -110,7 +110,7 @@ class ProgramTools:
         return said is None or (said.kind in GROOVERS and not said.width)
 
     def _give_sizes(self) -> None:
-        """Drills and grooves of unknown size leave as much as the tools behind them need to get in."""
+        """Set the unknown sizes of drills and grooving tools from the tools that follow them."""
         bore = [m for n, use in self.uses.items() if (s := self.shape(n)) and s.internal for m in use.moves]
         threads = [m for use in self.uses.values() for m in use.moves if m.kind is Kind.THREAD]
         for number, each in self.assumed.items():
@@ -118,14 +118,14 @@ class ProgramTools:
             self.assumed[number] = each.with_diameter(use, bore).with_width(use, threads)
 
     def shape(self, number: int) -> ToolShape | None:
-        """The tool's shape; None for a bar stop, and where nothing is known that would cut."""
+        """Return the shape of a tool; None for a bar stop or if no cutting shape is known."""
         if number in self.assumed:
             return self.assumed[number].shape
         return self._setting.shapes.get(number)
 
     @property
     def unsized_drills(self) -> list[int]:
-        """The drills and reamers of the program whose diameter is assumed, by T."""
+        """The drills and reamers of the program with an assumed diameter, by T."""
         return [
             n
             for n, each in sorted(self.assumed.items())
@@ -133,37 +133,37 @@ class ProgramTools:
         ]
 
     def described(self, number: int) -> bool:
-        """Whether somebody has said what it looks like."""
+        """Return whether the shape of the tool is specified."""
         return number in self._setting.shapes
 
     def releases(self, number: int) -> bool:
-        """Whether a comment says that the holder of a tap turns it back, or lets it go, by itself."""
+        """Return whether a comment names a tap holder that reverses or releases the tap automatically."""
         return releases(self.uses[number]) if number in self.uses else False
 
     def cutter(self, number: int) -> Cutter | None:
-        """The tool ready to cut; without a described holder only its edges count."""
+        """Return the tool ready to cut. Without a specified holder, only its edges are used."""
         shape = self.shape(number)
         if shape is None or (shape.turns_itself and shape.direction[0] == 0):
-            return None  # a live tool across the spindle turns nothing
+            return None  # a live tool across the spindle cannot turn
         lines = outline(shape)
         body = lines.body if self.described(number) else ()
         return Cutter(lines.cutting, body, _side(shape), rear=shape.behind, drills=shape.turns_itself)
 
     @property
     def unit(self) -> float:
-        """Millimetres in a unit of length of the program, by its first move."""
+        """The unit of length of the program in mm, from its first move."""
         metric = (use.metric for use in self.uses.values() if use.moves or use.live)
         return 1.0 if next(metric, False) else MM_PER_INCH
 
     @property
     def back(self) -> float:
-        """Least Z that a tool cuts at, mm."""
+        """The least Z of all cuts, in mm."""
         moves = (m for use in self.uses.values() for m in use.moves if not (m.quick or use.pushes_bar))
         return min((z for move in moves for z, _ in move.points), default=0.0)
 
     @property
     def parted_at(self) -> float | None:
-        """The deepest Z to which a parting tool cuts that is fed towards the axis; None: there is none."""
+        """The deepest Z of a parting tool that feeds toward the axis, or None."""
         deepest: list[float] = []
         for number, use in self.uses.items():
             shape = self.shape(number)
@@ -171,13 +171,13 @@ class ProgramTools:
                 continue
             behind = (
                 shape.width * (1 + shape.direction[0]) / 2.0
-            )  # of the edge, beyond the corner that is set
+            )  # width of the edge beyond the corner that is set
             ways = [(*m.points[0], *m.points[-1]) for m in use.moves if not m.quick]
             deepest += [z1 - behind for _, r0, z1, r1 in ways if abs(r1) < abs(r0) - _PLUNGE]
         return min(deepest, default=None)
 
     def nothing_cut(self, stock: Stock | None) -> Iterator[tuple[int, int, str]]:
-        """Line, block and sentence of what should have cut and has not: tools never fed, feeds all away."""
+        """Yield line, block and sentence for tools that never feed and for feeds away from the part."""
         cutting = [use for n, use in self.uses.items() if self.shape(n) is not None]
         for use in cutting:
             if (move := use.never_fed) is not None:
@@ -218,7 +218,7 @@ class ProgramTools:
 
     @property
     def fed_away(self) -> TipMove | None:
-        """The longest feed away from the chuck, where all feeds together lead that way."""
+        """The longest feed away from the chuck if all feeds together lead away, or None."""
         feeds = [m for n, use in self.uses.items() if self.shape(n) for m in use.moves if not m.quick]
         along = [move.points[-1][0] - move.points[0][0] for move in feeds]
         if sum(along) <= _FED_AWAY or zero_behind(feeds):
@@ -226,7 +226,7 @@ class ProgramTools:
         return feeds[along.index(max(along))]
 
     def assumed_stock(self) -> Stock | None:
-        """A bar for what the tools cut."""
+        """Return the assumed stock for the cuts of the tools, or None."""
         outside: list[TipMove] = []
         bore: list[TipMove] = []
         for number, use in self.uses.items():
@@ -254,10 +254,10 @@ def assumed_stock(
     drill: float,
     live: Sequence[LiveStep] = (),
 ) -> Stock | None:
-    """The bar for the moves of outside tools; a tube where tools of a bore begin without a drill before them.
+    """Return a bar for the moves of outside tools, or a tube if boring tools start without a drill.
 
-    ``face``: Z at which a bar stop has held it, mm; None: Z0. ``drill``: diameter of the largest, 0: none.
-    None where nothing is cut behind the face, and where part zero is no face: then nothing says where one is.
+    ``face`` is the Z in mm of the bar stop; None means Z0. ``drill`` is the diameter of the largest drill, or
+    0. Returns None if nothing is cut past the face, or if part zero is not at the face.
     """
     cuts = [move for move in (*outside, *bore) if not move.quick]
     if face is None and zero_behind(cuts):
@@ -277,13 +277,13 @@ def assumed_stock(
 
 
 def zero_behind(cuts: Sequence[TipMove]) -> bool:
-    """Whether part zero lies behind the part, at the chuck: most is fed well before Z0."""
+    """Return whether part zero is at the chuck end of the part, because most feeds are before Z0."""
     before = sum(move.length for move in cuts if min(z for z, _ in move.points) > _BEFORE)
     return before > _MOST * sum(move.length for move in cuts)
 
 
 def _front(moves: Sequence[TipMove]) -> float:
-    """Z of the face: a little before where it is first cut, where no rapid meets it; Z0 where it is not."""
+    """Return Z of the face: slightly before the first face cut and clear of rapids, or 0 without one."""
     faced = [m.points[-1][0] for m in moves if _cuts_face(m)]
     if not faced:
         return 0.0
@@ -293,16 +293,16 @@ def _front(moves: Sequence[TipMove]) -> float:
 
 
 def _cuts_face(move: TipMove) -> bool:
-    """Whether it goes from outside to the axis near Z0; at a rapid, too: a G00 that was left on."""
+    """Return whether a move goes from outside to the axis near Z0, even as a rapid left on by mistake."""
     (z0, r0), (z1, r1) = move.points[0], move.points[-1]
     across = abs(z1 - z0) <= _SAME and abs(r1) < _CENTRE < abs(r0) - _CENTRE
     return across and -_SAME <= z1 < _NEAR_FACE / 2.0
 
 
 def _bar_radius(outside: Sequence[TipMove], bore: Sequence[TipMove], front: float) -> float:
-    """The largest cylinder that is cut, and a little more, but not so much that a rapid meets it.
+    """Return slightly more than the radius of the largest cut, but not so much that a rapid hits it.
 
-    Where grooves or faces alone are cut, the bar is a little smaller than where the largest of them begins.
+    If only grooves or faces are cut, the bar is slightly smaller than the start of the largest of them.
     """
     feeds = [move for move in outside if not move.quick]
     behind = [move for move in feeds if min(z for z, _ in move.points) < front - _SAME]
@@ -321,13 +321,13 @@ def _bar_radius(outside: Sequence[TipMove], bore: Sequence[TipMove], front: floa
 
 
 def _turns(move: TipMove, front: float) -> bool:
-    """Whether it goes along Z in the part; what comes from behind and ends before the face is a retract."""
+    """Return whether a move goes along Z in the part. A move that ends before the face is a retract."""
     z0, z1 = move.points[0][0], move.points[-1][0]
     return abs(z1 - z0) > _SAME and not z1 > max(z0, front + _NEAR_FACE)
 
 
 def _plunges(move: TipMove) -> bool:
-    """Whether it goes square towards the axis, to some place before it."""
+    """Return whether a move goes perpendicular toward the axis and ends before it."""
     (z0, r0), (z1, r1) = move.points[0], move.points[-1]
     return abs(z1 - z0) <= _SAME and abs(r0) > abs(r1) > _CENTRE
 
@@ -337,7 +337,7 @@ def _radii(moves: Iterable[TipMove]) -> Iterator[float]:
 
 
 def _live_reach(step: LiveStep) -> float:
-    """A little less than where a live tool's cut begins or ends, the further out."""
+    """Return slightly less than the outer end of a live tool's cut."""
     low, high, _, _ = step.block.reach()
     return (
         max(abs(low + step.place[0]), abs(high + step.place[0]), abs(step.block.x0 + step.place[0])) - _MORE
@@ -345,7 +345,7 @@ def _live_reach(step: LiveStep) -> float:
 
 
 def _faced(feeds: Iterable[TipMove], front: float) -> float:
-    """Where the first cut begins if it is that of the face: no bar is larger. Infinite if it is another."""
+    """Return the start radius of the first cut if it faces the part, otherwise inf. No bar is larger."""
     for move in feeds:
         (z0, r0), (z1, r1) = move.points[0], move.points[-1]
         if abs(abs(r1) - abs(r0)) > _CENTRE:
@@ -357,12 +357,15 @@ def _faced(feeds: Iterable[TipMove], front: float) -> float:
 
 
 def _cylinder(move: TipMove) -> float:
-    """The radius of the bar that a move along Z needs: an arc bulges, a line outwards leaves the part."""
+    """Return the bar radius that a move along Z needs.
+
+    An arc may bulge outward, and a line outward may leave the part.
+    """
     radii = [abs(r) for _, r in move.points]
     return max(radii) if move.kind is Kind.ARC else min(radii)
 
 
 def _bore_radius(bore: Iterable[TipMove], front: float) -> float:
-    """Just under the smallest cylinder that is cut in the bore, 0 where none is."""
+    """Return slightly less than the smallest radius cut in the bore, or 0."""
     behind = [m for m in bore if not m.quick and min(z for z, _ in m.points) < front - _SAME]
     return max(min((max(abs(r) for _, r in m.points) for m in behind), default=0.0) - _MORE, 0.0)

@@ -1,4 +1,4 @@
-"""One pass through a program, proved: what is found in its blocks, and what adds up."""
+"""One proved pass through a program: findings in its blocks, and sums of times and lengths."""
 
 from __future__ import annotations
 
@@ -33,45 +33,45 @@ _ROUNDING = 1e-9
 
 
 class Extent:
-    """Least and greatest of values; (0, 0) where there were none."""
+    """The range of values; (0, 0) without values."""
 
     def __init__(self) -> None:
         self.low, self.high = math.inf, -math.inf
 
     def see(self, *values: float) -> None:
-        """Widen to these values."""
+        """Extend the range to these values."""
         self.low = min(self.low, *values)
         self.high = max(self.high, *values)
 
     @property
     def range(self) -> Range:
-        """Least and greatest value."""
+        """The least and the greatest value."""
         return (self.low, self.high) if self.low <= self.high else (0.0, 0.0)
 
 
 def turned_range(low: float, high: float) -> Range:
-    """Least and greatest position of a modulo axis, degrees: 0 to 360 where it has gone through 0."""
+    """Return the range of a modulo axis in degrees; 0 to 360 if it has passed through 0."""
     turns = math.floor(low / _TURN + _ROUNDING) * _TURN
     low, high = low - turns, high - turns
     return (max(low, 0.0), high) if high <= _TURN + _ROUNDING else (0.0, _TURN)
 
 
 class Tally:
-    """Lengths in mm, reach in the program's frame, from the blocks of a program in order."""
+    """Sums of lengths in mm, and ranges in the program's frame, from the blocks in order."""
 
     def __init__(self) -> None:
         self.x, self.z, self.c, self.rpm, self.feed = Extent(), Extent(), Extent(), Extent(), Extent()
-        self.axes: list[Extent] = []  # machine positions of a mill's axes
+        self.axes: list[Extent] = []  # machine positions of the axes of a mill
         self.cutting_length = 0.0
         self.rapid_length = 0.0
 
     @property
     def reach(self) -> Reach:
-        """What the program reaches."""
+        """The ranges that the program uses."""
         return Reach(self.x.range, self.z.range, self.c.range, self.rpm.range, self.feed.range)
 
     def add(self, parts: Sequence[Part]) -> None:
-        """Count the moving blocks of a span."""
+        """Add the moving blocks of a span."""
         if not parts:
             return
         table = np.concatenate([_columns(part) for part in parts], axis=1)
@@ -86,13 +86,13 @@ class Tally:
         self.cutting_length += float(length[~rapid].sum())
         for span, column in ((self.x, 2), (self.z, 3), (self.c, 4)):
             span.see(float(table[column].min()), float(table[column].max()))
-        in_degrees = turned | (length == 0.0)  # a rapid of C alone, and what stands
+        in_degrees = turned | (length == 0.0)  # rapids of C only, and blocks without motion
         if not in_degrees.all():
             self._feeds(*table[5:8, ~in_degrees])
         self._turning(table[5, ~(turned | locked)])
 
     def _curved(self, blocks: Sequence[Block], length: Floats) -> None:
-        """Put in the lengths of ways that are no straight lines of X and Z."""
+        """Store the lengths of moves that are not straight lines of X and Z."""
         for index, block in enumerate(blocks):
             if block.travel is not None:
                 length[index] = 0.0 if block.swivels else block.travel.length
@@ -129,14 +129,14 @@ class Tally:
         self.feed.see(float(path_speed.min()), float(path_speed.max()))
 
     def _turning(self, rpm: Floats) -> None:
-        """Speeds of the spindle as such; C has its own."""
+        """Extend the range of spindle speeds, without those of the C axis."""
         turning = np.abs(rpm[rpm != 0])
         if turning.size:
             self.rpm.see(float(turning.min()), float(turning.max()))
 
 
 def _columns(part: Part) -> Floats:
-    """What is summed up of m blocks: columns (11, m)."""
+    """Return the values of m blocks that are summed: columns (11, m)."""
     if not isinstance(part, Series):
         return np.array([_figures(block) for block in part]).T
     columns = np.repeat(np.array([_figures(part.pattern)]).T, len(part), axis=1)
@@ -146,7 +146,7 @@ def _columns(part: Part) -> Floats:
     return columns
 
 
-_FEED = 6  # of the columns
+_FEED = 6  # index of the feed in the columns
 
 
 def _figures(b: Block) -> tuple[float, ...]:
@@ -154,19 +154,19 @@ def _figures(b: Block) -> tuple[float, ...]:
     return b.x0, b.z0, b.x, b.z, b.c, b.rpm, b.feed, b.per_rev, b.rapid, turned, b.modal.c_locked
 
 
-_AT_ONCE = 1000  # blocks that are looked at together
-MAX_FINDINGS = 100  # a broken offset makes every line of a program leave the travel; nobody reads more
+_AT_ONCE = 1000  # blocks that are evaluated together
+MAX_FINDINGS = 100  # A wrong offset can make every line leave the travel, so more findings would be useless.
 
 
 class ProofPass:
-    """What is found, and what adds up, while a program is gone through once."""
+    """Findings and sums of one pass through a program."""
 
     def __init__(self, machine: Machine, checks: CuttingChecks) -> None:
         self._machine = machine
         self._checks = checks
         self._tally = Tally()
         self._unseen: list[Part] = []
-        self._waiting = 0  # blocks in them
+        self._waiting = 0  # number of blocks in these parts
         self._cutting = self._rapid = self._dwell = self._wait = 0.0
         self._beyond: dict[tuple[int, str], Diagnostic] = {}
         self._needs: tuple[Need, ...] = ()
@@ -178,11 +178,11 @@ class ProofPass:
 
     @property
     def checks(self) -> CuttingChecks:
-        """The checks of cutting, as far as the program was gone through."""
+        """The cutting checks in their present state."""
         return self._checks
 
     def add(self, span: MotionSpan | RestSpan) -> None:
-        """The next span of the timeline."""
+        """Add the next span of the timeline."""
         if isinstance(span, MotionSpan):
             self._moved(span)
         else:
@@ -204,7 +204,7 @@ class ProofPass:
             self._see()
 
     def _see(self) -> None:
-        """Lengths and reach of the blocks that have come in; many at once, for motions of three blocks."""
+        """Evaluate the collected blocks together, which is faster for short motions."""
         parts, self._unseen, self._waiting = self._unseen, [], 0
         self._tally.add(parts)
         for part in parts:
@@ -221,9 +221,10 @@ class ProofPass:
                 return
 
     def _need(self, blocks: Part) -> None:
-        """Only a controller that plans by itself can lack what a program needs."""
+        """Collect the required machine functions, which only a controller with its own planner can lack."""
         if blocks and self._machine.backend == "grblhal":
-            unlike = blocks[:1] if isinstance(blocks, Series) else blocks  # what one needs, all need
+            # all blocks of a series need the same
+            unlike = blocks[:1] if isinstance(blocks, Series) else blocks
             self._needs = first_needs((*self._needs, *needs_of(unlike, self._before)))
             self._before = blocks[-1]
 
@@ -245,13 +246,13 @@ class ProofPass:
             self._wait += spent
 
     def report(self, timeline: Timeline, source: Source) -> Report:
-        """The report, once the whole program was gone through."""
+        """Return the report after the whole program."""
         self._see()
         beyond = list(self._beyond.values())[:MAX_FINDINGS]
         told = map(_as_assumed, timeline.diagnostics)
         found = [*told, *beyond, *self._checks.findings]
         interpreter, last, tally = timeline.interpreter, self.last, self._tally
-        end = self.last_move  # in its own frame: M30 takes the work shift away, and moves nothing
+        end = self.last_move  # in its own frame, because M30 removes the work shift without a motion
         return Report(
             name=source.name,
             dialect=source.dialect,
@@ -275,7 +276,7 @@ class ProofPass:
         )
 
     def _lathe_reach(self, source: Source) -> Reach:
-        """What the program reaches; C of SINUMERIK as its axis counts."""
+        """Return the ranges of a lathe, with C of a SINUMERIK program as its axis counts."""
         reach = self._tally.reach
         modulo = source.dialect is Dialect.SINUMERIK and self._machine.c_enabled and self._machine.c_modulo
         return replace(reach, c=turned_range(*reach.c)) if modulo else reach
@@ -294,7 +295,7 @@ class ProofPass:
 
 
 def _as_assumed(found: Diagnostic) -> Diagnostic:
-    """What holds only for a place that a proof assumes is a warning; a run that comes to it stops there."""
+    """Return an error that depends on an assumed position as a warning, because a run would stop there."""
     if not found.assumed or found.severity is not Severity.ERROR:
         return found
     hint = Message(
@@ -306,7 +307,7 @@ def _as_assumed(found: Diagnostic) -> Diagnostic:
 
 
 def _rapid(parts: Sequence[Part]) -> npt.NDArray[np.bool_]:
-    """For each block whether it is a rapid."""
+    """Return for each block whether it is a rapid."""
     found = [np.empty(0, bool)]
     for part in parts:
         alike = [part.pattern] if isinstance(part, Series) else part
@@ -316,10 +317,10 @@ def _rapid(parts: Sequence[Part]) -> npt.NDArray[np.bool_]:
 
 
 def _lathe(start: tuple[float, ...]) -> tuple[float, float, float]:
-    """X, Z and C of a start in the machine's order."""
+    """Return X, Z and C of a start in the machine's order."""
     return start[0], start[1], start[-1]
 
 
 def _shown_c(block: Block) -> float:
-    """C of the end as the program counts it."""
+    """Return C at the end of a block as the program counts it."""
     return block.c % 360.0 if block.modal.wraps_c else block.c

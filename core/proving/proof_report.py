@@ -1,4 +1,4 @@
-"""What proving found, and what became of the stock: figures in mm and seconds, X a radius."""
+"""Results of a proof and of the part, in mm and seconds with X as a radius."""
 
 from __future__ import annotations
 
@@ -22,7 +22,10 @@ Range = tuple[float, float]
 
 @dataclass(frozen=True, slots=True)
 class Times:
-    """Seconds, together the cycle time. ``wait`` is for spindle, collet and the start of each motion."""
+    """Times in seconds that add up to the cycle time.
+
+    ``wait`` is the time for spindle, collet and the start of each motion.
+    """
 
     cutting: float = 0.0
     rapid: float = 0.0
@@ -31,13 +34,13 @@ class Times:
 
     @property
     def cycle(self) -> float:
-        """The whole cycle; waits of M00 and M01 are the operator's and not in it."""
+        """The cycle time. Waits for the operator at M00 and M01 are not included."""
         return self.cutting + self.rapid + self.dwell + self.wait
 
 
 @dataclass(frozen=True, slots=True)
 class Reach:
-    """What the program reaches: program frame, rpm unsigned, feed in mm/s along the path."""
+    """The ranges that the program uses: program frame, unsigned rpm, and path feed in mm/s."""
 
     x: Range = (0.0, 0.0)
     z: Range = (0.0, 0.0)
@@ -48,8 +51,10 @@ class Reach:
 
 @dataclass(frozen=True, slots=True)
 class MillFigures:
-    """What a program does on a mill: its axes in order, the machine positions that each of them reaches, and
-    where the last block stands in its working plane; None where there was no block.
+    """The results of a program on a mill.
+
+    ``axes`` is the order of the axes, and ``reach`` their ranges in machine positions. ``final`` is the end
+    of the last block in its working plane, or None without a block.
     """
 
     axes: tuple[str, ...]
@@ -59,9 +64,10 @@ class MillFigures:
 
 @dataclass(frozen=True, slots=True)
 class Ways:
-    """The ways through a program, by its inputs and with block delete on and off.
+    """The paths through a program, by its inputs and by block delete on and off.
 
-    ``cycle`` is the least and the greatest cycle time of them, s; ``unproved`` counts those not gone through.
+    ``cycle`` is the least and the greatest cycle time of the paths in seconds. ``unproved`` is the number of
+    paths that were not proved.
     """
 
     proved: int = 1
@@ -71,7 +77,7 @@ class Ways:
 
 @dataclass(frozen=True, slots=True)
 class Report:
-    """One program, proved. Figures cover what could be interpreted when there are errors."""
+    """The proof of one program. If it has errors, the values cover only what could be interpreted."""
 
     name: str
     dialect: Dialect
@@ -92,26 +98,27 @@ class Report:
     ways: Ways = field(default_factory=Ways)
     stops: int = 0  # M00
     optional_stops: int = 0  # M01
-    corner_tolerance: float = 0.0  # mm that the machine file allows where chords meet; 0: rounding alone
+    # mm of deviation that the machine file permits at joints of chords; 0: only rounding
+    corner_tolerance: float = 0.0
 
     @property
     def errors(self) -> tuple[Diagnostic, ...]:
-        """The diagnostics that refuse the run."""
+        """The diagnostics that prevent a start."""
         return tuple(d for d in self.diagnostics if d.severity is Severity.ERROR)
 
 
 def in_order(found: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
-    """Findings in the order of lines and columns."""
+    """Return the findings in the order of lines and columns."""
     return tuple(sorted(found, key=lambda each: (each.line, each.column)))
 
 
 @dataclass(frozen=True, slots=True)
 class PartReport:
-    """What became of the stock: mm and mm³. ``last`` is the last part that came off, or what the chuck holds.
+    """The results of the part, in mm and mm³.
 
-    ``shapes`` are the tools by T, described or assumed, None where nothing is known that would cut.
-    ``assumed`` are sentences, one for each thing that nobody has said, ``unchecked`` what could not be looked
-    at for want of it.
+    ``last`` is the last piece that was parted off, or the material in the chuck. ``shapes`` are the tools by
+    T, specified or assumed, or None if no cutting shape is known. ``assumed`` contains a sentence for each
+    assumption, and ``unchecked`` the checks that lacked data.
     """
 
     stock: Stock | None

@@ -1,7 +1,7 @@
-"""Proving: the same program, given to a checker, with block delete on and off.
+"""Proof of a program, with block delete both on and off.
 
-Cycle Start goes by the switch as it stands. What is wrong with it the other way alone is a warning: to turn
-the switch is to prove the program again.
+Cycle Start uses the present position of the switch. A fault that occurs only in the other position is a
+warning, because the program is proved again when the switch is turned.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from core.proving.program_timeline import MotionSpan, RestSpan, Timeline
 from core.proving.proof_pass import MAX_FINDINGS, ProofPass
 from core.proving.proof_report import Report, Ways, in_order
 
-# / is first on a line; SINUMERIK and Klartext let the number of the block stand before it.
+# The character / is first on a line. SINUMERIK and Klartext permit a block number before it.
 _DELETED = {
     Dialect.OMNITURN: re.compile(r"^[^\S\n]*/", re.MULTILINE),
     Dialect.SINUMERIK: re.compile(r"^[^\S\n]*(?:[N:][^\S\n]*[0-9]+[^\S\n]*)?/", re.MULTILINE | re.IGNORECASE),
@@ -33,14 +33,14 @@ Progress = Callable[[float], None]
 
 
 def deletes_blocks(source: Source) -> bool:
-    """Whether ``/`` stands before a line of the program or of its subprograms."""
+    """Return whether any line of the program or of its subprograms starts with ``/``."""
     return ("/" in source.text and _DELETED[source.dialect].search(source.text) is not None) or any(
         map(deletes_blocks, source.subprograms)
     )
 
 
 def with_the_other(report: Report, other: Report, *, deleted: bool) -> Report:
-    """The report of the switch as it stands, with warnings of what was found with it the other way."""
+    """Return the report with warnings for faults that occur only in the other position of block delete."""
     known = {(found.line, found.code, found.severity) for found in report.diagnostics}
     switch = "on" if deleted else "off"
     found = [
@@ -73,17 +73,14 @@ def prove(
     ideal: bool = False,
     seen: Callable[[MotionSpan | RestSpan], None] | None = None,
 ) -> Report:
-    """Check a whole program: words, travel, times. ``progress`` hears how many blocks have passed.
+    """Check a whole program: syntax, travel and times. ``progress`` receives the number of blocks done.
 
-    A program that others go through too is given as its one reading.
+    A program that other code also uses should be passed in its parsed form.
 
-    The figures are those of the inputs and of block delete as ``setup`` has them; what the program does with
-    other inputs, and with block delete the other way, is proved too, and found in ``diagnostics``.
-
-    ``ideal``: times by feeds and limits of speed alone, without accelerations and waits.
-
-    ``seen`` is given each span of the program laid out in time, as ``setup`` has it: whoever draws it needs
-    no pass of his own.
+    The values apply to the inputs and the block delete of ``setup``. Other inputs and the other position of
+    block delete are also proved, with their faults in ``diagnostics``. With ``ideal``, times depend on feeds
+    and speed limits only, without accelerations and waits. ``seen`` receives each span of the timeline, so
+    that a caller who draws the program needs no second pass.
     """
     reading = program if isinstance(program, ReadProgram) else ReadProgram(program, strict=setup.strict)
     report = _proved(reading, setup, machine, progress, seen, ideal=ideal)
@@ -103,7 +100,7 @@ def _proved(
     *,
     ideal: bool,
 ) -> Report:
-    """The report with block delete as it stands, and all inputs both ways."""
+    """Return the report for one position of block delete and both states of all inputs."""
     branches = Branches(reading, setup, machine, ideal=ideal)
     timeline = Timeline(branches.root or reading.begin(setup), setup, machine, ideal=ideal)
     single = setup.begin is not None and setup.begin.single

@@ -1,4 +1,4 @@
-"""The setpoints of a program, one row a sampling interval: what the drives would get."""
+"""The setpoints of a program, one row per sampling interval, as the drives would receive them."""
 
 from __future__ import annotations
 
@@ -13,12 +13,16 @@ from core.interpreter.shared.elementary_blocks import Block, Floats, Ints, Serie
 from core.motion.window_planner import sample_positions
 from core.proving.program_timeline import MotionSpan, Part, RestSpan, Timeline
 
-BATCH = 10_000  # rows handed out at a time while the machine rests
+BATCH = 10_000  # rows yielded together while the machine rests
 
 
 class Rows(NamedTuple):
-    """k rows: time, s; machine positions (k, axes) in the machine's order, mm (X of a lathe a radius) and
-    degrees; the angle of the spindle, degrees, which counts on from the start; the source line."""
+    """k rows of setpoints.
+
+    They contain the time in seconds and the machine positions (k, axes) in the machine's order, in mm (X of a
+    lathe as a radius) and degrees. ``turned`` is the continuous spindle angle in degrees from the start, and
+    ``line`` the source line.
+    """
 
     t: Floats
     at: Floats
@@ -27,7 +31,7 @@ class Rows(NamedTuple):
 
 
 def setpoints(timeline: Timeline, dt: float) -> Iterator[Rows]:
-    """Rows every ``dt`` seconds from 0 to the first one at which the program has ended."""
+    """Yield rows every ``dt`` seconds from 0 to the first one after the end of the program."""
     sampler = _Sampler(timeline, dt)
     for span in timeline.spans():
         if isinstance(span, MotionSpan):
@@ -38,19 +42,19 @@ def setpoints(timeline: Timeline, dt: float) -> Iterator[Rows]:
 
 
 class _Sampler:
-    """Walks the grid of sampling times along the spans of a timeline."""
+    """Samples the spans of a timeline at equal intervals."""
 
     def __init__(self, timeline: Timeline, dt: float) -> None:
         self._spindle = timeline.spindle
         self._dt = dt
-        self._row = 0  # number of the next row; its time is row times dt, so that no error adds up
+        self._row = 0  # number of the next row; its time is row times dt, so that errors do not accumulate
         self._at: tuple[float, ...] = timeline.start
         self._line = 0
         self._angle = 0.0
-        self._rpm = 0.0  # at the last row
+        self._rpm = 0.0  # rpm of the last row
 
     def moved(self, span: MotionSpan) -> Rows:
-        """Rows of a motion."""
+        """Return the rows of a motion."""
         profile = span.chunk.profile
         _, positions, numbers = sample_positions(profile, self._dt, max(0.0, self._row * self._dt - span.t0))
         owners = np.searchsorted(span.chunk.n, numbers)
@@ -62,7 +66,7 @@ class _Sampler:
         return self._rows(positions, lines, by_radius)
 
     def rested(self, span: RestSpan) -> Iterator[Rows]:
-        """Rows of a rest."""
+        """Yield the rows of a rest."""
         if span.block is not None:
             self._line = span.block.line
         count = max(0, math.ceil((span.t1 - self._row * self._dt) / self._dt - 1e-9))
@@ -70,7 +74,7 @@ class _Sampler:
             yield self.standing(min(BATCH, count - done), span.block)
 
     def standing(self, count: int, block: Block | None = None) -> Rows:
-        """So many rows where the slides stand."""
+        """Return ``count`` rows without motion."""
         by_radius = dict.fromkeys(range(count), block) if block is not None and _leads(block) else {}
         return self._rows(np.tile(self._at, (count, 1)), np.full(count, self._line), by_radius)
 
@@ -81,9 +85,9 @@ class _Sampler:
         return Rows(t, at, turned, lines)
 
     def _turned(self, speeds: Floats) -> Floats:
-        """The angles: an interval turns on by the mean of the speeds at its two ends."""
+        """Return the angles, calculated with the mean of the speeds at both ends of each interval."""
         before = np.concatenate([[self._rpm], speeds])
-        steps = (before[:-1] + speeds) / 2 * self._dt * 6  # 1 rpm is 6 degrees a second
+        steps = (before[:-1] + speeds) / 2 * self._dt * 6  # 1 rpm is 6 degrees/s
         if not self._row:
             steps[:1] = 0.0
         angles = np.cumsum(np.concatenate([[self._angle], steps]))
@@ -91,9 +95,9 @@ class _Sampler:
         return angles[1:]
 
     def _speeds(self, t: Floats, machine_x: Floats, by_radius: Mapping[int, Block]) -> Floats:
-        """Signed rpm of the rows; ``by_radius`` has the blocks of those with a constant surface speed.
+        """Return the signed rpm of the rows; ``by_radius`` has the blocks with constant surface speed.
 
-        The timeline's forecast is only asked: what it waits for must not depend on who looks.
+        The forecast of the timeline is not changed, because its waits must not depend on the sampling.
         """
         speeds = self._spindle.speeds(t)
         for row, block in by_radius.items():
@@ -103,7 +107,7 @@ class _Sampler:
         return speeds
 
     def _by_radius(self, block: Block, machine_x: float) -> float:
-        """Signed rpm that gives the block its surface speed where the slide stands."""
+        """Return the signed rpm for the surface speed of the block at the present position."""
         modal, most = block.modal, self._spindle.rpm_max
         rpm = surface_rpm(block.css or 0.0, machine_x - block.offset_x, modal.css_min, modal.css_max or most)
         return math.copysign(rpm, modal.spindle)
@@ -114,11 +118,11 @@ def _lines(part: Part) -> Ints:
 
 
 def _leads(block: Block) -> bool:
-    """Whether the spindle follows the radius in it."""
+    """Return whether the spindle speed follows the radius in a block."""
     return block.css is not None and bool(block.modal.spindle)
 
 
 def _leading_spindle(parts: tuple[Part, ...]) -> dict[int, Block]:
-    """The blocks, by number, in which the spindle follows the radius; in a series it never does."""
+    """Return the blocks by number in which the spindle follows the radius; series have none."""
     alone = (block for part in parts if not isinstance(part, Series) for block in part)
     return {block.n: block for block in alone if _leads(block)}

@@ -1,4 +1,4 @@
-"""How long the machine itself takes: spindle ramps, collet, the start and end of a motion."""
+"""Times that the machine needs: spindle ramps, collet, and the start and end of a motion."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from core.machine.machine_model import Machine, SpindleModel
 # Seconds before a drive follows a new command; inverters need 50 to 100 ms.
 DRIVE_LATENCY = 0.08
 
-# Seconds from the end of a motion until the slides are in position and the executor goes on: the following
-# error of a 40 Hz servo dies away in 20 to 30 ms, and a decision falls on the next tick.
+# Seconds from the end of a motion until the axes are in position and the executor continues. The following
+# error of a 40 Hz servo decays in 20 to 30 ms, and the decision is made at the next tick.
 SETTLING = 0.035
 
 
@@ -22,14 +22,17 @@ THREAD_EARLY = 0.01
 
 
 def orienting(spindle: SpindleModel, sense: int) -> float:
-    """Seconds from standstill to an angle, by the longest way: half a turn, or a whole one in a sense."""
+    """Return the longest time in seconds from standstill to an angle.
+
+    The rotation is half a revolution, or a full one in a given direction.
+    """
     return DRIVE_LATENCY + (60.0 if sense else 30.0) / spindle.orient_rpm
 
 
 class SpindleForecast:
-    """The spindle as its drive ramps it: signed rpm over time, and when it will have been at speed.
+    """The forecast spindle speed: signed rpm over time as the drive ramps it, and at-speed times.
 
-    Times must not go backwards between calls of ``command``.
+    Times must not decrease between calls of ``command``.
     """
 
     def __init__(self, machine: Machine) -> None:
@@ -41,29 +44,32 @@ class SpindleForecast:
 
     @property
     def target(self) -> float:
-        """The command in force, signed rpm."""
+        """The commanded speed in signed rpm."""
         return self._to
 
     def command(self, t: float, rpm: float) -> None:
-        """A new command at ``t``; the ramp starts from the speed of that moment."""
+        """Command a new speed at time ``t``. The ramp starts from the speed at that time."""
         if rpm == self._to:
             return
         self._turns, self._counted = self.turns(t), t
         self._from, self._to, self._since = self.speed(t), rpm, t + DRIVE_LATENCY
 
     def towards(self, now: float, rpm: float, dt: float) -> float:
-        """Constant surface speed: how far the drive comes from ``now`` towards ``rpm`` within ``dt``."""
+        """Return the speed after ``dt`` seconds on the ramp from ``now`` toward ``rpm``."""
         rate = self._model.accel if abs(rpm) > abs(now) else self._model.decel
         return now + max(-rate * dt, min(rate * dt, rpm - now))
 
     def settle(self, t: float, rpm: float) -> None:
-        """At ``t`` the spindle turns at ``rpm``: what a move under constant surface speed has led to."""
+        """Set the speed to ``rpm`` at time ``t``, after a move with constant surface speed."""
         self._turns, self._counted = self.turns(t), t
         self._from = self._to = rpm
         self._since = t
 
     def turns(self, t: float) -> float:
-        """Signed revolutions from the start of the program to ``t``; not before the last command."""
+        """Return the signed revolutions from the start of the program to ``t``.
+
+        ``t`` must not be before the last command.
+        """
         at, ends = self._since, [self._counted, t]
         rpm = self._from
         for goal, rate in self._legs():
@@ -71,17 +77,17 @@ class SpindleForecast:
             at, rpm = ends[-1], goal
         joints = sorted(joint for joint in ends if self._counted <= joint <= t)
         turned = self._turns
-        for a, b in pairwise(joints):  # the speed runs straight between two joints
+        for a, b in pairwise(joints):  # the speed is linear between two joints
             turned += (self.speed(a) + self.speed(b)) / 120.0 * (b - a)
         return turned
 
     @property
     def rpm_max(self) -> float:
-        """The fastest the machine allows, rpm."""
+        """The maximum speed of the machine, in rpm."""
         return self._model.rpm_max
 
     def speed(self, t: float) -> float:
-        """Signed rpm at ``t``."""
+        """Return the signed rpm at time ``t``."""
         left = max(0.0, t - self._since)
         rpm = self._from
         for goal, rate in self._legs():
@@ -93,7 +99,7 @@ class SpindleForecast:
         return self._to
 
     def speeds(self, t: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-        """``speed`` at the times ``t`` (k,): only those within the ramp are asked for one by one."""
+        """Return ``speed`` at the times ``t`` (k,). Only times within the ramp are computed singly."""
         ends = self._since + (abs(self._from) + abs(self._to)) / min(self._model.accel, self._model.decel)
         found = np.full(len(t), self._to)
         for at in np.flatnonzero(t <= ends).tolist():
@@ -101,19 +107,22 @@ class SpindleForecast:
         return found
 
     def _legs(self) -> list[tuple[float, float]]:
-        """The ramp as (rpm to reach, rpm/s): a reversal slows to rest first."""
+        """Return the ramp as (target rpm, rpm/s). A reversal decelerates to rest first."""
         slow, fast = self._model.decel, self._model.accel
         if self._from * self._to < 0:
             return [(0.0, slow), (self._to, fast)]
         return [(self._to, fast if abs(self._to) > abs(self._from) else slow)]
 
     def still_at(self, below: float) -> float:
-        """When a spindle that was told to stop turns slower than ``below`` rpm; the past where it stands."""
+        """Return the time at which a stopping spindle is slower than ``below`` rpm.
+
+        The time is in the past if the spindle is already slower.
+        """
         over = abs(self._from) - below
         return self._since + over / self._model.decel if over > 0.0 else 0.0
 
     def ready_at(self) -> float:
-        """When the speed will have been within the at-speed band for as long as the machine file asks."""
+        """Return the time at which the spindle has been within the at-speed band long enough."""
         rpm, t = self._from, self._since
         band = self._model.at_speed * abs(self._to)
         for goal, rate in self._legs():

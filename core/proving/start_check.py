@@ -1,8 +1,8 @@
-"""The first move of a start checked against the part as it is: from where the axes are to a known position.
+"""Check of the first move of a start against the present part, up to the first known position.
 
-A program is proved from its first known position on. What comes before depends on where the axes are when
-Cycle Start is pressed: after an E-stop in a bore the straight line to the first position leads through its
-wall. Everything here is computed on a worker.
+The proof of a program starts at its first known position. The moves before it depend on the axis positions at
+Cycle Start. For example, after an E-stop in a bore, the straight line to the first position passes through
+the wall of the bore. The check runs on a worker thread.
 """
 
 from __future__ import annotations
@@ -25,18 +25,18 @@ from core.proving.tip_moves import Steps, TipMove
 MET = 0.1
 """mm of metal, in r and in Z, up to which a tool only touches the part: feed marks, the braking of a stop."""
 
-ASIDE = 7.3  # mm: the other start; no program's words fall together with it
+ASIDE = 7.3  # mm, offset of a second start position, chosen to differ from all programmed positions
 _SAME = 1e-6  # mm
-_NOSE = 0.4  # mm of radius about the tip: the corner of the insert that is assumed
-_MOST = 60  # moves that are followed at most
-_FAR = 500.0  # mm: how far a tool is jogged clear
+_NOSE = 0.4  # mm, assumed nose radius of the insert
+_MOST = 60  # largest number of moves that are checked
+_FAR = 500.0  # mm, distance of a jog that moves a tool clear
 
 Passes = Callable[[tuple[float, ...]], Iterable[Block]]
 """The blocks of what is started, from these axis positions on, machine mm."""
 
 
 class Body(Enum):
-    """What a tool may run into."""
+    """The objects that a tool may hit."""
 
     PART = "part"
     CHUCK = "into-chuck"
@@ -45,10 +45,10 @@ class Body(Enum):
 
 @dataclass(frozen=True, slots=True)
 class StartNow:
-    """The machine at a start: axis positions (machine mm, X a radius first, then Z) and the tool in work.
+    """The machine at a start: axis positions (machine mm, X as a radius, then Z) and the active tool.
 
-    ``broken`` is the elementary block that was interrupted, and the machine X and Z there; None: none was.
-    ``strict``: a program begins at its first line, so that it only positions before its first known position.
+    ``broken`` is the interrupted elementary block with its machine X and Z, or None. ``strict`` means that a
+    program starts at its first line, so that it only positions before its first known position.
     """
 
     at: tuple[float, ...]
@@ -59,12 +59,13 @@ class StartNow:
 
 @dataclass(frozen=True, slots=True)
 class FirstMove:
-    """The finding. ``path`` is the first move in machine X and Z, mm, with whether each leg is a rapid.
+    """The finding about a first move.
 
-    ``zero`` is machine X and Z with the tip that it is drawn for on part zero: of the tool that meets
-    something, or else of the tool that arrives.
-    ``met`` is what ``tool`` runs into, at Z ``z`` (mm, part's frame), already before it moves where
-    ``inside``. ``out`` is the direction of a jog that leads out, as ``Z+``; empty where none is sure.
+    ``path`` is the move in machine X and Z in mm, with a flag for each rapid. ``zero`` is machine X and Z at
+    which the displayed tip is at part zero. It belongs to the tool that hits something, or otherwise to the
+    tool at the end of the move. ``met`` is the object that ``tool`` hits at Z ``z`` (mm, part's frame), even
+    before it moves if ``inside`` is True. ``out`` is the direction of a safe jog, such as ``Z+``, or empty if
+    no direction is certain.
     """
 
     path: tuple[tuple[float, float, bool], ...]
@@ -74,12 +75,12 @@ class FirstMove:
     z: float = 0.0
     inside: bool = False
     out: str = ""
-    assumed: bool = False  # the part, or the tool, is
-    known: bool = True  # whether the part is
+    assumed: bool = False  # the part or the tool is assumed
+    known: bool = True  # the part is known
 
 
 def first_moves(passes: Passes, at: tuple[float, ...]) -> list[TipMove]:
-    """Return the moves up to the first position that does not depend on where the axes are."""
+    """Return the moves up to the first position that does not depend on the axis positions."""
     aside = tuple(each + ASIDE for each in at)
     steps, found = Steps(), list[TipMove]()
     for block, other in zip(passes(at), passes(aside), strict=False):
@@ -97,7 +98,7 @@ def _is_known(one: Block, other: Block) -> bool:
 
 
 def unchecked(moves: Sequence[TipMove]) -> FirstMove:
-    """Return the first move that consists of these, before anything is known of what it meets."""
+    """Return the first move that consists of these moves, without a check for hits."""
     if not moves:
         return FirstMove(())
     legs = [(*_machine(moves[0].points[0], moves[0].zero), True)]
@@ -107,7 +108,7 @@ def unchecked(moves: Sequence[TipMove]) -> FirstMove:
 
 
 def _tip(at: Point, zero: Point) -> Point:
-    """Z and r of the tip in the part's frame, mm, with the axes at machine X and Z."""
+    """Return Z and r of the tip in the part's frame in mm, with the axes at machine X and Z."""
     return at[1] - zero[1], at[0] - zero[0]
 
 
@@ -126,7 +127,7 @@ class StartCheck:
     _solids: dict[int, SolidTool] = field(default_factory=dict)
 
     def find(self, passes: Passes, now: StartNow, watch: Go | None = None) -> FirstMove:
-        """Return what the first move of this start meets."""
+        """Return the first move of this start and the object that it hits, if any."""
         moves = first_moves(passes, now.at)
         making = self._making(now, watch)
         known = making.milling is None and (making.part is not None or self.history.stock is None)
@@ -155,9 +156,9 @@ class StartCheck:
         return self.history.making_at(block, _tip(where, zero) if zero is not None else None, watch)
 
     def _is_assumed(self, body: Body, tool: int, now: StartNow) -> bool:
-        """Whether the finding rests on something assumed. A tool that was stopped in a cut is in the part.
+        """Return whether the finding depends on an assumption.
 
-        Without a tool in work nobody knows which one cuts, and where its tip is.
+        A tool that was stopped in a cut is certainly in the part. Without an active tool, the tip is unknown.
         """
         if tool == 0:
             return True
@@ -175,10 +176,10 @@ class StartCheck:
     def _hit(
         self, body: Body, metal: TurnedPart, moves: Sequence[TipMove], now: StartNow
     ) -> tuple[int, float, bool] | None:
-        """Tool, Z, and whether it is inside before it moves; None: nothing is met."""
+        """Return tool, Z, and whether the tool is inside before it moves; None without a hit."""
         here = (now.at[0], now.at[1])
         if now.tool == 0 and now.broken is None:
-            now = replace(now, strict=False)  # no tool is in work: where its tip would be says nothing
+            now = replace(now, strict=False)  # Without an active tool, the position of its tip is unknown.
         standing = self._met(metal, now.tool, here, here)
         if standing and now.strict:
             return now.tool, standing.front, True
@@ -194,9 +195,9 @@ class StartCheck:
         return None
 
     def _enclosing(self, metal: TurnedPart, now: StartNow) -> tuple[int, float, bool] | None:
-        """Return the hit of a tool that stopped in a bore; None where nothing is radially outside its tip.
+        """Return the hit of a tool that stopped in a bore, or None if no material is outside its tip.
 
-        The first move may stay in the bore. The next tools then take this one along through the wall.
+        The first move may remain in the bore, but the next tools would then move this tool through the wall.
         """
         zero = self._zero(now.tool)
         if zero is None:
@@ -208,7 +209,7 @@ class StartCheck:
         return None
 
     def _cuts(self, body: Body, move: TipMove, now: StartNow) -> bool:
-        """Whether metal is what this move is there for."""
+        """Return whether the move is meant to cut this material."""
         return body is Body.PART and not now.strict and not move.quick and move.rpm != 0.0
 
     def _cut(self, body: Body, metal: TurnedPart, move: TipMove, now: StartNow) -> None:
@@ -218,7 +219,7 @@ class StartCheck:
                 cutter.cut(metal, a, b)
 
     def _out(self, making: PartMaking, now: StartNow) -> str:
-        """The jog that leads the tool in work out along one axis and meets nothing."""
+        """Return the direction of a jog along one axis that moves the active tool out without a hit."""
         tool, (x, z) = now.tool, now.at[:2]
         zero = self._zero(tool) or (0.0, 0.0)
         side = 1.0 if x >= zero[0] else -1.0
@@ -229,7 +230,7 @@ class StartCheck:
                 return words
         return ""
 
-    # --- the tool on the machine --------------------------------------------------------------------------
+    # --- tool on the machine ------------------------------------------------------------------------------
 
     def _met(self, metal: TurnedPart, tool: int, start: Point, end: Point) -> Cut:
         zero = self._zero(tool)
@@ -239,7 +240,7 @@ class StartCheck:
         return met if met.depth > MET and met.width > MET else NOTHING
 
     def _zero(self, tool: int) -> Point | None:
-        """Machine X and Z with this tip on part zero; None where it is not known, as of T0."""
+        """Return machine X and Z at which this tool is at part zero, or None if unknown, as for T0."""
         zero, offset = self.history.zero(tool), self.offsets.get(tool)
         if zero is None and offset is not None:
             return offset.x, offset.z
@@ -251,7 +252,7 @@ class StartCheck:
         return self._solids[tool]
 
     def _outlines(self, tool: int) -> tuple[FloatArray, ...]:
-        """Edges and body of a described tool; of any other what is sure: its nose, or a drill's flutes."""
+        """Return edges and body of a specified tool, or else its certain parts: nose, or drill flutes."""
         tools = self.history.tools
         shape = tools.shape(tool)
         if shape is None:

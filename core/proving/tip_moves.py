@@ -1,4 +1,4 @@
-"""The moves of a program as the part sees them: where the tool's control point goes in the part's frame."""
+"""The moves of a program in the part's frame: the path of the tool's control point."""
 
 from __future__ import annotations
 
@@ -19,17 +19,18 @@ from core.part.swept_edge import Point
 QUICK = 100 * 25.4 / 60
 """mm/s; what moves by G94 at this or more goes to a place and cuts nothing."""
 
-_CHORD = 0.001  # mm off an arc
-_PIECES = 16  # of a move in a plane, which is curved for the slides
+_CHORD = 0.001  # mm of deviation from an arc
+_PIECES = 16  # pieces of a move in a plane, which is curved in the axes
 
 _TURNED = frozenset({Kind.RAPID, Kind.FEED, Kind.ARC, Kind.THREAD})
 
 
 class TipMove(NamedTuple):
-    """One elementary block: its points are Z and r, mm, from part zero; ``speed`` is along the path, mm/s.
+    """The move of one elementary block. Its points are Z and r in mm from part zero.
 
-    ``quick``: a rapid, or a feed per minute as fast as one. ``per_rev`` is the feed of a turn, mm, 0 by time.
-    ``zero`` is where the slides stand, machine X and Z, when the tip is on part zero.
+    ``speed`` is along the path in mm/s. ``quick`` is True for a rapid, or for a feed per minute of the same
+    speed. ``per_rev`` is the feed per revolution in mm, or 0 for a feed per minute. ``zero`` is machine X and
+    Z at which the tip is at part zero.
     """
 
     n: int
@@ -45,12 +46,12 @@ class TipMove(NamedTuple):
 
     @property
     def length(self) -> float:
-        """mm."""
+        """Length of the move, in mm."""
         return sum(math.dist(a, b) for a, b in pairwise(self.points))
 
     @property
     def seconds(self) -> float:
-        """How long it takes at its speed; 0 where it has none."""
+        """Time of the move at its speed in seconds; 0 without a speed."""
         return self.length / self.speed if self.speed else 0.0
 
 
@@ -62,7 +63,7 @@ _ON_AXIS = 0.05  # mm
 
 
 class LiveStep(NamedTuple):
-    """A block that moves with C held, or in a plane of the virtual mill, and where part zero is for it."""
+    """A block that moves with C engaged or in a plane of the virtual mill, with its part zero."""
 
     block: Block
     place: Place
@@ -73,21 +74,22 @@ Step = TipMove | LiveStep | Block
 
 
 class Steps:
-    """The steps of a program, from its parts in order.
+    """Converts the blocks of a program, in order, to steps.
 
-    A G92 before the first move of a tool says where part zero is; a later one shifts the part, as G10 does.
+    A G92 before the first move of a tool specifies the position of part zero. A later G92 shifts the part,
+    like G10.
 
-    ``tips`` is where tips stand on part zero in truth, machine X and Z in mm, by T or G54 to G59: where the
-    offsets in force say something else, the tool goes beside the place that the program means.
+    ``tips`` are the true positions at which tips are at part zero, machine X and Z in mm, by T or G54 to G59.
+    If the active offsets differ from them, the tool is displaced from the programmed position.
     """
 
     def __init__(self, tips: Mapping[int, Place] | None = None) -> None:
         self._tips = tips or {}
-        self._zero = (0.0, 0.0)  # presets that have only said where zero is: X, Z
+        self._zero = (0.0, 0.0)  # presets that only specify part zero: X, Z
         self._moved = False
 
     def of(self, blocks: Sequence[Block]) -> Iterator[Step]:
-        """The steps of the next blocks."""
+        """Yield the steps of the next blocks."""
         if isinstance(blocks, Series):
             self._moved = True
             if not blocks.pattern.modal.c_locked:
@@ -113,7 +115,7 @@ class Steps:
             self._zero = modal.preset_x, modal.preset_z
 
     def _part_zero(self, block: Block) -> Place:
-        """Work shift, preset and zero offset together, without what has only said where zero is."""
+        """Return work shift, preset and zero offset together, without presets that only specify part zero."""
         modal = block.modal
         x, z = self._tips.get(modal.tool, (modal.tool_x, modal.tool_z))
         if modal.settable:
@@ -133,18 +135,18 @@ class Steps:
 
 
 def zero_of(block: Block, place: Place) -> Place:
-    """Where the slides stand, machine X and Z, when the tip is on part zero."""
+    """Return machine X and Z at which the tip is at part zero."""
     return block.offset_x - place[0], block.offset_z - place[1]
 
 
 def ends_of(step: LiveStep) -> tuple[Point, Point]:
-    """Where the slides begin and end a block of a live tool."""
+    """Return the start and the end of a live tool's block, as positions of the axes in the part's frame."""
     (dx, dz), block = step.place, step.block
     return (block.z0 + dz, block.x0 + dx), (block.z + dz, block.x + dx)
 
 
 def slides_at(step: LiveStep, share: float) -> Point:
-    """Where the slides are after a share of a live tool's block."""
+    """Return the position of the axes after a share of a live tool's block."""
     plane = step.block.plane
     if plane is not None:
         x, z, _ = plane.machine(np.array([share]))[0].tolist()
@@ -154,14 +156,14 @@ def slides_at(step: LiveStep, share: float) -> Point:
 
 
 def live_move(step: LiveStep) -> TipMove:
-    """The move of the slides in a block of a live tool, as it is drawn with those of X and Z."""
+    """Return the move of the axes in a block of a live tool, for drawing."""
     pieces = _PIECES if step.block.plane is not None else 1
     points = tuple(slides_at(step, k / pieces) for k in range(pieces + 1))
     return _move(step.block, step.block.n, step.block.line, points, step.place)
 
 
 def taps(block: Block) -> bool:
-    """Whether the spindle, held as C, turns in proportion to a way along Z on the axis: a rigid tap."""
+    """Return whether the engaged spindle turns proportionally to a move along Z on the axis: a rigid tap."""
     turned = block.kind is Kind.FEED and block.c != block.c0 and block.z != block.z0
     return turned and block.modal.c_locked and block.x == block.x0 and abs(block.x) < _ON_AXIS
 

@@ -1,1 +1,1 @@
-"""Records of the scope: their channels, the ring and its file, and what is read off them."""
+"""Scope records: channels, the ring in memory and on the disk, record files and analyses."""

@@ -1,7 +1,7 @@
-"""A record of the scope: samples of a stretch of time, derived figures, and what is wrong with one.
+"""A scope record: samples of a period of time, derived quantities and errors.
 
-Channels are named by what they are: ``X demand`` ``X actual`` ``X following error`` (mm, degrees of rotary
-axes), ``spindle command`` ``spindle speed`` (rpm), ``feed override`` and so on; ``channels_of`` says all.
+Channels have descriptive names, such as ``X demand``, ``X actual``, ``X following error`` (mm, or degrees for
+rotary axes), ``spindle command``, ``spindle speed`` (rpm) and ``feed override``. ``channels_of`` lists all.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ from core.input_file import MB, TooLargeError
 from core.message import CodedError, Message
 
 FloatArray = npt.NDArray[np.float64]
-_LATEST = 250_000_000_000.0  # s since 1970, in the year 9892: calendars end soon after
-# Of each axis, behind its letter.
+_LATEST = 250_000_000_000.0  # s since 1970, in the year 9892, near the end of Python's calendar
+# Channels of each axis, named by the axis letter followed by these words.
 AXIS_CHANNELS = (("demand", ""), ("actual", ""), ("following error", ""), ("load", "%"))
 _FULL = frozenset({errno.ENOSPC, getattr(errno, "EDQUOT", errno.ENOSPC), errno.EFBIG})
 MOST_BYTES = 512 * MB
@@ -28,41 +28,45 @@ MOST_BYTES = 512 * MB
 
 VELOCITY_SPAN = 0.008  # s
 ACCELERATION_SPAN = 0.032  # s
-RIPPLE_SPAN = 0.5  # s: ripple is the speed less its mean over this
+RIPPLE_SPAN = 0.5  # s, the span of the mean speed from which ripple is calculated
 
 
 class UnsoundError(ValueError):
-    """What a file says does not fit together; the text is the cause."""
+    """The contents of a record file are inconsistent; the text has the cause."""
 
 
 class Channel(NamedTuple):
-    """A figure that is recorded: its name, and its unit inside. ``logic``: it is on (1) or off (0)."""
+    """A recorded quantity: its name and internal unit.
+
+    ``logic`` means that the values are 0 (off) and 1 (on).
+    """
 
     name: str
     unit: str
     logic: bool = False
 
 
-# Of the machine as a whole.
+# Channels of the whole machine.
 MACHINE_CHANNELS = (
     Channel("spindle command", "rpm"),
     Channel("spindle speed", "rpm"),  # measured
-    Channel("spindle turns", "turns"),  # counted by the encoder since power-up
+    Channel("spindle turns", "turns"),  # revolutions counted by the encoder since power-up
     Channel("spindle load", "%"),
     Channel("feed override", ""),
     Channel("spindle override", ""),
-    Channel("queue", "s"),  # of motion that the driver holds
-    Channel("lateness", "s"),  # of the control's tick
-    Channel("line", ""),  # source line that is executed, 0 none
-    Channel("block", ""),  # elementary block that is executed, 0 none
-    Channel("state", ""),  # of the control, counted in ``about["states"]``, which are divided by bars
+    Channel("queue", "s"),  # duration of the motion that the driver buffers
+    Channel("lateness", "s"),  # delay of the control's tick
+    Channel("line", ""),  # source line that is executed, or 0
+    Channel("block", ""),  # elementary block that is executed, or 0
+    # index of the control's state in ``about["states"]``, whose entries are separated by "|"
+    Channel("state", ""),
 )
 
 
 def channels_of(
     axes: Mapping[str, bool], inputs: tuple[str, ...], outputs: tuple[str, ...]
 ) -> tuple[Channel, ...]:
-    """Everything that is recorded of a machine. ``axes`` by letter: whether it is rotary."""
+    """Return all channels recorded for a machine. ``axes`` maps each letter to whether the axis is rotary."""
     of_axes = [
         Channel(f"{letter} {name}", unit or ("deg" if rotary else "mm"))
         for letter, rotary in axes.items()
@@ -75,11 +79,12 @@ def channels_of(
 
 @dataclass(frozen=True, slots=True)
 class Record:
-    """Samples between two instants. What a driver does not tell is not a number (nan).
+    """Samples between two points in time; values that a driver does not report are NaN.
 
-    ``times`` (n,) are seconds of the monotonic clock, rising; ``columns`` (n,) each, by the channel's name.
-    ``started`` is the time of day of the first sample, seconds since 1970. ``rate`` is the samples a second
-    that the driver itself gives; the control's own figures between its ticks stand as they were at the last.
+    ``times`` (n,) are seconds of the monotonic clock in ascending order. ``columns`` has an array (n,) for
+    each channel name. ``started`` is the time of the first sample in seconds since 1970. ``rate`` is the
+    driver's sampling rate in samples per second. Quantities of the control retain their value from the last
+    tick.
     """
 
     channels: tuple[Channel, ...]
@@ -87,10 +92,10 @@ class Record:
     columns: Mapping[str, FloatArray]
     started: float
     rate: float
-    about: Mapping[str, str] = field(default_factory=dict)  # machine, program, alarm: in words
+    about: Mapping[str, str] = field(default_factory=dict)  # machine, program and alarm as text
 
     def between(self, begin: float, end: float) -> Record:
-        """The samples from ``begin`` up to and with ``end``, seconds of the monotonic clock."""
+        """Return the samples from ``begin`` to ``end`` inclusive, in seconds of the monotonic clock."""
         first, last = np.searchsorted(self.times, (begin, np.nextafter(end, np.inf)))
         cut = slice(int(first), int(last))
         started = self.started + (float(self.times[first]) - float(self.times[0]) if first < last else 0.0)
@@ -99,12 +104,12 @@ class Record:
 
 
 def _is_unicode(text: str) -> bool:
-    """Return whether a text can be shown and exported: JSON may hold half a character."""
+    """Return whether a text can be shown and exported; JSON can contain unpaired surrogates."""
     return not any("\ud800" <= sign <= "\udfff" for sign in text)
 
 
 def checked_record(record: Record) -> Record:
-    """Return a record from a file, with infinite values as unknown. Raises UnsoundError."""
+    """Check a record from a file and return it with infinite values as NaN. Raises UnsoundError."""
     if not 0.0 <= record.started <= _LATEST:
         raise UnsoundError(
             Message(
@@ -130,15 +135,15 @@ def checked_record(record: Record) -> Record:
 
 
 class RecordError(CodedError):
-    """``str()`` is the sentence for whoever asked: what, where, what to do."""
+    """A record file cannot be used. The text has the file, the reason and a remedy."""
 
 
 class AnalysisError(CodedError):
-    """``str()`` is the sentence: what the record lacks, and what to do."""
+    """A record lacks data for an analysis. The text has the missing data and a remedy."""
 
 
 def damage(path: Path, error: Exception) -> RecordError:
-    """Return the error for a file whose content is not as it was written."""
+    """Return the RecordError for a file with damaged contents."""
     if isinstance(error, UnsoundError):
         return RecordError(
             Message("{path} is damaged ({error}); open another scope record", path=path, error=error),
@@ -148,7 +153,7 @@ def damage(path: Path, error: Exception) -> RecordError:
 
 
 def why(path: Path, error: OSError) -> RecordError:
-    """The same as a sentence."""
+    """Return the RecordError for an OSError of the file ``path``."""
     if isinstance(error, TooLargeError):
         return RecordError(
             Message(
@@ -166,9 +171,10 @@ def why(path: Path, error: OSError) -> RecordError:
 
 
 def velocity(times: FloatArray, position: FloatArray, span: float = VELOCITY_SPAN) -> FloatArray:
-    """Way over time across ``span`` s, or two samples where they lie farther apart; units a second.
+    """Return the mean velocity across ``span`` s, in units per second.
 
-    Exact where the acceleration is constant. A sine of ω rad/s comes out smaller by sin(ω·span/2)/(ω·span/2).
+    The span is at least two sample intervals. The result is exact for constant acceleration. The amplitude of
+    a sine of ω rad/s is multiplied by sin(ω·span/2)/(ω·span/2). The first and last half span are NaN.
     """
     k = _half(times, span)
     found = np.full(len(times), np.nan)
@@ -179,10 +185,12 @@ def velocity(times: FloatArray, position: FloatArray, span: float = VELOCITY_SPA
 
 
 def acceleration(times: FloatArray, position: FloatArray, span: float = ACCELERATION_SPAN) -> FloatArray:
-    """Change of the mean velocity from the first to the second half of ``span`` s; units a second squared.
+    """Return the mean acceleration across ``span`` s, in units per second squared.
 
-    With h = span/2 it is (p(t+h) − 2p(t) + p(t−h))/h² of even samples: exact where the acceleration is
-    constant, and smaller by (sin(ωh/2)/(ωh/2))² of a sine.
+    The result is the change of the mean velocity from the first to the second half of the span. With h =
+    span/2 and evenly spaced samples, it is (p(t+h) − 2p(t) + p(t−h))/h². It is exact for constant
+    acceleration. The amplitude of a sine is multiplied by (sin(ωh/2)/(ωh/2))². The first and last half span
+    are NaN.
     """
     k = _half(times, span)
     found = np.full(len(times), np.nan)
@@ -195,7 +203,10 @@ def acceleration(times: FloatArray, position: FloatArray, span: float = ACCELERA
 
 
 def ripple(times: FloatArray, speed: FloatArray, span: float = RIPPLE_SPAN) -> FloatArray:
-    """Speed less its mean over ``span`` s. Ripple of which whole waves fit into it cancels in the mean."""
+    """Return the speed minus its mean over ``span`` s.
+
+    Ripple with a whole number of waves in the span cancels in the mean. The first and last half span are NaN.
+    """
     k = _half(times, span)
     found = np.full(len(times), np.nan)
     known = np.isfinite(speed)
@@ -209,7 +220,7 @@ def ripple(times: FloatArray, speed: FloatArray, span: float = RIPPLE_SPAN) -> F
 
 
 def _half(times: FloatArray, span: float) -> int:
-    """Samples in half the span, one at least; of the commonest distance of samples."""
+    """Return the number of samples in half the span, at least 1, from the median sample distance."""
     if len(times) < 2:
         return 1
     step = float(np.median(np.diff(times)))

@@ -1,6 +1,6 @@
-"""Records of the scope as files: saved, opened, and exported as CSV.
+"""Record files of the scope: saving, opening and export as CSV.
 
-A file is an npz archive: one column a channel, the times, and what the record is about as JSON.
+A file is an npz archive with one column for each channel, the times, and the description as JSON.
 """
 
 from __future__ import annotations
@@ -36,12 +36,12 @@ from core.records.ring_file import is_ring, read_ring
 ENDING = ".scope"
 _VERSION = 1
 _ABOUT = "about"
-_UNKNOWN = 255  # of a logic channel in a byte, beside 0 and 1
-_ROWS = 2000  # of a CSV at a time
+_UNKNOWN = 255  # the unknown value of a logic channel, stored as a byte like 0 and 1
+_ROWS = 2000  # CSV rows written at a time
 
 
 def save_record(record: Record, path: Path) -> None:
-    """Write it whole or not at all. Raises RecordError."""
+    """Write a record file completely or not at all. Raises RecordError."""
     told = {
         "version": _VERSION,
         "started": record.started,
@@ -71,7 +71,10 @@ def _packed(record: Record, channel: Channel) -> np.ndarray[tuple[int, ...], np.
 
 
 def open_record(path: Path) -> Record:
-    """A record, or the last minutes from a ring's file. Raises RecordError with what is wrong with it."""
+    """Return the record in a file, or the last minutes from the file of a ring.
+
+    Raises RecordError if the file cannot be read or is damaged.
+    """
     if is_ring(path):
         return read_ring(path)
     try:
@@ -101,7 +104,7 @@ def _read(path: Path, data: io.BytesIO) -> Record:
     _check_size(data)
     data.seek(0)
     with warnings.catch_warnings(), np.load(data, allow_pickle=False) as archive:
-        warnings.simplefilter("error")  # numpy warns of arrays that it did not write itself
+        warnings.simplefilter("error")  # numpy warns about arrays that it did not write
         if _ABOUT not in archive.files:
             raise RecordError(
                 Message(
@@ -127,7 +130,7 @@ def _read(path: Path, data: io.BytesIO) -> Record:
 
 
 def _check_size(data: io.BytesIO) -> None:
-    """Refuse an archive that would come to far more than a record, before anything of it is unpacked."""
+    """Raise UnsoundError before unpacking an archive that would be far larger than any record."""
     with zipfile.ZipFile(data) as archive:
         size = sum(each.file_size for each in archive.infolist())
     if size > MOST_BYTES:
@@ -137,7 +140,10 @@ def _check_size(data: io.BytesIO) -> None:
 
 
 def _record(told: dict[str, object], column: Callable[[str], object]) -> Record:
-    """Raises UnsoundError for what does not fit together, and ValueError, KeyError, TypeError."""
+    """Return the record with this description and these columns.
+
+    Raises UnsoundError if they are inconsistent, and ValueError, KeyError or TypeError if they are malformed.
+    """
     channels, about = told["channels"], told["about"]
     if not isinstance(channels, list) or not isinstance(about, dict):
         raise UnsoundError("the description in the file has an unknown format")
@@ -164,7 +170,7 @@ def _record(told: dict[str, object], column: Callable[[str], object]) -> Record:
 
 
 def write_csv(record: Record, write: Callable[[str], object]) -> None:
-    """The record as lines: times in s from its beginning, channels with their units; unknown is empty."""
+    """Write a record as CSV lines, with times in s from its start; unknown values are empty."""
     names = [
         Message("{item} [{unit}]", item=each.name, unit=each.unit) if each.unit else each.name
         for each in record.channels
@@ -181,7 +187,7 @@ def write_csv(record: Record, write: Callable[[str], object]) -> None:
 
 
 def save_csv(record: Record, path: Path) -> None:
-    """The same into a file, whole or not at all. Raises RecordError."""
+    """Write a record to a CSV file completely or not at all. Raises RecordError."""
     unfinished = path.with_name(path.name + ".part")
     try:
         with unfinished.open("w", encoding="utf-8", newline="") as file:
@@ -194,7 +200,7 @@ def save_csv(record: Record, path: Path) -> None:
 
 
 def _texts(column: FloatArray, *, whole: bool) -> list[str]:
-    """Every digit of a figure, so that what is read is what was recorded."""
+    """Return the values of a column as text with all digits; unknown values are empty."""
     if whole:
         return ["" if math.isnan(value) else str(int(value)) for value in column.tolist()]
     return ["" if math.isnan(value) else repr(value) for value in column.tolist()]

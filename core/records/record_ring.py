@@ -1,7 +1,8 @@
-"""The ring of the scope: the last minutes of samples, in memory; one thread writes, any reads without a lock.
+"""Ring buffer of the scope with the samples of the last minutes, in memory.
 
-There are two of them: samples at the driver's own rate, and the control's figures of each tick. A row is
-written before it is counted, and each ends with its number, so what is half written is never read as a row.
+One thread writes and any thread reads without a lock. The ring has two buffers: samples at the driver's rate,
+and quantities of the control at each tick. A row is written before it is counted, and it ends with its
+number, so a partly written row is never used.
 """
 
 from __future__ import annotations
@@ -13,12 +14,12 @@ import numpy as np
 
 from core.records.record import Channel, FloatArray, Record, channels_of
 
-_BITS = 48  # logic channels in one figure, which a float holds exactly
-_BEFORE = 0.5  # s; the control's figures stand this long at most without a row of their own
-LASTS = 300.0  # s that are kept
-TICKS = 100.0  # of the control, a second
+_BITS = 48  # logic channels in one value, which a float represents exactly
+_BEFORE = 0.5  # s, the longest time for which a tick's values apply without a new row
+LASTS = 300.0  # s of samples in the ring
+TICKS = 100.0  # ticks of the control per second
 
-# A row of the control's tick, behind its time; then inputs and outputs as bits.
+# Values of a tick's row after the time. The inputs and outputs follow as bits.
 TICK_FIGURES = (
     "spindle command",
     "spindle speed",
@@ -31,16 +32,18 @@ TICK_FIGURES = (
     "block",
     "state",
 )
-# What drivers tell of spindle and queue, behind the axes; where they do not, the tick's figure stands.
+# Values of spindle and queue that drivers report, after those of the axes. The tick's value is used if the
+# driver reports none.
 SAMPLE_FIGURES = ("spindle speed", "spindle turns", "spindle load", "queue")
 
 
 @dataclass(frozen=True, slots=True)
 class Recorded:
-    """What is recorded: of which machine, at which rate. ``axes`` by letter: whether it is rotary.
+    """Layout of a ring: the machine's channels, the sampling rate and the duration.
 
-    ``began`` is the time of day (s since 1970) of the clock's zero. ``states`` are the words of the channel
-    ``state``, which counts them.
+    ``axes`` maps each letter to whether the axis is rotary. ``began`` is the time of the clock's zero, in
+    seconds since 1970. ``states`` are the texts of the values of the channel ``state``. ``lasts`` is in
+    seconds.
     """
 
     axes: Mapping[str, bool]
@@ -54,33 +57,36 @@ class Recorded:
 
     @property
     def channels(self) -> tuple[Channel, ...]:
-        """Everything that a record of it has."""
+        """Channels of a record from this ring."""
         return channels_of(self.axes, self.inputs, self.outputs)
 
     @property
     def sample_width(self) -> int:
-        """Figures of a driver's sample: time, demand, actual and load of the axes, then SAMPLE_FIGURES."""
+        """Number of values in a driver's sample.
+
+        The values are the time, the demand, actual and load of all axes, and SAMPLE_FIGURES.
+        """
         return 1 + 3 * len(self.axes) + len(SAMPLE_FIGURES)
 
     @property
     def tick_width(self) -> int:
-        """Figures of a tick: time, TICK_FIGURES, bits."""
+        """Number of values in a tick: the time, TICK_FIGURES, and the inputs and outputs as bits."""
         return 1 + len(TICK_FIGURES) + _words(self.inputs) + _words(self.outputs)
 
     @property
     def rooms(self) -> tuple[int, int]:
-        """How many samples and how many ticks are kept."""
+        """Numbers of samples and of ticks that the ring can store."""
         return max(2, round(self.lasts * self.rate)), max(2, round(self.lasts * TICKS))
 
     @property
     def ring_bytes(self) -> int:
-        """Return how many bytes of memory the ring needs."""
+        """Size of the ring in memory, in bytes."""
         samples, ticks = self.rooms
         return bytes_of(samples, self.sample_width) + bytes_of(ticks, self.tick_width)
 
     @property
     def about(self) -> dict[str, str]:
-        """In words, for a record."""
+        """Machine and states as text, for the description of a record."""
         return {"machine": self.machine, "states": "|".join(self.states)}
 
 
@@ -89,7 +95,7 @@ def _words(names: Collection[str]) -> int:
 
 
 def bits_of(names: tuple[str, ...], on: Collection[str]) -> list[float]:
-    """Logic channels as figures of 48 bits."""
+    """Return logic channels as bits, 48 in each value. ``on`` has the names of those that are on."""
     words = [0] * _words(names)
     for i, name in enumerate(names):
         if name in on:
@@ -97,25 +103,25 @@ def bits_of(names: tuple[str, ...], on: Collection[str]) -> list[float]:
     return [float(word) for word in words]
 
 
-# --- Rows in memory -------------------------------------------------------------------------------------
+# =
 
 
 class Rows:
-    """The last rows of one kind; one thread writes, any reads without a lock. Column 0 is the time.
+    """Ring buffer of rows of one kind; one thread writes, and any thread reads without a lock.
 
-    ``memory`` is where they lie, of ``bytes_of(room, width)`` bytes: another process may read what lies in
-    memory that both share.
+    Column 0 is the time. ``memory`` has ``bytes_of(room, width)`` bytes and can be shared with another
+    process.
     """
 
     def __init__(self, room: int, width: int, memory: memoryview | None = None) -> None:
         self.room = room
         figures = np.zeros(bytes_of(room, width) // 8) if memory is None else np.frombuffer(memory)
         self._counts = figures[:2].view(np.int64)
-        self.data: FloatArray = figures[2:].reshape(room, width + 1)  # and the row's number
+        self.data: FloatArray = figures[2:].reshape(room, width + 1)  # the last column is the row's number
 
     @property
     def begun(self) -> int:
-        """Rows of which writing has begun."""
+        """Number of rows whose writing has started."""
         return int(self._counts[0])
 
     @begun.setter
@@ -124,7 +130,7 @@ class Rows:
 
     @property
     def whole(self) -> int:
-        """Rows that are written."""
+        """Number of rows that are completely written."""
         return int(self._counts[1])
 
     @whole.setter
@@ -132,7 +138,7 @@ class Rows:
         self._counts[1] = count
 
     def write(self, rows: FloatArray) -> list[tuple[int, FloatArray]]:
-        """Append; returns what has become which slots, for the file."""
+        """Append rows and return the changed slots with their contents, for the file."""
         rows = rows[-self.room :]
         first, end = self.whole, self.whole + len(rows)
         numbered = np.column_stack((rows, np.arange(first, end, dtype=np.float64)))
@@ -147,14 +153,17 @@ class Rows:
         return parts
 
     def between(self, begin: float, end: float) -> FloatArray:
-        """A copy of the rows from ``begin`` up to and with ``end``, without any that is being written."""
+        """Return a copy of the rows from ``begin`` to ``end`` inclusive.
+
+        Rows that are being written are omitted.
+        """
         whole = self.whole
         low = max(0, self.begun - self.room)
         first = self._search(low, whole, lambda t: t >= begin)
         last = self._search(first, whole, lambda t: t > end)
         at, count = first % self.room, last - first
         rows = np.concatenate((self.data[at : at + count], self.data[: max(0, at + count - self.room)]))
-        lost = max(0, self.begun - self.room - first)  # written over meanwhile
+        lost = max(0, self.begun - self.room - first)  # overwritten while reading
         return sound(rows[lost:], first + lost)
 
     def _search(self, low: int, high: int, reached: Callable[[float], bool]) -> int:
@@ -168,22 +177,22 @@ class Rows:
 
     @property
     def last(self) -> float:
-        """Time of the newest row; minus infinity without one."""
+        """Time of the newest row; minus infinity if there are no rows."""
         return float(self.data[(self.whole - 1) % self.room, 0]) if self.whole else -np.inf
 
     @property
     def first(self) -> float:
-        """Time of the oldest row that is still there."""
+        """Time of the oldest row that is still available; infinity if there are no rows."""
         return float(self.data[max(0, self.begun - self.room) % self.room, 0]) if self.whole else np.inf
 
 
 def bytes_of(room: int, width: int) -> int:
-    """Return how much memory ``Rows`` of this size need."""
+    """Return the size in bytes of a ``Rows`` buffer with this number of rows and columns."""
     return 8 * (2 + room * (width + 1))
 
 
 def sound(rows: FloatArray, first: int) -> FloatArray:
-    """Rows that are whole: numbered from ``first`` on, each later than the last. The number is taken off."""
+    """Return the valid rows without their numbers: numbered from ``first`` on, with ascending times."""
     if not len(rows):
         return rows[:, :-1]
     times = rows[:, 0]
@@ -192,12 +201,12 @@ def sound(rows: FloatArray, first: int) -> FloatArray:
     return rows[good, :-1]
 
 
-# --- What both rings say together -----------------------------------------------------------------------
+# --- Both buffers combined ------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, slots=True)
 class Ring:
-    """Samples and ticks of the last minutes. ``latest`` and ``between`` may be used from any thread."""
+    """Samples and ticks of the last minutes. Any thread may call ``latest`` and ``between``."""
 
     recorded: Recorded
     samples: Rows
@@ -205,7 +214,7 @@ class Ring:
 
     @classmethod
     def of(cls, recorded: Recorded, memory: memoryview | None = None) -> Ring:
-        """Return the ring in this memory of ``recorded.ring_bytes`` bytes, else an empty one of its own."""
+        """Return the ring in ``memory``, which has ``recorded.ring_bytes`` bytes, or a new, empty ring."""
         room, ticks = recorded.rooms
         cut = bytes_of(room, recorded.sample_width)
         return cls(
@@ -215,11 +224,17 @@ class Ring:
         )
 
     def latest(self, since: float, names: Collection[str] | None = None) -> Record:
-        """What was sampled after ``since``, seconds of the clock; ``names``: these channels alone."""
+        """Return the samples after ``since``, in seconds of the clock.
+
+        ``names`` selects channels; None selects all.
+        """
         return self.between(np.nextafter(since, np.inf), np.inf, names)
 
     def between(self, begin: float, end: float, names: Collection[str] | None = None) -> Record:
-        """The samples from ``begin`` up to and with ``end``."""
+        """Return the samples from ``begin`` to ``end`` inclusive.
+
+        ``names`` selects channels; None selects all.
+        """
         return record_of(
             self.recorded,
             self.samples.between(begin, end),
@@ -231,7 +246,7 @@ class Ring:
 def record_of(
     recorded: Recorded, samples: FloatArray, ticks: FloatArray, names: Collection[str] | None = None
 ) -> Record:
-    """A record of rows of both kinds; the control's figures stand from their tick until the next."""
+    """Return a record made from samples and ticks. A tick's values apply until the next tick."""
     times = samples[:, 0].copy()
     seen = np.searchsorted(ticks[:, 0], times, side="right") - 1
     source = _Source(recorded, samples, ticks, seen)
@@ -242,13 +257,13 @@ def record_of(
 
 
 class _Source:
-    """Where each channel stands in the rows."""
+    """Access to the values of each channel in the rows."""
 
     def __init__(self, recorded: Recorded, samples: FloatArray, ticks: FloatArray, seen: object) -> None:
         self._recorded, self._samples, self._ticks, self._seen = recorded, samples, ticks, np.asarray(seen)
 
     def column(self, name: str) -> FloatArray:
-        """The figures of one channel at the times of the samples."""
+        """Return the values of one channel at the times of the samples."""
         recorded, axes = self._recorded, list(self._recorded.axes)
         letter, _, what = name.partition(" ")
         if letter in axes and what in {"demand", "actual", "following error", "load"}:
@@ -286,7 +301,10 @@ class _Source:
         return bits
 
     def _worst(self, column: int) -> FloatArray:
-        """The greatest figure of the ticks since the sample before: at rest samples are few."""
+        """Return the largest value of the ticks since the previous sample.
+
+        At standstill there are fewer samples than ticks.
+        """
         held = self._held(column)
         known = np.flatnonzero(self._seen >= 0)
         if not len(known):
@@ -298,7 +316,7 @@ class _Source:
         return held
 
     def _held(self, column: int) -> FloatArray:
-        """A figure of the ticks, as it stood at each sample; not known before the first tick."""
+        """Return the value of the latest tick at each sample; NaN before the first tick."""
         if not len(self._ticks):
             return np.full(len(self._seen), np.nan)
         figures = self._ticks[np.maximum(self._seen, 0), column]

@@ -1,4 +1,4 @@
-"""What the scope has recorded, for whoever reads it: the last minutes in memory, and the files of alarms."""
+"""Access to the scope's data: the last minutes in memory, and the record files of alarms."""
 
 from __future__ import annotations
 
@@ -10,35 +10,43 @@ from core.records.record import Record, RecordError
 from core.records.record_file import open_record
 from core.records.record_ring import Ring
 
-KEPT = 50  # records of alarms
+KEPT = 50  # records of alarms that are stored
 
 
 class Recordings:
-    """The ring and the folder of the records; any thread may read.
+    """The ring and the folder of the records, readable from any thread.
 
-    ``folder`` is None where nothing is written. ``trouble`` says why the file is not written; the record is
-    then in memory alone.
+    ``folder`` is None if no files are written. If the ring file cannot be written, the samples are only in
+    memory, and the last argument is the reason.
     """
 
     def __init__(self, ring: Ring, folder: Path | None, trouble: str = "") -> None:
         self.ring, self.folder, self.trouble = ring, folder, trouble
 
     def latest(self, since: float, names: Collection[str] | None = None) -> Record:
-        """Return what was sampled after ``since``, seconds of the clock; ``names``: these channels alone."""
+        """Return the samples after ``since``, in seconds of the clock.
+
+        ``names`` selects channels; None selects all.
+        """
         return self.ring.latest(since, names)
 
     def between(self, begin: float, end: float, names: Collection[str] | None = None) -> Record:
-        """Return the samples from ``begin`` up to and with ``end``, seconds of the clock."""
+        """Return the samples from ``begin`` to ``end`` inclusive, in seconds of the clock.
+
+        ``names`` selects channels; None selects all.
+        """
         return self.ring.between(begin, end, names)
 
     def is_saving(self, _name: str) -> bool:
-        """Return whether the record of this alarm is still to be written."""
+        """Return whether the record of this alarm is still being written."""
         return False
 
     def alarm_record(self, name: str) -> Record:
-        """Return the record of an alarm by the name in its log entry; not for the screen's thread.
+        """Return the record of an alarm by the file name in its log entry.
 
-        Raises RecordError while it is still being written, and for one that is no longer kept.
+        Do not call it in the screen's thread.
+
+        Raises RecordError while the record is being written, and if the record has been deleted.
         """
         if self.is_saving(name):
             raise RecordError("the record of this alarm is still being saved; try again in 2 s")

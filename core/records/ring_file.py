@@ -1,8 +1,8 @@
-"""The ring's file: the last minutes of samples on the disk, which outlive the process that writes them.
+"""File of the scope's ring: the samples of the last minutes on the disk, which remain after a crash.
 
-It has its whole size from the beginning, so a disk that becomes full later does not end it. It is written,
-not mapped: a disk that fails is an error here, where a mapped page would end the process. Rows are counted
-once they are there; those of a writer that ended in between are not read.
+The file has its full size from the start, so a disk that fills up later does not affect it. It is written
+instead of memory-mapped, because a failing disk then raises an error instead of ending the process. Rows are
+counted after they are written. Rows that were being written when the process ended are not read.
 """
 
 from __future__ import annotations
@@ -35,8 +35,9 @@ from core.records.record_ring import Recorded, Ring, Rows, record_of, sound
 
 _MAGIC = b"TurnDesk ring\n"
 _VERSION = 1
-_START = struct.Struct("<14sHII")  # magic, version, bytes of the description, bytes of the whole head
-_COUNTS = struct.Struct("<QQ")  # rows begun, rows whole: of the samples, then of the ticks
+_START = struct.Struct("<14sHII")  # magic, version, size of the description, size of the header in bytes
+# numbers of rows started and completed, for the samples and then for the ticks
+_COUNTS = struct.Struct("<QQ")
 _PAGE = 4096
 _CHUNK = 1 << 20
 
@@ -60,9 +61,9 @@ def _head(recorded: Recorded, ring: Ring) -> bytes:
 
 
 class RingFile:
-    """The ring on the disk, in full size from the beginning. One process writes it: it has a lock.
+    """File of a ring on the disk, created in full size and locked by the one process that writes it.
 
-    Raises RecordError when it cannot be had; ``write`` raises it, too.
+    The constructor and ``write`` raise RecordError if the file cannot be written.
     """
 
     def __init__(self, path: Path, ring: Ring) -> None:
@@ -76,7 +77,7 @@ class RingFile:
             raise why(path, error) from error
         try:
             _lock(self._file, path)
-            os.ftruncate(self._file, 0)  # behind the lock: it is ours
+            os.ftruncate(self._file, 0)  # only after the lock, when no other process writes the file
             _allocate(self._file, len(head) + ring.samples.data.nbytes + ring.ticks.data.nbytes)
             _write(self._file, head, 0)
         except OSError as error:
@@ -89,7 +90,7 @@ class RingFile:
             raise
 
     def write(self, rows: Rows, parts: list[tuple[int, FloatArray]]) -> None:
-        """Rows that have gone into the ring; counted once they are there."""
+        """Write rows that were appended to the ring, then count them. Raises RecordError."""
         first = rows is self._ring.samples
         start = self._head if first else self._head + self._ring.samples.data.nbytes
         counts = self._head - (2 if first else 1) * _COUNTS.size
@@ -104,12 +105,12 @@ class RingFile:
             raise why(self.path, error) from error
 
     def close(self) -> None:
-        """Let it go; what is written stays."""
+        """Close the file. Its contents remain."""
         os.close(self._file)
 
 
 def _lock(file: int, path: Path) -> None:
-    """Raises RecordError while another process has it."""
+    """Lock the file. Raises RecordError if another process has locked it."""
     try:
         lock(file)
     except OSError as error:
@@ -119,7 +120,7 @@ def _lock(file: int, path: Path) -> None:
 
 
 def _allocate(file: int, size: int) -> None:
-    """All of it now: a disk that becomes full later does not end the record."""
+    """Allocate the full size now, so that a disk that fills up later does not end the record."""
     if hasattr(os, "posix_fallocate"):
         os.posix_fallocate(file, 0, size)
         return
@@ -138,12 +139,16 @@ def _write(file: int, data: bytes, at: int) -> None:
         view, at = view[done:], at + done
 
 
-NOW, LAST = "now.ring", "before.ring"  # of the screen: of this start, and of the one before
-RUN = "run.ring"  # of the last run without a screen
+# files of the operator screen, for the present start and for the previous one
+NOW, LAST = "now.ring", "before.ring"
+RUN = "run.ring"  # file of the last run without the operator screen
 
 
 def new_ring(folder: Path, name: str, ring: Ring) -> RingFile:
-    """The file of this start; the screen's last one stays beside it. Raises RecordError."""
+    """Create the ring file of this start. The last file of the operator screen is renamed to LAST.
+
+    Raises RecordError if the file cannot be created.
+    """
     with suppress(OSError):
         if name == NOW and _free(folder / NOW):
             (folder / NOW).replace(folder / LAST)
@@ -151,7 +156,7 @@ def new_ring(folder: Path, name: str, ring: Ring) -> RingFile:
 
 
 def _free(path: Path) -> bool:
-    """Whether no other process writes it. Raises OSError."""
+    """Return whether no other process writes the file. Raises OSError."""
     file = os.open(path, os.O_RDWR | getattr(os, "O_BINARY", 0))
     try:
         _lock(file, path)
@@ -162,11 +167,11 @@ def _free(path: Path) -> bool:
     return True
 
 
-# --- Reading it, also while it is written ---------------------------------------------------------------
+# --- Reading the file, also while it is being written ---------------------------------------------------
 
 
 def is_ring(path: Path) -> bool:
-    """Whether a file begins as a ring does."""
+    """Return whether a file begins like a ring file; False if it cannot be read."""
     try:
         with open_input(path) as file:
             return file.read(len(_MAGIC)) == _MAGIC
@@ -176,7 +181,7 @@ def is_ring(path: Path) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class _Found:
-    """A ring's file: what it says of itself."""
+    """Header of a ring file."""
 
     recorded: Recorded
     rooms: tuple[int, int]
@@ -184,7 +189,7 @@ class _Found:
 
 
 def read_ring(path: Path, begin: float = -np.inf, end: float = np.inf) -> Record:
-    """The record of a ring's file, also of one that is being written. Raises RecordError."""
+    """Return the record in a ring file, also while the file is being written. Raises RecordError."""
     with failures_as(partial(damage, path)):
         return checked_record(_read_ring(path, begin, end))
 
@@ -268,7 +273,7 @@ def _rings(path: Path, found: _Found, read: Callable[[int], bytes]) -> Iterator[
 
 
 def _unrolled(data: FloatArray, whole: int, begun: int) -> FloatArray:
-    """Rows in their order; without those that have been begun since, or were when the writer ended."""
+    """Return the rows in order of time, without rows that were being written during reading or at a crash."""
     room = len(data)
     first = max(0, whole - room)
     at = first % room

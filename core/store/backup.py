@@ -1,4 +1,4 @@
-"""Backup and restore, and what a backup is worth: whole, and how it differs from the store."""
+"""Backup, restore and verification of the data store."""
 
 from __future__ import annotations
 
@@ -43,15 +43,20 @@ Found = dict[tuple[str, object], str]
 
 
 def problems(path: Path) -> tuple[str, ...]:
-    """What is wrong inside ``path``, which is not written to: pages, references, program texts, rows.
+    """Return the problems found inside the store file ``path``, without writing to the file.
 
-    Raises StoreError when it is no store of ours or of a newer version.
+    The check covers database pages, references between tables, program texts and row checksums. Raises
+    StoreError if the file is not a TurnDesk store or has a newer version.
     """
     return _looked_through(path, _found)
 
 
 def all_problems(path: Path) -> tuple[str, ...]:
-    """The same, and what makes no backup worthless: entries of histories that are not as they were saved."""
+    """Return the problems of a store file, including damaged history entries.
+
+    History entries are checked only if ``problems`` finds nothing. A backup with damaged history entries is
+    still usable.
+    """
     return problems(path) or _looked_through(path, _of_histories)
 
 
@@ -90,10 +95,11 @@ def _found(connection: sqlite3.Connection) -> tuple[str, ...]:
 
 
 def backup(folder: Path, target: Path) -> None:
-    """Copies the store of ``folder`` as it is at this moment, also while it is being written.
+    """Copy the store of ``folder`` to ``target`` in its present state, even while the store is being written.
 
-    The copy has names and levels of the people, but no PINs: whoever has it could try all PINs undisturbed.
-    Raises StoreError when there is no good store, or ``target`` is a file that is no backup of ours.
+    The copy contains the names and levels of the users, but no PINs, because anyone with the file could try
+    all PINs. Raises StoreError if the folder has no intact store, or if ``target`` exists and is not a backup
+    of a store.
     """
     path = folder / FILE_NAME
     if not has_store(folder):
@@ -125,11 +131,12 @@ def backup(folder: Path, target: Path) -> None:
 
 
 def restore(folder: Path, source: Path) -> Path | None:
-    """Puts a backup in the store's place; answers where the replaced store is kept, None: there was none.
+    """Replace the store of ``folder`` by a backup and return the path of the saved old store.
 
-    The backup is checked through first. People and PINs of this machine stay. A machine without a store gets
-    the people of the backup. A store that cannot be read leaves nobody: ask for a service reset before.
-    Raises StoreError when it is no good or the store is in use.
+    The result is None if the folder had no store. The backup is checked first. The users and PINs of this
+    machine remain. A machine without a store gets the users of the backup. If the old store cannot be read,
+    the restored store has no users, so the caller must require a service reset first. Raises StoreError if
+    the backup is damaged or the store is in use.
     """
     found = problems(source)
     if found:
@@ -163,7 +170,7 @@ def restore(folder: Path, source: Path) -> Path | None:
 
 
 def _people_of(path: Path) -> tuple[PersonRow, ...]:
-    """Return the people of the store that is about to be replaced; none where they cannot be read."""
+    """Return the users of the store that is about to be replaced; () if they cannot be read."""
     try:
         database.check_header(path)
         with closing(connect(path, read_only=True)) as connection:
@@ -173,7 +180,10 @@ def _people_of(path: Path) -> tuple[PersonRow, ...]:
 
 
 def _put_people(rows: tuple[PersonRow, ...] | None, copy: sqlite3.Connection) -> None:
-    """None: there was no store, and the copy has the people of the backup."""
+    """Replace the users of the restored copy by ``rows``.
+
+    None means that no store existed before, so the copy retains the users of the backup.
+    """
     if rows or (rows is not None and row_sums.columns(copy, "people")):
         database.migrate(copy, database.migrations())
         people.replace_all(copy, rows)
@@ -182,12 +192,12 @@ def _put_people(rows: tuple[PersonRow, ...] | None, copy: sqlite3.Connection) ->
 def _is_there(target: Path) -> bool:
     try:
         return target.exists() or target.is_symlink()
-    except OSError as error:  # in a folder that this user may not look into
+    except OSError as error:  # the user may not read the folder
         raise _unwritable(target, error) from error
 
 
 def _keep(path: Path) -> Path:
-    """A copy of the store that is about to be replaced, good or damaged, with its log when it has one."""
+    """Copy the store that is about to be replaced, intact or damaged, with its log if it has one."""
     _empty_log(path)
     stamp = datetime.now(UTC).strftime("%Y%m%dT%H%M%S%fZ")
     kept = path.with_name(f"{path.stem}-replaced-{stamp}.db")
@@ -206,7 +216,10 @@ def _keep(path: Path) -> Path:
 
 
 def _empty_log(path: Path) -> None:
-    """Pours the log into the store. A damaged store keeps its log; a busy one raises StoreError."""
+    """Write the changes in the log to the store file.
+
+    The log of a damaged store remains. Raises StoreError if another process is reading the store.
+    """
     busy = 0
     with (
         suppress(sqlite3.Error, StoreError),
@@ -223,9 +236,10 @@ def _empty_log(path: Path) -> None:
 
 
 def _copy(source: Path, target: Path, change: Callable[[sqlite3.Connection], None]) -> None:
-    """A whole copy by SQLite's own means; ``target`` is the old file or the new one, never a mixture.
+    """Copy a store with SQLite's backup function, so that ``target`` is complete at any time.
 
-    ``change`` changes the copy before it gets its name.
+    ``change`` modifies the copy before it receives its final name. Raises StoreError if the copy cannot be
+    written.
     """
     try:
         with unfinished_file(target) as unfinished:
@@ -255,9 +269,11 @@ def _unwritable(target: Path, error: Exception) -> StoreError:
 
 
 class Verdict(NamedTuple):
-    """``problem`` is empty where it is whole; ``differs`` counts what is other, missing or new, by its name.
+    """The result of checking a backup: its first problem and its differences from the store.
 
-    ``older``: it is of a version that has no sums to compare by, and only programs are.
+    ``problem`` is empty if the backup is intact. ``differs`` has the number of changed, missing or new items
+    by table. ``older`` means that the backup has an older store version without comparable checksums; only
+    its programs are then compared.
     """
 
     problem: str = ""
@@ -266,7 +282,10 @@ class Verdict(NamedTuple):
 
 
 def verdict(now: sqlite3.Connection, path: Path) -> Verdict:
-    """Look through a backup, page by page, and hold it against the store. Takes its time; writes nothing."""
+    """Check a backup page by page and compare it with the open store, without writing to either.
+
+    The check reads the whole file and may take some time.
+    """
     try:
         found = problems(path)
         if found:
@@ -283,7 +302,7 @@ def verdict(now: sqlite3.Connection, path: Path) -> Verdict:
 def _differing(
     now: sqlite3.Connection, then: sqlite3.Connection, *, sums: bool
 ) -> tuple[tuple[str, int], ...]:
-    """By sums and texts, never by times: what is the same again is no difference."""
+    """Return the number of differing items by table, compared by checksum and text and not by time."""
     counts: dict[str, int] = {}
     here, there = _by_row(now, sums=sums), _by_row(then, sums=sums)
     for row in here.keys() | there.keys():

@@ -1,4 +1,8 @@
-"""Rows that are not as they were saved: put right where the history has them, else not used, and told."""
+"""Detection and repair of database rows that do not match their checksums.
+
+A damaged row is restored from the history where possible. Otherwise the row is not used, and a message
+reports it.
+"""
 
 from __future__ import annotations
 
@@ -43,13 +47,13 @@ _OTHERS = {
 
 
 def repair(connection: sqlite3.Connection) -> tuple[str, ...]:
-    """Put rows right that the history vouches for, and away what can begin anew; tell which were.
+    """Restore damaged rows from the history and discard rows that can start from zero.
 
-    The last entry of the history has the sum with which the row was saved, or is the row itself and the sum
-    is damaged.
+    The result has one message for each row. A row is restored if its last history entry matches the saved
+    checksum, or if this entry equals the row and only the checksum is damaged.
     """
     told: list[str] = []
-    connection.execute("DELETE FROM row_sums WHERE typeof(key) = 'blob'")  # nobody has such a key
+    connection.execute("DELETE FROM row_sums WHERE typeof(key) = 'blob'")  # no table has a key of this type
     for table, key in _broken(connection, KEYS):
         row = history_of(connection, table, key, row_sums.columns(connection, table))
         saved, now = row_sums.saved_sum(connection, table, key), row_sums.row(connection, table, key)
@@ -75,7 +79,7 @@ def _begin_anew(connection: sqlite3.Connection, program: Key) -> str:
 
 
 def _measure_no_more(connection: sqlite3.Connection, feature: Key) -> str:
-    """A feature is retired, as it stands; one with a value that no feature has goes with its readings."""
+    """Retire a damaged feature, or delete it with its readings if it has a value that no feature can have."""
     row = row_sums.row(connection, "part_features", feature)
     which = Message("{row} {row2}", row=_shown(row[1]), row2=_shown(row[2])) if row else feature
     told = Message(
@@ -84,7 +88,7 @@ def _measure_no_more(connection: sqlite3.Connection, feature: Key) -> str:
         which=named("part_features", which),
     )
     every = ", ".join(
-        f"{column} = {column}"  # SQLite looks only at the bounds of what is set
+        f"{column} = {column}"  # SQLite checks only the bounds of the columns that are set
         for column in row_sums.columns(connection, "part_features")
         if column not in {"id", "retired"}
     )
@@ -94,7 +98,7 @@ def _measure_no_more(connection: sqlite3.Connection, feature: Key) -> str:
             " AND typeof(low) = 'real' AND typeof(high) = 'real' AND typeof(name) = 'text'",
             (feature,),
         ).rowcount
-    except sqlite3.IntegrityError:  # out of a bound
+    except sqlite3.IntegrityError:  # a value is outside its bounds
         retired = 0
     if retired:
         return told
@@ -111,7 +115,10 @@ _PUT_AWAY = {"runs": _begin_anew, "part_features": _measure_no_more}
 
 
 def _put_away(connection: sqlite3.Connection, table: str, key: Key) -> str:
-    """What is no use without its figures, and is not entered over; neither row nor sum is left."""
+    """Discard a row that cannot be entered again and is useless without its values.
+
+    If the row is gone, its checksum is deleted too.
+    """
     told = _PUT_AWAY[table](connection, key)
     if row_sums.row(connection, table, key) is None:
         connection.execute("DELETE FROM row_sums WHERE tbl = ? AND key = ?", (table, key))
@@ -126,9 +133,10 @@ def _shown(value: row_sums.Value) -> str:
 def damaged(
     connection: sqlite3.Connection, tables: Collection[str] = KEYS, settings: Collection[str] = ()
 ) -> tuple[str, ...]:
-    """A sentence for each row that is not as it was saved; it is read as if it had never been set.
+    """Return a message for each row that does not match its checksum.
 
-    Of some tables only, and of some settings.
+    Such a row is read as if it had never been set. ``tables`` and ``settings`` limit the check to these
+    tables and to these keys of the table of settings.
     """
     looked = [table for table in KEYS if table in tables or (table == "settings" and settings)]
     return tuple(
@@ -145,7 +153,10 @@ def damaged(
 
 
 def damaged_histories(connection: sqlite3.Connection) -> tuple[str, ...]:
-    """The same of what grows for years, and of the tables as they were made: ``verify`` asks for it."""
+    """Return a message for each damaged row of a history table, and one if the database schema has changed.
+
+    These tables grow for years. They are checked completely only by ``verify``.
+    """
     tables = () if row_sums.schema_is_whole(connection) else (TABLES_CHANGED,)
     return tables + tuple(
         Message("{table} was damaged in the data store", table=named(table, key))
@@ -160,7 +171,7 @@ def _broken(connection: sqlite3.Connection, tables: Collection[str]) -> list[tup
 
 
 def named(name: str, key: row_sums.Key) -> str:
-    """A row of a table with a sum, as people call it."""
+    """Return the operator's name for a row of a table with checksums."""
     table = next((each for each in TABLES.values() if each.name == name), None)
     if any(log.name == name for log in LOGS):
         return Message("entry {key} of the offset history", key=key)
@@ -174,7 +185,10 @@ def named(name: str, key: row_sums.Key) -> str:
 def history_of(
     connection: sqlite3.Connection, name: str, key: row_sums.Key, columns: Sequence[str]
 ) -> tuple[row_sums.Value, ...] | None:
-    """The row as it was last entered, by the columns of its table; None: never, or it was cleared."""
+    """Return the values of a row as last entered, in the order of ``columns``.
+
+    The result is None if the row was never entered or has been cleared.
+    """
     kind = next((kind for kind, table in TABLES.items() if table.name == name), None)
     if kind is None:
         return None

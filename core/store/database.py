@@ -1,4 +1,4 @@
-"""The store's file: how it is recognised, made, checked, and brought up to this version's tables."""
+"""The store's database file: identification, creation, checks and migrations."""
 
 from __future__ import annotations
 
@@ -29,34 +29,37 @@ from core.store.store_connection import (
 from core.store.store_errors import Cause, StoreError, cause_of, why
 from core.store.store_file import FILE_NAME, has_store
 
-APPLICATION_ID = 0x5475724E  # "TurN": tells a store of ours from any other SQLite file
+APPLICATION_ID = 0x5475724E  # "TurN": identifies a SQLite file as a TurnDesk store
 _MIGRATIONS = Path(__file__).with_name("migrations")
 _MAGIC = b"SQLite format 3\0"
-_PRIVATE = ("logs", "backups")  # folders within the store's that only its owner may read
+_PRIVATE = ("logs", "backups")  # subfolders that only the owner of the store may read
 INDEX_REBUILT = (
     "an index of the stored data was damaged; TurnDesk rebuilt the index from its table, and no data was lost"
 )
-_MOST_WORDS = 1000  # those of pages come first
-_INDEX = re.compile(r"\bindex \S+$")  # row 3 missing from index …, wrong # of entries in index …
+_MOST_WORDS = 1000  # SQLite reports damaged pages first
+# matches "row 3 missing from index …" and "wrong # of entries in index …"
+_INDEX = re.compile(r"\bindex \S+$")
 _VALUE = rf"(?:value in|constraint failed in) (?:{'|'.join(row_sums.KEYS)})\b"
 _MENDABLE = re.compile(rf"{_INDEX.pattern}|{_VALUE}")
 """What opening mends: an index is made anew from its table, and a value of a wrong type has no good sum."""
 
 
 def migrations() -> tuple[str, ...]:
-    """The SQL of every version, the first one first."""
+    """Return the SQL script of each store version, the first version first."""
     scripts = sorted(_MIGRATIONS.glob("*.sql"))
     numbers = [int(script.name.partition("_")[0]) for script in scripts]
-    if numbers != list(range(1, len(numbers) + 1)):  # a store counts them: one put in later would be left out
+    # a store counts them, so it would skip a script inserted later
+    if numbers != list(range(1, len(numbers) + 1)):
         raise RuntimeError(f"migrations are numbered from 1 on, each once and without a gap: {numbers}")
     return tuple(script.read_text(encoding="utf-8") for script in scripts)
 
 
 def check_header(path: Path) -> None:
-    """Raises StoreError unless ``path`` begins like a store of ours. Reads 100 bytes, opens no database.
+    """Raise StoreError if ``path`` does not begin like a TurnDesk store.
 
-    One that this process writes was looked at before; a file that a process closes loses all the locks that
-    SQLite holds on it in that process, and the next other program that reads it takes its log away.
+    The function reads 100 bytes and does not open the database. It skips a store that this process has open
+    for writing: when a process closes any handle of the file, it releases all locks that SQLite holds on the
+    file in this process. The next program that reads the store would then remove its log.
     """
     if path.name == FILE_NAME and path.parent.resolve() in WRITTEN_HERE:
         return
@@ -84,7 +87,10 @@ def check_header(path: Path) -> None:
 
 
 def check_kind(path: Path) -> None:
-    """Raises StoreError unless ``path`` is a file or a link to one; a pipe is not opened, for that waits."""
+    """Raise StoreError if ``path`` is not a file or a link to a file.
+
+    A pipe is not opened, because opening it could block.
+    """
     try:
         mode = path.stat().st_mode
     except OSError as error:
@@ -98,7 +104,7 @@ def check_kind(path: Path) -> None:
             ),
             "link-without-target",
         ) from error
-    except ValueError as error:  # a zero byte in the name
+    except ValueError as error:  # the name contains a zero byte
         raise StoreError(
             Message("{path} is not a valid file name; enter another name", path=f"{str(path)!r}"),
             "not-a-file",
@@ -115,15 +121,16 @@ def check_kind(path: Path) -> None:
 
 
 def check_file(path: Path, *, thorough: bool) -> int:
-    """The version of the store in ``path``, which is not written to.
+    """Return the version of the store in ``path``, without writing to the file.
 
-    Raises StoreError for no database of ours, a newer version, or damage; ``thorough`` looks at every page.
+    ``thorough`` checks every page. Raises StoreError if the file is not a TurnDesk store, has a newer version
+    or is damaged.
     """
     return _checked(path, thorough=thorough)[0]
 
 
 def _checked(path: Path, *, thorough: bool) -> tuple[int, list[str]]:
-    """The version, and what is wrong that opening mends."""
+    """Return the store's version and SQLite's messages about damage that opening the store repairs."""
     check_header(path)
     newest = len(migrations())
     try:
@@ -150,26 +157,30 @@ def _checked(path: Path, *, thorough: bool) -> tuple[int, list[str]]:
 
 
 def _found_wrong(connection: sqlite3.Connection) -> list[str]:
-    """What SQLite finds wrong in pages, indexes and types, in its words."""
+    """Return SQLite's messages about damaged pages, indexes and types."""
     found = connection.execute(f"PRAGMA integrity_check({_MOST_WORDS})")
     return [str(text) for (text,) in found if text != "ok"]
 
 
 def _mend_indexes(connection: sqlite3.Connection, path: Path, wrong: list[str]) -> tuple[str, ...]:
-    """Make them anew where one is not that of its table; tell so. Raises StoreError where that cannot be."""
+    """Rebuild the indexes if one does not match its table, and return a message about the repair.
+
+    Raises StoreError if the indexes cannot be rebuilt.
+    """
     if not any(_INDEX.search(text) for text in wrong):
         return ()
     try:
         connection.execute("REINDEX")
-    except sqlite3.IntegrityError as error:  # two rows under one key: which of them is right?
+    except sqlite3.IntegrityError as error:  # two rows have the same key, so the correct row is unknown
         raise Cause.DAMAGED.error(path, error) from error
     return (INDEX_REBUILT,)
 
 
 def migrate(connection: sqlite3.Connection, scripts: Sequence[str]) -> None:
-    """Brings the tables up to the newest version; each version is one transaction, done or not done.
+    """Upgrade the tables to the newest version, each version in one transaction.
 
-    From then on this connection gives a sum to every row that it writes.
+    Afterwards this connection writes a checksum for every row that it changes. Raises StoreError if a
+    migration fails; the store then remains at the previous version.
     """
     for number, script in enumerate(scripts, start=1):
         if number <= version_of(connection):
@@ -193,7 +204,10 @@ def migrate(connection: sqlite3.Connection, scripts: Sequence[str]) -> None:
 
 
 def _bring_to(connection: sqlite3.Connection, number: int, script: str) -> None:
-    """Rows get their sums anew, but for those that were damaged before: other columns make another sum."""
+    """Run one migration and recalculate the checksums of all rows that were intact before.
+
+    The checksums depend on the columns, which a migration can change.
+    """
     damaged = row_sums.all_broken(connection, row_sums.sealed_before(number - 1))
     connection.executescript(f"BEGIN IMMEDIATE;\n{script}\nPRAGMA user_version = {number};")
     if number >= row_sums.SINCE:
@@ -202,12 +216,15 @@ def _bring_to(connection: sqlite3.Connection, number: int, script: str) -> None:
 
 
 def _path_of(connection: sqlite3.Connection) -> Path:
-    """The file that a connection is to."""
+    """Return the path of the database file of a connection."""
     return Path(str(connection.execute("PRAGMA database_list").fetchone()[2]))
 
 
 def create(path: Path) -> None:
-    """A new, empty store; it appears under its name only when it is whole. Raises StoreError."""
+    """Create an empty store that appears under its name only when it is complete.
+
+    Raises StoreError if the store cannot be created.
+    """
     unfinished = path.with_name(path.name + ".new")
     try:
         for leftover in (unfinished, *companions(unfinished)):
@@ -215,7 +232,8 @@ def create(path: Path) -> None:
         unfinished.touch(NEW_FILE)
         with closing(sqlite3.connect(unfinished, isolation_level=None)) as connection:
             configured(connection)
-            # Nobody sees this file before it is whole and on the disk, so no step of its own has to be.
+            # The file gets its final name only when it is complete and on the disk, so the single steps need
+            # no syncing.
             connection.execute("PRAGMA synchronous = OFF")
             connection.execute("PRAGMA journal_mode = MEMORY")
             connection.execute(f"PRAGMA application_id = {APPLICATION_ID}")
@@ -227,27 +245,27 @@ def create(path: Path) -> None:
 
 
 def empty() -> sqlite3.Connection:
-    """A store in memory with nothing in it: what a reader sees before the first entry."""
+    """Return an empty store in memory, for reading before the store file exists."""
     connection = configured(sqlite3.connect(":memory:", isolation_level=None, check_same_thread=False))
     migrate(connection, migrations())
     return connection
 
 
-# --- Opening a store: nothing is written before the file has been found to be a whole one of ours.
+# --- Opening a store. Nothing is written before the file is known to be an intact TurnDesk store.
 
 
 @dataclass(frozen=True, slots=True)
 class Opened:
-    """The connections of an open store; no ``writer``: for reading only."""
+    """The connections of an open store; ``writer`` is None if the store is open read-only."""
 
     path: Path
     reader: sqlite3.Connection
     writer: sqlite3.Connection | None = None
     lock: WriterLock | None = None
-    mended: tuple[str, ...] = ()  # what was damaged of the file itself, in sentences
+    mended: tuple[str, ...] = ()  # messages about repaired damage of the file itself
 
     def close(self) -> None:
-        """Ends the connections, then gives the lock back. Calling it again does nothing."""
+        """Close the connections, then release the lock. Calling it again has no effect."""
         self.reader.close()
         if self.writer:
             self.writer.close()
@@ -256,9 +274,10 @@ class Opened:
 
 
 def open_to_read(folder: Path) -> Opened:
-    """The store as it is; an empty one where there is no file. Raises StoreError for a bad file.
+    """Open the store read-only; open an empty store in memory if the file does not exist.
 
-    Also for one whose log has lost changes: it would be read as it was before them.
+    Raises StoreError if the file is damaged, has another version, or has a log with lost changes, because the
+    store would be read in its state before these changes.
     """
     path = folder / FILE_NAME
     if not has_store(folder):
@@ -279,7 +298,10 @@ def open_to_read(folder: Path) -> Opened:
 
 
 def open_to_write(folder: Path) -> Opened:
-    """The store under our lock, brought up to date; made where there is none. Raises StoreError."""
+    """Lock the store and open it for writing; create or upgrade it if necessary.
+
+    Raises StoreError if the store is in use, damaged or of a newer version.
+    """
     path = folder / FILE_NAME
     make_folder(folder)
     with ExitStack() as undo:
@@ -300,9 +322,9 @@ def open_to_write(folder: Path) -> Opened:
 
 
 def make_folder(folder: Path) -> None:
-    """Make the store's folder on the disk; close it, its logs and its backups to other users.
+    """Create the store's folder and prevent other users from reading the folder, its logs and its backups.
 
-    Raises StoreError where it cannot be made.
+    Raises StoreError if the folder cannot be created.
     """
     try:
         file_placing.make_folder(folder)
@@ -322,7 +344,10 @@ def make_folder(folder: Path) -> None:
 
 
 def _refuse_lost_file(path: Path) -> None:
-    """A log without its database would be poured into the new, empty one."""
+    """Raise StoreError if the database is missing but its log exists.
+
+    SQLite would otherwise apply the log to the new, empty database.
+    """
     if has_log(path):
         log, _ = companions(path)
         raise StoreError(
@@ -354,7 +379,7 @@ def _writing(path: Path, version: int, wrong: list[str]) -> tuple[sqlite3.Connec
 
 
 def _keep_copy(connection: sqlite3.Connection, target: Path) -> None:
-    """The store as the older version had it, kept beside the one that is about to change. Raises OSError."""
+    """Save a copy of the store next to it before the store is upgraded. Raises OSError."""
     with unfinished_file(target) as unfinished:
         with closing(sqlite3.connect(unfinished)) as copy:
             connection.backup(copy)

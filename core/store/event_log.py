@@ -1,4 +1,4 @@
-"""The event log."""
+"""The event log of the store."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def log(connection: sqlite3.Connection, events: Iterable[EventRow]) -> None:
-    """Adds to the log."""
+    """Add events to the log."""
     connection.executemany(
         "INSERT INTO events (at, kind, text, line, record, who, message) VALUES (?, ?, ?, ?, ?, ?, ?)",
         ((*event, pack_message(event.text)) for event in events),
@@ -26,7 +26,10 @@ def log(connection: sqlite3.Connection, events: Iterable[EventRow]) -> None:
 def events(
     connection: sqlite3.Connection, search: str, limit: int, kinds: Collection[str] = ()
 ) -> tuple[EventRow, ...]:
-    """The last events whose kind or text holds ``search``, newest first; no ``kinds``: of every kind."""
+    """Return the latest events whose kind or text contains ``search``, newest first.
+
+    Case is ignored. Empty ``kinds`` selects all kinds.
+    """
     rows = connection.execute(
         "SELECT at, kind, text, line, record, who, message FROM events"
         " WHERE (?1 = '' OR instr(lower(text), lower(?1)) OR instr(lower(kind), lower(?1)))"
@@ -45,7 +48,7 @@ def _event(row: tuple[Any, ...]) -> EventRow:
 def events_between(
     connection: sqlite3.Connection, kinds: Collection[str], since: str, until: str
 ) -> tuple[EventRow, ...]:
-    """Events of these kinds within this time (UTC), in their order."""
+    """Return the events of these kinds from ``since`` to before ``until`` (UTC), oldest first."""
     rows = connection.execute(
         "SELECT at, kind, text, line, record, who, message FROM events WHERE at >= ?1 AND at < ?2"
         " AND kind IN (SELECT value FROM json_each(?3)) ORDER BY id",
@@ -63,19 +66,19 @@ class EventLog:
     def read_events(
         self, search: str = "", limit: int = 100, kinds: Collection[str] = ()
     ) -> tuple[EventRow, ...]:
-        """Return the last events, newest first.
+        """Return the latest events, newest first.
 
-        ``search`` selects events that contain it in kind or text, in upper or lower case; ``kinds`` selects
-        events of these kinds, all kinds if empty.
+        ``search`` selects events whose kind or text contains it, ignoring case. ``kinds`` selects events of
+        these kinds; all kinds if empty.
         """
         return self._store.query(events, search, limit, kinds)
 
     def log_event(self, kind: str, text: str, line: int = 0, record: str = "", who: str = "") -> Future[None]:
-        """Log an event with the present time. A full disk does not lose the event."""
+        """Log an event with the present time. The event is not lost if the disk is full."""
         return self.log_events([EventRow(utc_now(), kind, text, line, record, who)])
 
     def log_events(self, events: Iterable[EventRow]) -> Future[None]:
-        """Log several events with the times that they have. A full disk does not lose them."""
+        """Log several events with their own times. The events are not lost if the disk is full."""
         rows = tuple(events)
 
         def keeping(unwritten: WaitingEntries) -> None:

@@ -1,8 +1,8 @@
-"""Changes that SQLite's log has and cannot read any more: it passes them over without a word, and we do not.
+"""Detection of lost changes in a damaged SQLite write-ahead log.
 
-After a kill or a power cut what was saved last is in the log alone. SQLite takes its entries as far as their
-sums fit; one flipped bit takes back whatever was saved behind it. What an unfinished change leaves there is
-no damage: nobody was told that it is kept.
+After a crash or a power failure, the latest changes exist only in the log. SQLite reads the log up to the
+first entry with a wrong checksum and silently ignores the rest, so one flipped bit can undo later changes. An
+unfinished change at the end of the log is not damage, because its write was never confirmed.
 """
 
 from __future__ import annotations
@@ -19,30 +19,34 @@ from core.message import Message
 from core.store.store_connection import companions, connect, has_log, in_use
 from core.store.store_errors import StoreError, why
 
-_HEAD = struct.Struct(">8I")  # magic, version, page size, sequence, two salts, two sums
-_FRAME = struct.Struct(">6I")  # page, pages of the store behind a commit, two salts, two sums
-_MAGIC = 0x377F0682  # its lowest bit: whether sums are made of words with the highest byte first
-_TAKEN = struct.Struct("=I")  # how many entries SQLite takes, in its index
+_HEAD = struct.Struct(">8I")  # magic, version, page size, sequence number, two salts, two checksums
+_FRAME = struct.Struct(">6I")  # page number, number of pages after a commit, two salts, two checksums
+_MAGIC = 0x377F0682  # the lowest bit is 1 if the checksums use big-endian words
+_TAKEN = struct.Struct("=I")  # number of entries that SQLite accepts, stored in its index
 _TAKEN_AT = 16
-_SMALLEST = 512  # bytes of a page
+_SMALLEST = 512  # bytes in the smallest page
 _WORD = 0xFFFFFFFF
 
 Pair = tuple[int, int]
 
 
 class _Frame(NamedTuple):
-    """An entry of the log: whether it ends a change, and what its sum is made of."""
+    """An entry of the log, with the data from which its checksum is calculated.
+
+    ``ends`` is true for the last entry of a change.
+    """
 
     ends: bool
     salts: Pair
     sums: Pair
-    summed: bytes  # page number and size, then the page
+    summed: bytes  # page number and size, followed by the page
 
 
 def lost_changes(log: Path, index: Path) -> int:
-    """How many finished changes stand in ``log`` behind what SQLite takes of it, by its ``index``.
+    """Return the number of complete changes in ``log`` that SQLite ignores according to its ``index``.
 
-    Somebody reads the store meanwhile, and nobody writes it. Raises OSError.
+    A reader must have the store open, and no process may write the store. Raises OSError if a file cannot be
+    read.
     """
     with log.open("rb") as file:
         head, content = file.read(_HEAD.size), file.read()
@@ -73,18 +77,23 @@ def _frames(content: bytes, page: int) -> list[_Frame]:
 
 
 def _one_is_equal(its: Pair, salts: tuple[int, ...]) -> bool:
-    """An entry of an earlier round of the log has two other salts; one whose salt is flipped has one."""
+    """Return whether one of two salts matches the log's salts.
+
+    An entry of an earlier use of the log has two different salts. An entry with one damaged salt still has
+    one that matches.
+    """
     return its[0] == salts[0] or its[1] == salts[1]
 
 
-# --- A power cut within the last write leaves parts of it: it was never acknowledged, and is no damage.
+# --- A power failure during the last write leaves parts of it. The write was never confirmed, so this is not
+# damage.
 
 
 def _is_torn(frames: list[_Frame], before: Pair, salts: tuple[int, ...], order: str) -> bool:
-    """Return whether parts of the last change never came to the disk; False for one word that is damaged.
+    """Return whether parts of the last change never reached the disk.
 
-    A disk writes whole sectors, and a bit that flips later is in one word: its effect on the sums of an entry
-    is known.
+    The result is False if a single damaged word explains the wrong checksums. A disk writes whole sectors,
+    whereas a bit that flips later is in one word and has a known effect on the checksums.
     """
     if not all(_one_is_equal(frame.salts, salts) for frame in frames):
         return True
@@ -94,16 +103,17 @@ def _is_torn(frames: list[_Frame], before: Pair, salts: tuple[int, ...], order: 
         wrong.append(((frame.sums[0] - one) & _WORD, (frame.sums[1] - two) & _WORD))
         before = frame.sums
     bad = [at for at, each in enumerate(wrong) if each != (0, 0)]
-    if len(bad) == 2 and bad[1] == bad[0] + 1:  # a sum itself is where the next one begins
+    # the damaged checksum is also the start value of the next checksum
+    if len(bad) == 2 and bad[1] == bad[0] + 1:
         return 0 not in wrong[bad[0]]
     return len(bad) > 1 or (len(bad) == 1 and not _is_one_word(wrong[bad[0]], len(frames[0].summed)))
 
 
 def _is_one_word(wrong: Pair, size: int) -> bool:
-    """Return whether one word of an entry, or of its sum, explains by how much its sums are wrong."""
+    """Return whether one damaged word of an entry or of its checksum explains the error of the checksums."""
     if 0 in wrong:
         return True
-    effects = [(1, 1), (0, 1)]  # of the two words of the last pair, on both sums
+    effects = [(1, 1), (0, 1)]  # effects of the two words of the last pair on both checksums
     for _ in range(size // 8):
         if any((wrong[0] * b - wrong[1] * a) & _WORD == 0 for a, b in effects):
             return True
@@ -112,7 +122,7 @@ def _is_one_word(wrong: Pair, size: int) -> bool:
 
 
 def _is_whole(head: bytes, magic: int) -> bool:
-    """Whether the head of a log has its own sum."""
+    """Return whether the header of a log matches its checksum."""
     return magic & ~1 == _MAGIC and _sums(head[:24], (0, 0), _order(magic)) == struct.unpack(">2I", head[24:])
 
 
@@ -121,7 +131,7 @@ def _order(magic: int) -> str:
 
 
 def _sums(summed: bytes, before: Pair, order: str) -> Pair:
-    """SQLite's sums over pairs of words, going on from ``before``."""
+    """Return SQLite's checksums over pairs of words, continued from ``before``."""
     one, two = before
     words = struct.unpack(f"{order}{len(summed) // 4}I", summed)
     for first, second in zip(words[::2], words[1::2], strict=True):
@@ -131,9 +141,10 @@ def _sums(summed: bytes, before: Pair, order: str) -> Pair:
 
 
 def check_log(path: Path, reader: sqlite3.Connection) -> None:
-    """Raises StoreError where changes in the log can be read no more, and no desk runs that has told it.
+    """Raise StoreError if changes in the log cannot be read and TurnDesk is not running.
 
-    Beside a desk nothing is looked at: that opens SQLite's index and closes it (see ``check_header``).
+    A running TurnDesk has already reported the damage. The check is then skipped, because it opens and closes
+    SQLite's index (see ``check_header``).
     """
     if in_use(path.parent):
         return
@@ -152,7 +163,10 @@ def check_log(path: Path, reader: sqlite3.Connection) -> None:
 
 
 def put_damaged_log_aside(path: Path) -> tuple[str, ...]:
-    """A copy of a log that has lost changes, before it is written over; tell what is lost."""
+    """Save a copy of a log that has lost changes before the log is overwritten.
+
+    The result is a message that reports the lost changes, or () if the log is intact. Raises StoreError.
+    """
     log, _ = companions(path)
     with closing(connect(path, read_only=True)) as reader:
         lost = _changes_lost(path, reader)
@@ -186,12 +200,12 @@ def _changes_lost(path: Path, reader: sqlite3.Connection) -> int:
     try:
         reader.execute(
             "SELECT count(*) FROM sqlite_master"
-        ).fetchone()  # SQLite looks how far it takes the log
+        ).fetchone()  # makes SQLite determine how much of the log is valid
         return lost_changes(log, index)
     except sqlite3.Error as error:
         raise why(path, error) from error
     except FileNotFoundError:
-        return 0  # whoever wrote it has just closed it
+        return 0  # the writing process has just closed the log
 
 
 def _changes(count: int) -> str:

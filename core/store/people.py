@@ -1,4 +1,4 @@
-"""Who works at the machine: names, levels, and what is kept of their PINs."""
+"""The users of the machine: their names, access levels and hashed PINs."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ NAME_LONGEST = 20
 
 
 class PersonRow(NamedTuple):
-    """One person; ``level`` as ``core.access.access_table.Level`` counts them."""
+    """One user. ``level`` is a value of ``core.access.access_table.Level``."""
 
     name: str
     level: int
@@ -27,28 +27,31 @@ class PersonRow(NamedTuple):
 
     @property
     def has_pin(self) -> bool:
-        """Whether a PIN was entered; a backup has none of them."""
+        """Whether the user has a PIN. A restored backup has none."""
         return bool(self.hash)
 
 
 class People(NamedTuple):
-    """All that are entered; ``damaged``: rows that are not as they were saved, and let nobody in."""
+    """The list of users.
+
+    ``damaged`` is true if a row does not match its checksum. Such a user cannot log in.
+    """
 
     rows: tuple[PersonRow, ...] = ()
     damaged: bool = False
 
     @property
     def on(self) -> bool:
-        """Whether there are levels: somebody is entered. A damaged row does not switch them off."""
+        """Whether access levels are in force, because the list has a user or a damaged row."""
         return bool(self.rows) or self.damaged
 
     def named(self, name: str) -> PersonRow | None:
-        """The person of this name, in any case of letters."""
+        """Return the user of this name, or None. Case is ignored."""
         return next((row for row in self.rows if row.name.casefold() == name.strip().casefold()), None)
 
 
 def people(connection: sqlite3.Connection) -> People:
-    """All of them, the highest level first."""
+    """Return the list of users, the highest level first."""
     rows = [
         PersonRow(str(name), level, salt, hashed)
         for name, (_, level, salt, hashed) in row_sums.whole_rows(connection, "people").items()
@@ -59,7 +62,7 @@ def people(connection: sqlite3.Connection) -> People:
 
 
 def check_person(name: str) -> str:
-    """The name as it is kept, in capitals. Raises StoreError for what names nobody."""
+    """Return a user name in capitals, as it is stored. Raises StoreError if the name is invalid."""
     name = " ".join(name.split()).upper()
     if not name or len(name) > NAME_LONGEST or not name.isprintable():
         raise StoreError(
@@ -70,7 +73,10 @@ def check_person(name: str) -> str:
 
 
 def keep_person(connection: sqlite3.Connection, row: PersonRow) -> None:
-    """Somebody new, or another PIN. Raises StoreError where nobody of the highest level stays."""
+    """Add a user, or replace the level and PIN of a user.
+
+    Raises StoreError if no user with SERVICE level would remain.
+    """
     row = row._replace(name=check_person(row.name))
     connection.execute("DELETE FROM people WHERE name = ?", (row.name,))
     connection.execute("INSERT INTO people VALUES (?, ?, ?, ?)", row)
@@ -78,25 +84,28 @@ def keep_person(connection: sqlite3.Connection, row: PersonRow) -> None:
 
 
 def remove_person(connection: sqlite3.Connection, name: str) -> None:
-    """He works here no more. Raises StoreError where nobody of the highest level would stay among others."""
+    """Remove a user.
+
+    Raises StoreError if the name is unknown, or if other users but none with SERVICE level would remain.
+    """
     if not connection.execute("DELETE FROM people WHERE name = ?", (name,)).rowcount:
         raise StoreError(Message("{name} is not in the list of users", name=name), "unknown-person")
     _demand_service(connection)
 
 
 def remove_all(connection: sqlite3.Connection) -> int:
-    """Nobody is entered any more, and there are no levels; answers how many there were."""
+    """Remove all users, and with them the access levels; return the number of users removed."""
     return connection.execute("DELETE FROM people").rowcount
 
 
 def replace_all(connection: sqlite3.Connection, rows: Iterable[PersonRow]) -> None:
-    """These people and no others are entered."""
+    """Replace all users by ``rows``."""
     connection.execute("DELETE FROM people")
     connection.executemany("INSERT INTO people VALUES (?, ?, ?, ?)", rows)
 
 
 def forget_pins(connection: sqlite3.Connection) -> None:
-    """Leave names and levels without PINs in a copy of the store, also in its free space."""
+    """Erase all PINs from a copy of the store, including its free pages. Names and levels remain."""
     rows = people(connection).rows if row_sums.columns(connection, "people") else ()
     if rows:
         row_sums.watch(connection)
@@ -105,7 +114,7 @@ def forget_pins(connection: sqlite3.Connection) -> None:
 
 
 def _demand_service(connection: sqlite3.Connection) -> None:
-    """Somebody has to be able to enter the next one."""
+    """Raise StoreError if the list has users but none with SERVICE level, who could add others."""
     levels = {level for (level,) in connection.execute("SELECT level FROM people")}
     if levels and max(levels) < 3:
         raise StoreError(
@@ -141,5 +150,5 @@ class PeopleRecords:
         return self._store.write(lambda c: remove_person(c, name))
 
     def remove_all_people(self) -> Future[int]:
-        """Remove all users, and with them the access levels; the result is the number of users removed."""
+        """Remove all users, and with them the access levels. The result is the number of users removed."""
         return self._store.write(remove_all)

@@ -22,7 +22,7 @@ class ProgramArchive:
         self._store, self._loaded = store, loaded
 
     def list_programs(self) -> tuple[ProgramRow, ...]:
-        """Return all programs by name, with their newest version."""
+        """Return all programs with their newest version, sorted by name."""
         return self._store.query(program_records.listing)
 
     def list_versions(self, name: str) -> tuple[VersionRow, ...]:
@@ -30,9 +30,9 @@ class ProgramArchive:
         return self._store.query(program_records.versions, name)
 
     def load_version(self, name: str, version: int | None = None) -> bytes:
-        """Return the text of a version as it was saved; None: of the newest version.
+        """Return the text of a version as it was saved; None as ``version`` selects the newest version.
 
-        Raise StoreError for an unknown version and for one that does not match its checksum.
+        Raises StoreError if the version is unknown or does not match its checksum.
         """
         return self._store.query(program_records.load, name, version)
 
@@ -41,7 +41,7 @@ class ProgramArchive:
         return self._store.write(lambda c: program_records.save(c, name, text, why, who))
 
     def keep_loaded_version(self, name: str, text: bytes, why: str) -> Future[None]:
-        """Save a version that is about to run. Runs of this name are then recorded for this text."""
+        """Save the version that is about to run. Later runs of this name are recorded for this text."""
         key = program_records.key_of_bytes(text)
         self._loaded.add(name, key)
 
@@ -52,6 +52,6 @@ class ProgramArchive:
         return self._store.keep_latest(("text", name), operation)
 
     def rename_program(self, old: str, new: str) -> Future[None]:
-        """Give a program another name, with its versions and notes. Its run record belongs to its text."""
+        """Rename a program together with its versions, run record and notes."""
         self._loaded.rename(old, new)
         return self._store.write(lambda c: program_records.renamed(c, old, new))

@@ -1,8 +1,8 @@
-"""What is kept of each program, and by which text: versions, part counts, runs, proofs, settings.
+"""Stored records of programs: versions, part counts, runs, proofs and settings.
 
-Counts, runs and proofs are stored by the SHA-256 of the text, never by a file name. The setting
-``text:NAME`` states which text was last loaded under a name. A name without one has rows of an older
-version of TurnDesk, which stored them by name.
+Counts, runs and proofs are stored by the SHA-256 of the text and not by file name. The setting ``text:NAME``
+specifies which text was last loaded under a name. A name without this setting has rows of an older version of
+TurnDesk, which stored them by name.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ PREFIX = "sha256:"  # no file name contains a colon
 
 
 def check_name(name: str) -> None:
-    """Raises StoreError for a name that could not be a file's on every disk it may be exported to."""
+    """Raise StoreError if the name would not be a valid file name on every common operating system."""
     clean = name.strip() == name and name not in ("", ".", "..")
     if not clean or not name.isprintable() or _FORBIDDEN & set(name) or len(name.encode()) > _NAME_BYTES:
         raise StoreError(
@@ -36,7 +36,10 @@ def check_name(name: str) -> None:
 
 
 def save(connection: sqlite3.Connection, name: str, text: bytes, why: str, who: str = "") -> int:
-    """Keeps ``text`` as the newest version; answers its number. The same text again makes no new version."""
+    """Save ``text`` as the newest version and return its number.
+
+    A text equal to the newest version is not saved again. Raises StoreError if the name is invalid.
+    """
     check_name(name)
     now, digest = utc_now(), sha256(text).hexdigest()
     connection.execute(
@@ -59,7 +62,7 @@ def save(connection: sqlite3.Connection, name: str, text: bytes, why: str, who: 
 
 
 def listing(connection: sqlite3.Connection) -> tuple[ProgramRow, ...]:
-    """All programs by name, with their newest version."""
+    """Return all programs with their newest version, sorted by name."""
     rows = connection.execute(
         "SELECT name, created, max(number), saved"
         " FROM programs JOIN program_versions ON program = programs.id"
@@ -69,7 +72,7 @@ def listing(connection: sqlite3.Connection) -> tuple[ProgramRow, ...]:
 
 
 def versions(connection: sqlite3.Connection, name: str) -> tuple[VersionRow, ...]:
-    """Every version of a program, newest first; none of a program that is not there."""
+    """Return every version of a program, newest first; () for an unknown program."""
     rows = connection.execute(
         "SELECT number, sha256, saved, why, length(text), who FROM program_versions"
         " JOIN programs ON program = programs.id WHERE name = ? ORDER BY number DESC",
@@ -79,7 +82,10 @@ def versions(connection: sqlite3.Connection, name: str) -> tuple[VersionRow, ...
 
 
 def load(connection: sqlite3.Connection, name: str, version: int | None) -> bytes:
-    """The text of a version, None: the newest. Raises StoreError for one that is not there or spoilt."""
+    """Return the text of a version; None as ``version`` selects the newest version.
+
+    Raises StoreError if the version is unknown or does not match its checksum.
+    """
     row = connection.execute(
         "SELECT number, text, sha256 FROM program_versions JOIN programs ON program = programs.id"
         " WHERE name = ? AND (number = ? OR ? IS NULL) ORDER BY number DESC LIMIT 1",
@@ -109,7 +115,7 @@ def load(connection: sqlite3.Connection, name: str, version: int | None) -> byte
 
 
 def spoilt(connection: sqlite3.Connection) -> tuple[str, ...]:
-    """Name and number of every version whose text is not what was saved."""
+    """Return name and number of every version whose text does not match its checksum."""
     rows = connection.execute(
         "SELECT name, number, text, sha256 FROM program_versions JOIN programs ON program = programs.id"
     )
@@ -121,17 +127,17 @@ def spoilt(connection: sqlite3.Connection) -> tuple[str, ...]:
 
 
 def _in_line(number: object) -> str:
-    """For a sentence: a number that was spoilt may be any text."""
+    """Return a version number as one line of text, because a damaged number may be any text."""
     return " ".join(str(number).split())
 
 
 def _is_whole(text: object, digest: object) -> bool:
-    """Whether a text is what was saved; bytes are, and what is none was put there by nobody of ours."""
+    """Return whether a stored text matches its checksum. Values that are not bytes never match."""
     return isinstance(text, bytes) and sha256(text).hexdigest() == digest
 
 
 def parts(connection: sqlite3.Connection, program: str) -> int:
-    """Parts made since the count was last put to nought; a count that is not as it was saved is none."""
+    """Return the parts made since the count was last reset; 0 if the row is damaged."""
     row = row_sums.whole_row(connection, "part_counts", key_of(connection, program))
     return _count(row[1]) if row else 0
 
@@ -141,7 +147,7 @@ def _count(value: row_sums.Value) -> int:
 
 
 def add_parts(connection: sqlite3.Connection, program: str, by: int, last: str) -> None:
-    """Parts made, added or taken away, never below nought."""
+    """Add ``by`` parts to the part count, or subtract them if ``by`` is negative, down to zero."""
     program = key_of(connection, program)
     count = max(0, parts(connection, program) + by)
     connection.execute(
@@ -152,15 +158,15 @@ def add_parts(connection: sqlite3.Connection, program: str, by: int, last: str) 
 
 
 def reset_parts(connection: sqlite3.Connection, program: str) -> None:
-    """The count of one program to nought."""
+    """Reset the part count of a program to zero."""
     key = key_of(connection, program)
     connection.execute("DELETE FROM part_counts WHERE program = ?", (key,))
 
 
 def all_of(connection: sqlite3.Connection) -> tuple[RunRow, ...]:
-    """Return the record of every name, by name: that of the text that was last loaded under it.
+    """Return the run record of each program name, sorted by name: the record of the text last loaded.
 
-    Rows that are not as they were saved are left out.
+    Damaged rows are omitted.
     """
     records, names = by_text(connection), keys_by_name(connection)
     names |= {key: key for key in records if not key.startswith(PREFIX) and key not in names}
@@ -168,7 +174,7 @@ def all_of(connection: sqlite3.Connection) -> tuple[RunRow, ...]:
 
 
 def by_text(connection: sqlite3.Connection) -> dict[str, RunRow]:
-    """Return the record of every text by its key, whatever it was called."""
+    """Return the run record of each program text, by record key. Damaged rows are omitted."""
     runs = row_sums.whole_rows(connection, "runs")
     counts = row_sums.whole_rows(connection, "part_counts")
     return {str(key): _run(str(key), runs.get(key), counts.get(key)) for key in runs.keys() | counts.keys()}
@@ -180,19 +186,19 @@ def _run(program: str, run: row_sums.Row | None, count: row_sums.Row | None) -> 
 
 
 def started(connection: sqlite3.Connection, program: str, at: str) -> None:
-    """A run began at this moment."""
+    """Record that a run of the program started at ``at``."""
     key = _row(connection, program)
     connection.execute("UPDATE runs SET started = ?, outcome = '' WHERE program = ?", (at, key))
 
 
 def ended(connection: sqlite3.Connection, program: str, outcome: str) -> None:
-    """How the run ended."""
+    """Record the outcome of the program's last run."""
     key = _row(connection, program)
     connection.execute("UPDATE runs SET outcome = ? WHERE program = ?", (outcome, key))
 
 
 def cut_off(connection: sqlite3.Connection, outcome: str) -> tuple[str, ...]:
-    """Runs that began and never ended get this outcome; their programs."""
+    """Record ``outcome`` for all runs without an end; return the names of their programs."""
     rows = connection.execute(
         "UPDATE runs SET outcome = ? WHERE started IS NOT NULL AND coalesce(outcome, '') = ''"
         " RETURNING program",
@@ -203,8 +209,11 @@ def cut_off(connection: sqlite3.Connection, outcome: str) -> tuple[str, ...]:
 
 
 def finished(connection: sqlite3.Connection, program: str, seconds: float, count: int, best: float) -> None:
-    """Whole cycles: the time of the last one, and the best of all of them. None takes no time at all: older
-    versions kept that of a part that a restart had finished."""
+    """Record complete cycles: the time of the last cycle and the shortest time, in seconds.
+
+    A stored shortest time of zero is replaced, because older versions stored zero for a part that a restart
+    had finished.
+    """
     key = _row(connection, program)
     connection.execute(
         "UPDATE runs SET cycles = cycles + ?3, latest = ?1, best = min(coalesce(nullif(best, 0.0), ?4), ?4)"
@@ -214,7 +223,7 @@ def finished(connection: sqlite3.Connection, program: str, seconds: float, count
 
 
 def proved(connection: sqlite3.Connection, program: str, result: str, planned: float | None, at: str) -> None:
-    """What proving found at this moment, and the cycle time that it reckons with; None: none."""
+    """Record the result of a proof at ``at``, and its calculated cycle time in seconds or None."""
     key = _row(connection, program)
     connection.execute(
         "UPDATE runs SET proved = ?, proof = ?, planned = ? WHERE program = ?",
@@ -223,9 +232,10 @@ def proved(connection: sqlite3.Connection, program: str, result: str, planned: f
 
 
 def renamed(connection: sqlite3.Connection, old: str, new: str) -> None:
-    """Versions, count, record, part, notes and measured parts go with a program that gets another name.
+    """Transfer versions, counts, run records, settings and measured features to a new program name.
 
-    Versions and features that are kept under the new name already stay, then those of the old name stay too.
+    If the new name already has versions or features, they remain, and those of the old name are not moved.
+    Raises StoreError if the new name is invalid.
     """
     check_name(new)
     connection.execute(
@@ -249,24 +259,24 @@ def renamed(connection: sqlite3.Connection, old: str, new: str) -> None:
 
 
 def _row(connection: sqlite3.Connection, program: str) -> str:
-    """Make sure that the program has a row; return its key."""
+    """Create the program's row of ``runs`` if it is missing, and return its record key."""
     key = key_of(connection, program)
     connection.execute("INSERT INTO runs (program) VALUES (?) ON CONFLICT DO NOTHING", (key,))
     return key
 
 
 def key_of_text(text: str) -> str:
-    """Return the key under which the record of this program text is stored."""
+    """Return the record key of a program text."""
     return key_of_bytes(text.encode("utf-8", "surrogateescape"))
 
 
 def key_of_bytes(data: bytes) -> str:
-    """Return the same for a stored version."""
+    """Return the record key of a stored version, given as bytes."""
     return PREFIX + sha256(data).hexdigest()
 
 
 def key_of(connection: sqlite3.Connection, program: str) -> str:
-    """Return the record key of a name; a key is returned as it is."""
+    """Return the record key of the text last loaded under a name. A record key is returned unchanged."""
     if program.startswith(PREFIX):
         return program
     stored = settings.read_setting(connection, text_key(program))
@@ -274,7 +284,7 @@ def key_of(connection: sqlite3.Connection, program: str) -> str:
 
 
 def keys_by_name(connection: sqlite3.Connection) -> dict[str, str]:
-    """Return the record key of every name that has one."""
+    """Return the record key of each program name that has one."""
     rows = connection.execute("SELECT key, value FROM settings WHERE key LIKE ? || '%'", (text_key(""),))
     found = ((str(key).removeprefix(text_key("")), _loaded(value)) for key, value in rows)
     return {name: key for name, key in found if key}

@@ -1,8 +1,8 @@
-"""A sum beside every offset, setting, count, life and job: a row that is not as it was saved is not believed.
+"""Checksums of database rows, so that TurnDesk does not use rows that have been damaged on the disk.
 
-Entries of the histories have one too, for an undo takes its figures from there, and so have events and
-versions. A connection that writes makes the sums by triggers of its own, so no place that writes can forget
-to. A reader compares.
+Offsets, settings, part counts, tool lives and jobs have checksums. Entries of the histories also have
+checksums, because an undo uses their values, and so do events and program versions. Triggers of each writing
+connection update the checksums, so no writing function can omit them. Readers compare them.
 """
 
 from __future__ import annotations
@@ -66,17 +66,17 @@ _SINCE = dict.fromkeys(("runs", "part_features", *HISTORIES), 15) | dict.fromkey
         "shared_here",
     ),
     16,
-)  # tables that got theirs later
-_LEFT_OUT = {"program_versions": "text"}  # it is long, and the row has its SHA-256
+)  # tables whose checksums a later version introduced
+_LEFT_OUT = {"program_versions": "text"}  # the text is long, and the row already has its SHA-256
 
 
 class Text(bytes):
-    """A text by the bytes that stand in the file: one that is damaged may be no UTF-8 any more."""
+    """A text as the bytes in the file, because a damaged text may not be valid UTF-8."""
 
 
 def sum_of(table: str, values: Row) -> str:
-    """SHA-256 of a row, by all its columns in their order: texts as bytes, a float by every bit it has."""
-    if table not in _WITH_BLOBS:  # elsewhere one is a text whose type is damaged
+    """Return the SHA-256 of a row over all its columns in order; texts as bytes, floats with every bit."""
+    if table not in _WITH_BLOBS:  # a blob in another table is a text whose type is damaged
         shown = [("blob", value) if type(value) is bytes else value for value in values]
         return _digest_of((table, *shown))
     return _digest_of((table, *values))
@@ -90,7 +90,7 @@ _WITH_BLOBS = frozenset({"people"})
 
 
 def watch(connection: sqlite3.Connection) -> None:
-    """Have this connection give a sum to every row that it writes."""
+    """Create triggers in this connection that update the checksum of every row it writes."""
     connection.create_function("row_sum", -1, _row_sum, deterministic=True)
     for table, key in SUMMED.items():
         if not columns(connection, table):
@@ -109,7 +109,7 @@ def _row_sum(table: str, *values: Value) -> str:
 
 
 def seal_all(connection: sqlite3.Connection, damaged: frozenset[tuple[str, Key]]) -> None:
-    """Give every row its sum but those that are ``damaged``; within a transaction."""
+    """Write the checksum of every row that is not in ``damaged``. The caller must be in a transaction."""
     for table in SUMMED:
         for key in _rows(connection, table).keys() | _sums(connection, table).keys():
             if (table, key) not in damaged:
@@ -118,21 +118,21 @@ def seal_all(connection: sqlite3.Connection, damaged: frozenset[tuple[str, Key]]
 
 
 def sealed_before(version: int) -> frozenset[str]:
-    """The tables that had sums in a store of this version."""
+    """Return the tables that had checksums in a store of this version."""
     return frozenset(table for table in SUMMED if _SINCE.get(table, SINCE) <= version)
 
 
 def all_broken(
     connection: sqlite3.Connection, tables: Iterable[str] = tuple(KEYS)
 ) -> frozenset[tuple[str, Key]]:
-    """Table and key of every row that is not as it was saved."""
+    """Return table and key of every row that does not match its checksum."""
     return frozenset((table, key) for table in tables for key in broken(connection, table))
 
 
 def broken(connection: sqlite3.Connection, table: str, since: int | None = None) -> frozenset[Key]:
-    """The keys of the rows that are not as they were saved; of rows that have gone, too.
+    """Return the keys of rows that do not match their checksums, including rows that have disappeared.
 
-    ``since``: of a history only from this entry on.
+    ``since`` limits the check of a history to the entries from this key on.
     """
     rows, sums = _rows(connection, table, since), _sums(connection, table, since)
     return frozenset(
@@ -143,14 +143,14 @@ def broken(connection: sqlite3.Connection, table: str, since: int | None = None)
 
 
 def whole_rows(connection: sqlite3.Connection, table: str) -> dict[Key, Row]:
-    """The rows that are as they were saved, by their keys; texts as bytes."""
+    """Return the rows that match their checksums, by key, with texts as bytes."""
     sums = _sums(connection, table)
     rows = _rows(connection, table).items()
     return {key: values for key, values in rows if sums.get(key) == sum_of(table, values)}
 
 
 def whole_row(connection: sqlite3.Connection, table: str, key: Key) -> Row | None:
-    """A row that is as it was saved, its texts as bytes; None: it is not there, or not as it was saved."""
+    """Return a row that matches its checksum, with texts as bytes; None if it is missing or damaged."""
     found = row(connection, table, key)
     if found is None or saved_sum(connection, table, key) != sum_of(table, found):
         return None
@@ -158,9 +158,9 @@ def whole_row(connection: sqlite3.Connection, table: str, key: Key) -> Row | Non
 
 
 def row(connection: sqlite3.Connection, table: str, key: Key) -> Row | None:
-    """The columns of a row that its sum is made of, texts as bytes; None: it is not there.
+    """Return the columns of a row that its checksum covers, with texts as bytes; None if the row is missing.
 
-    By the table alone: an index that is damaged has other keys than its rows.
+    The row is read without an index, because a damaged index can have wrong keys.
     """
     named = ", ".join(columns(connection, table))
     found = raw(connection, f"SELECT {named} FROM {table} NOT INDEXED WHERE {SUMMED[table]} = ?", (key,))
@@ -168,19 +168,19 @@ def row(connection: sqlite3.Connection, table: str, key: Key) -> Row | None:
 
 
 def saved_sum(connection: sqlite3.Connection, table: str, key: Key) -> str:
-    """The sum with which a row was saved; empty: it was not."""
+    """Return the saved checksum of a row; empty if the row has none."""
     found = raw(connection, "SELECT sha256 FROM row_sums WHERE tbl = ? AND key = ?", (table, key))
     return "".join(_digest(told) for (told,) in found)
 
 
 def columns(connection: sqlite3.Connection, table: str) -> tuple[str, ...]:
-    """The columns of a table, in the order in which their sum is made."""
+    """Return the columns of a table that its checksums cover, in order; () if the table does not exist."""
     names = (each[1] for each in connection.execute(f"PRAGMA table_info({table})"))
     return tuple(name for name in names if name != _LEFT_OUT.get(table))
 
 
 def raw(connection: sqlite3.Connection, query: str, values: tuple[Value, ...] = ()) -> list[Row]:
-    """Rows with their texts as bytes: a text that is damaged may be no UTF-8 any more."""
+    """Run a query and return its rows with texts as bytes, because a damaged text may not be valid UTF-8."""
     before, connection.text_factory = connection.text_factory, Text
     try:
         return connection.execute(query, values).fetchall()
@@ -189,17 +189,17 @@ def raw(connection: sqlite3.Connection, query: str, values: tuple[Value, ...] = 
 
 
 def readable(values: Iterable[Value]) -> list[int | float | str | None]:
-    """The same with texts, of a row that is whole."""
+    """Return the values of an intact row with its texts decoded."""
     return [value.decode() if isinstance(value, bytes) else value for value in values]
 
 
 def schema_is_whole(connection: sqlite3.Connection) -> bool:
-    """Whether the tables are those that were made: a bound or a usual value of a column is text there."""
+    """Return whether tables and indexes are as created, including column bounds and defaults."""
     return saved_sum(connection, *_SCHEMA) == schema_sum(connection)
 
 
 def schema_sum(connection: sqlite3.Connection) -> str:
-    """SHA-256 of all tables and indexes as they are made."""
+    """Return the SHA-256 of the SQL that created all tables and indexes."""
     made = raw(connection, "SELECT type, name, tbl_name, sql FROM main.sqlite_master ORDER BY type, name")
     return _digest_of(tuple(made))
 
@@ -225,7 +225,7 @@ def _keep(connection: sqlite3.Connection, table: str, key: Key, digest: str) -> 
 def _rows(connection: sqlite3.Connection, table: str, since: int | None = None) -> dict[Key, Row]:
     named = ", ".join((SUMMED[table], *columns(connection, table)))
     if named == SUMMED[table]:
-        return {}  # a store of a version that had no such table yet
+        return {}  # the store version does not have this table yet
     every = f"SELECT {named} FROM {table} NOT INDEXED"
     later = f"SELECT {named} FROM {table} WHERE {SUMMED[table]} >= ?"
     found = raw(connection, every) if since is None else raw(connection, later, (since,))
@@ -233,7 +233,7 @@ def _rows(connection: sqlite3.Connection, table: str, since: int | None = None) 
 
 
 def _key(value: Value) -> Key:
-    """A key whose own bytes, or whose type, are damaged is one that nobody asks for."""
+    """Return a key as an integer or text. A damaged key becomes a text that matches no other key."""
     if isinstance(value, Text):
         return value.decode("utf-8", "backslashreplace")
     return value if isinstance(value, int) else repr(value)
@@ -245,5 +245,5 @@ def _sums(connection: sqlite3.Connection, table: str, since: int | None = None) 
 
 
 def _digest(value: Value) -> str:
-    """A sum that is damaged itself is any text, and that of no row."""
+    """Return a saved checksum as text. A damaged checksum becomes a text that matches no row."""
     return value.decode("ascii", "replace") if isinstance(value, bytes) else str(value)

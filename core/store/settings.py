@@ -1,4 +1,4 @@
-"""Settings of the store: any value that JSON can represent, by a key."""
+"""Settings of the store: values that JSON can represent, by key."""
 
 from __future__ import annotations
 
@@ -22,7 +22,10 @@ def read_setting(connection: sqlite3.Connection, key: str) -> object:
 
 
 def save_setting(connection: sqlite3.Connection, key: str, value: object) -> None:
-    """Store a value under ``key``; None deletes the key. Raise StoreError if JSON cannot represent it."""
+    """Store a value under ``key``; None deletes the key.
+
+    Raises StoreError if JSON cannot represent the value.
+    """
     if value is None:
         connection.execute("DELETE FROM settings WHERE key = ?", (key,))
         return
@@ -34,7 +37,7 @@ def save_setting(connection: sqlite3.Connection, key: str, value: object) -> Non
 
 
 def setting_text(key: str, value: object) -> str:
-    """Return the value as JSON. Raise StoreError with ``key`` if JSON cannot represent it."""
+    """Return a value as JSON. Raises StoreError that names ``key`` if JSON cannot represent the value."""
     try:
         return json.dumps(value, allow_nan=False)
     except (TypeError, ValueError) as error:
@@ -54,6 +57,9 @@ class Settings:
         return self._store.query(read_setting, key)
 
     def save_setting(self, key: str, value: object) -> Future[None]:
-        """Store a value; None deletes the key. Raise StoreError if JSON cannot represent the value."""
+        """Store a value under ``key``; None deletes the key.
+
+        Raises StoreError if JSON cannot represent the value.
+        """
         setting_text(key, value)
         return self._store.keep_latest(("setting", key), lambda c: save_setting(c, key, value))

@@ -1,4 +1,4 @@
-"""The data store: one SQLite file, read from any thread and written by a thread of its own."""
+"""The data store: one SQLite file, read from any thread and written by its own thread."""
 
 from __future__ import annotations
 
@@ -38,10 +38,10 @@ P = ParamSpec("P")
 
 
 class Store:
-    """An open store and its repositories, one for each subject; see ``open``.
+    """An open store with its repositories, one for each subject.
 
-    Methods can be called from any thread. ``repaired`` lists, in sentences, the damaged rows that were
-    restored when the store was opened.
+    ``open`` creates a store. Methods can be called from any thread. ``repaired`` has a message for each
+    damaged row that was restored when the store was opened.
     """
 
     def __init__(self, opened: Opened) -> None:
@@ -65,9 +65,9 @@ class Store:
     def open(cls, folder: Path, *, read_only: bool = False) -> Store:
         """Open the store in ``folder``; create it if it does not exist.
 
-        A read-only store can be opened while another process writes it, and is empty if it does not exist.
-        Raise StoreError if another process has it open for writing, or if the file is damaged, of another
-        program or of a newer version; such a file is not changed.
+        A read-only store can be opened while another process writes it. It is empty if the file does not
+        exist. Raises StoreError if another process has the store open for writing, or if the file is damaged,
+        from another program or of a newer version. Such a file is not changed.
         """
         return cls(open_to_read(folder) if read_only else open_to_write(folder))
 
@@ -91,20 +91,20 @@ class Store:
 
     @property
     def trouble(self) -> str:
-        """Return why the last write failed; empty if it succeeded."""
+        """Reason why the last write failed; empty if it succeeded."""
         return self._writer.trouble if self._writer else ""
 
     @property
     def backlog(self) -> Backlog | None:
-        """Return the entries that wait in memory for the disk; None if there are none."""
+        """Entries that wait in memory for the disk; None if there are none."""
         return self._writer.backlog if self._writer else None
 
     @contextmanager
     def read(self) -> Iterator[sqlite3.Connection]:
-        """Return the connection for reading, for one thread at a time. Raise StoreError for SQLite's errors.
+        """Open a read transaction for one thread at a time and yield its connection.
 
-        All reads are within one transaction: a change saved between reading a row and reading its checksum
-        would make the row look damaged.
+        A single transaction is necessary because a change saved between reading a row and reading its
+        checksum would make the row look damaged. Raises StoreError for SQLite errors.
         """
         with self._reading:
             try:
@@ -116,7 +116,7 @@ class Store:
                 ) from error
             except sqlite3.Error as error:
                 raise why(self.path, error) from error
-            except UnicodeDecodeError as error:  # the name of a column
+            except UnicodeDecodeError as error:  # a column name is damaged
                 raise Cause.DAMAGED.error(self.path, error) from error
 
     def query(
@@ -129,26 +129,28 @@ class Store:
     def find_damaged_rows(
         self, tables: Collection[str] = KEYS, settings: Collection[str] = ()
     ) -> tuple[str, ...]:
-        """Return a sentence for each row that does not match its checksum.
+        """Return a message for each row that does not match its checksum.
 
-        ``tables`` are the tables to search, and ``settings`` the keys of the settings to search if ``tables``
-        does not contain all settings.
+        ``tables`` are the tables to check. ``settings`` are the keys to check if ``tables`` does not include
+        the table of settings.
         """
         return self.query(damaged_rows.damaged, tables, settings)
 
     def write(self, operation: Operation[T]) -> Future[T]:
-        """Run ``operation`` in its own transaction. Raise StoreError in a read-only store.
+        """Run ``operation`` in its own transaction on the writer's thread.
 
-        The future has the result of ``operation`` when the change is on the disk. It raises StoreError if
-        the change is rejected or fails; the store is then unchanged.
+        The future returns the result of ``operation`` when the change is on the disk. It raises StoreError if
+        the change is rejected or fails; the store is then unchanged. Raises StoreError immediately for a
+        read-only store.
         """
         return self._open_writer().post(operation)
 
     def keep(self, keeping: Keeping) -> Future[None]:
-        """Store an entry that must not be lost. Raise StoreError in a read-only store.
+        """Store an entry that must not be lost.
 
         If the disk is full, the entry waits in memory (``backlog``) and is written when the disk has space.
-        The future raises StoreError while the entry waits.
+        The future raises StoreError while the entry waits. Raises StoreError immediately for a read-only
+        store.
         """
         return self._open_writer().keep(keeping)
 
@@ -160,18 +162,18 @@ class Store:
         return self._writer
 
     def keep_latest(self, key: tuple[str, str], operation: Operation[object]) -> Future[None]:
-        """Store an operation as ``keep`` does. It replaces a waiting operation under the same ``key``."""
+        """Store an operation as ``keep`` does, replacing a waiting operation with the same ``key``."""
         return self.keep(lambda unwritten: unwritten.latest(key, operation))
 
 
 @contextmanager
 def _one_moment(connection: sqlite3.Connection) -> Iterator[sqlite3.Connection]:
-    """A transaction that only reads: it waits for no writer, and no writer waits for it."""
+    """Open a read-only transaction, which neither waits for a writer nor blocks one."""
     connection.execute("BEGIN")
     try:
         yield connection
     finally:
-        if connection.in_transaction:  # SQLite itself ends one that a damaged file has broken
+        if connection.in_transaction:  # SQLite itself ends a transaction that fails because of a damaged file
             connection.execute("ROLLBACK")
 
 
@@ -182,7 +184,10 @@ def _writer(connection: sqlite3.Connection, path: Path) -> StoreWriter:
 
 
 def _repaired(connection: sqlite3.Connection, mended: tuple[str, ...]) -> tuple[str, ...]:
-    """Damaged rows that the history has put right, noted in the log; a disk that takes nothing waits."""
+    """Repair damaged rows, log the repairs and return their messages.
+
+    If the disk cannot be written, the repair is left for the next start.
+    """
     try:
         connection.execute("BEGIN IMMEDIATE")
         told = (*mended, *damaged_rows.repair(connection))

@@ -1,4 +1,4 @@
-"""Access to an open store, as the repositories of the store are given it."""
+"""Interface through which the repositories access an open store."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ class Backlog:
     events: int = 0
     parts: int = 0
     others: int = 0
-    dropped: int = 0  # events for which there was no room in memory either
+    dropped: int = 0  # events lost because the memory for them was full too
     # By program: whether the count is set to zero first, and the parts to add.
     counts: Mapping[str, tuple[bool, int]] = field(default_factory=dict)
 
     @property
     def words(self) -> str:
-        """Return, in words, the entries that would be lost if TurnDesk ended now."""
+        """Description of the entries that would be lost if TurnDesk ended now."""
         counts = ((self.parts, "part"), (self.events, "event"), (self.others, "other entry"))
         found = [
             Message("{count} {name}", count=count, name=_many(name, count)) for count, name in counts if count
@@ -54,35 +54,35 @@ class WaitingEntries(Protocol):
         """Add an event."""
 
     def count_parts(self, program: str, by: int) -> None:
-        """Add parts to a part count; subtract them if ``by`` is negative."""
+        """Add parts to a part count, or subtract them if ``by`` is negative."""
 
     def reset_parts(self, program: str) -> None:
         """Set a part count to zero."""
 
     def cycle(self, program: str, seconds: float) -> None:
-        """Add a whole cycle and its time in seconds."""
+        """Add a complete cycle and its time in seconds."""
 
     def latest(self, name: tuple[str, str], operation: Operation[object]) -> None:
-        """Add an operation that replaces a waiting operation under the same name."""
+        """Add an operation that replaces a waiting operation with the same name."""
 
 
 Keeping = Callable[[WaitingEntries], None]
 
 
 class StoreAccess(Protocol):
-    """Read and write one open store, from any thread.
+    """Access to one open store for reading and writing, from any thread.
 
-    Reads return immediately and raise StoreError for a closed or damaged store. Writes return a future. Its
-    result is available when the change is on the disk; it raises StoreError when the store rejects the
-    change. Writes raise StoreError immediately for a store that is closed or open read-only.
+    Reads return immediately. They raise StoreError for a closed or damaged store. Writes return a future,
+    whose result is available when the change is on the disk. The future raises StoreError if the store
+    rejects the change. Writes raise StoreError immediately for a store that is closed or open read-only.
     """
 
     @property
     def backlog(self) -> Backlog | None:
-        """Return the entries that wait in memory for the disk; None if there are none."""
+        """Entries that wait in memory for the disk; None if there are none."""
 
     def read(self) -> AbstractContextManager[sqlite3.Connection]:
-        """Return the connection for reading, for one thread at a time, within one transaction."""
+        """Open a read transaction for one thread at a time and return its connection as a context manager."""
 
     def query(
         self, function: Callable[Concatenate[sqlite3.Connection, P], T], *args: P.args, **named: P.kwargs
@@ -93,10 +93,10 @@ class StoreAccess(Protocol):
         """Run ``operation`` in its own transaction. If it fails, the change is dropped."""
 
     def keep(self, keeping: Keeping) -> Future[None]:
-        """Store an entry that must not be lost: a full disk receives it when it has space again.
+        """Store an entry that must not be lost. On a full disk it is written when space is available again.
 
         The future raises StoreError while the entry waits in memory.
         """
 
     def keep_latest(self, key: tuple[str, str], operation: Operation[object]) -> Future[None]:
-        """Store an operation as ``keep`` does. It replaces a waiting operation under the same ``key``."""
+        """Store an operation as ``keep`` does, replacing a waiting operation with the same ``key``."""

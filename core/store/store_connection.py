@@ -1,4 +1,4 @@
-"""Connections to the file of the store, and the lock of the one process that writes it."""
+"""Connections to the store file, and the lock of the one process that writes it."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ from core.store.store_file import real_path
 
 _BUSY_SECONDS = 5.0
 _LOCK = "turndesk.lock"
-_TRIES, _BETWEEN = 10, 0.01  # tries of a writer for the lock, s between two
-WRITTEN_HERE = set[Path]()  # folders whose store this process writes
+_TRIES, _BETWEEN = 10, 0.01  # attempts to get the writer lock, seconds between two attempts
+WRITTEN_HERE = set[Path]()  # folders whose store this process has open for writing
 _NO_ROOM = frozenset({Cause.FULL, Cause.FORBIDDEN})
 
 
 def connect(path: Path, *, read_only: bool) -> sqlite3.Connection:
-    """A connection with our settings. Transactions are begun by hand. Raises StoreError.
+    """Open a connection to the store, in which the caller begins transactions explicitly.
 
-    Reading, too, needs a little room beside the file, for SQLite's index. Where there is none, and no log
-    whose entries would be missed, the file is read as it stands.
+    Reading needs a little disk space next to the file for SQLite's index. If the disk has no space and the
+    store has no log, the file is opened as immutable. Raises StoreError if the file cannot be opened.
     """
     try:
         return _connection(path, "mode=ro" if read_only else "mode=rw")
@@ -49,7 +49,7 @@ def _connection(path: Path, how: str) -> sqlite3.Connection:
     )
     try:
         return configured(connection)
-    except UnicodeDecodeError as error:  # SQLite's own sentence quotes what is damaged
+    except UnicodeDecodeError as error:  # SQLite's message quotes the damaged text
         connection.close()
         raise _damaged() from error
     except sqlite3.Error:
@@ -58,7 +58,7 @@ def _connection(path: Path, how: str) -> sqlite3.Connection:
 
 
 def _damaged() -> sqlite3.DatabaseError:
-    """As SQLite says it of a file whose tables cannot be read."""
+    """Return the error that SQLite raises for a file whose schema cannot be read."""
     error = sqlite3.DatabaseError("malformed database schema")
     error.sqlite_errorcode = sqlite3.SQLITE_CORRUPT
     return error
@@ -70,31 +70,34 @@ def has_log(path: Path) -> bool:
 
 
 def configured(connection: sqlite3.Connection) -> sqlite3.Connection:
-    """Every commit reaches the disk; references are kept whole."""
+    """Set a connection to sync every commit to the disk and to enforce foreign keys.
+
+    Returns the connection.
+    """
     connection.execute("PRAGMA synchronous = FULL")
     connection.execute("PRAGMA foreign_keys = ON")
     return connection
 
 
 def version_of(connection: sqlite3.Connection) -> int:
-    """The last migration that was carried out on this store; 0: none, it is empty."""
+    """Return the number of the store's last migration; 0 for an empty database."""
     return int(connection.execute("PRAGMA user_version").fetchone()[0])
 
 
 def companions(path: Path) -> tuple[Path, Path]:
-    """SQLite's write-ahead log and its index beside a database, or beside the one that a link leads to."""
+    """Return the paths of SQLite's write-ahead log and of its index, with links resolved."""
     path = real_path(path)
     return path.with_name(path.name + "-wal"), path.with_name(path.name + "-shm")
 
 
-# --- One process writes a store. The kernel gives the lock back when that process ends, however it ends.
+# --- Only one process may write a store. The kernel releases the lock when that process ends for any reason.
 
 
 class WriterLock:
-    """The advisory lock beside the store, held from construction to close. Raises StoreError when taken.
+    """The advisory lock file of the store, locked from construction until ``close``.
 
-    A lock that another process has for an instant only, because it asks for its owner, is tried again for
-    0.1 s; ``pause`` waits between two tries.
+    A lock that another process has for an instant, to read its owner, is tried again for 0.1 s. ``pause``
+    waits between two attempts, in seconds. Raises StoreError if the store is already locked.
     """
 
     def __init__(self, folder: Path, pause: Callable[[float], object] = time.sleep) -> None:
@@ -120,13 +123,14 @@ class WriterLock:
             ) from error
         mark_locked(self._file)
         self._folder = folder.resolve()
-        with suppress(OSError):  # a courtesy to whoever finds it taken; a full disk has no room for it
+        # the process id helps the user to find the owner; a full disk may prevent writing it
+        with suppress(OSError):
             os.ftruncate(self._file, 0)
             os.lseek(self._file, 0, os.SEEK_SET)
             os.write(self._file, f"{os.getpid()}\n".encode("ascii"))
 
     def _take(self, pause: Callable[[float], object]) -> None:
-        """Raises OSError when the lock stays taken."""
+        """Lock the file. Raises OSError if the lock remains unavailable."""
         for _ in range(_TRIES):
             with suppress(OSError):
                 lock(self._file)
@@ -135,11 +139,11 @@ class WriterLock:
         lock(self._file)
 
     def opened(self) -> None:
-        """From now on SQLite holds the store's file open in this process."""
+        """Record that SQLite now has the store file open in this process."""
         WRITTEN_HERE.add(self._folder)
 
     def close(self) -> None:
-        """Give the store free. Calling it again does nothing."""
+        """Release the store. Calling it again has no effect."""
         if self._file >= 0:
             WRITTEN_HERE.discard(self._folder)
             os.close(self._file)
@@ -147,7 +151,7 @@ class WriterLock:
 
 
 def in_use(folder: Path) -> bool:
-    """Whether a process writes the store of this folder now. Asks without taking the lock."""
+    """Return whether a process has the store of this folder open for writing, without locking the store."""
     try:
         file = os.open(folder / _LOCK, os.O_RDONLY)
     except OSError:

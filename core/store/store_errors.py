@@ -1,4 +1,4 @@
-"""Why a store cannot be read or written: a full disk is called full, a locked file locked, damage damage."""
+"""Errors of the data store, with the cause found from SQLite's and the system's error codes."""
 
 from __future__ import annotations
 
@@ -11,22 +11,23 @@ from core.message import CodedError, Message
 
 
 class StoreError(CodedError):
-    """The store cannot do what it was asked; the sentence says what, where and what to do.
+    """The store cannot do a requested operation. The text has the reason, the file and a remedy.
 
-    ``passing``: what is in the way may go by itself, as a full disk or another program's lock does.
+    ``passing`` is true if the obstacle may disappear without intervention, such as a full disk or another
+    program's lock.
     """
 
     passing = False
 
 
-_ROOM = 64 * 1024  # bytes: more than SQLite's index needs
+_ROOM = 64 * 1024  # bytes, more than SQLite's index needs
 _FULL = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG})
 _GONE = frozenset({errno.ENOENT, errno.ENOTDIR})
 _FORBIDDEN = frozenset({errno.EACCES, errno.EPERM, errno.EROFS})
 
 
 class Cause(Enum):
-    """What is wrong, and what to do about it."""
+    """Cause of a store error; the value is the template of the message."""
 
     FULL = "the disk is full, so nothing more can be written to {path}; free up space on that disk"
     LOCKED = "{path} is locked by another program; close that program, then try again"
@@ -44,11 +45,11 @@ class Cause(Enum):
 
     @property
     def code(self) -> str:
-        """Return the code of the error."""
+        """Code of the error."""
         return _CODES[self]
 
     def error(self, path: Path, error: object) -> StoreError:
-        """The sentence for it."""
+        """Return the StoreError with this cause for the file ``path``."""
         made = StoreError(Message(self.value, path=path, error=" ".join(str(error).split())), self.code)
         made.passing = self in {Cause.FULL, Cause.LOCKED}
         return made
@@ -79,11 +80,15 @@ _BY_CODE = {
 }
 
 
-_DAMAGED_WORDS = ("Could not decode to UTF-8", "unsupported file format")  # they have no code of their own
+# SQLite has no error codes for these messages
+_DAMAGED_WORDS = ("Could not decode to UTF-8", "unsupported file format")
 
 
 def cause_of(path: Path, error: sqlite3.Error | OSError) -> Cause:
-    """What has made SQLite or the system refuse; where that tells too little, the disk is looked at."""
+    """Return the cause of an error from SQLite or the system.
+
+    If SQLite's code is ambiguous, a trial file is written to the folder to find the system's error.
+    """
     if isinstance(error, OSError):
         return _of_system(error)
     if any(words in str(error) for words in _DAMAGED_WORDS):
@@ -99,17 +104,17 @@ def cause_of(path: Path, error: sqlite3.Error | OSError) -> Cause:
 
 
 def why(path: Path, error: sqlite3.Error | OSError) -> StoreError:
-    """The sentence for what went wrong with the store in ``path``."""
+    """Return the StoreError for an error with the store in ``path``."""
     return cause_of(path, error).error(path, said(error))
 
 
 def said(error: Exception) -> str:
-    """What the system says of it, without the number and the name of a file that nobody knows."""
+    """Return the system's text for an error, without the error number and the file name."""
     return (isinstance(error, OSError) and error.strerror) or str(error)
 
 
 def _trial(folder: Path) -> OSError | None:
-    """SQLite does not hand on what the system said; a file of our own beside the store asks it again."""
+    """Write a temporary file to ``folder`` and return the system's error, which SQLite does not report."""
     from tempfile import TemporaryFile  # noqa: PLC0415  rarely wanted, and slow to load
 
     try:

@@ -1,4 +1,4 @@
-"""The store as plain files that any editor reads, in inches: for looking, for moving, for another control."""
+"""Export of the store to plain text files in inches, for reading, moving or another control."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from core.store.store_rows import FIELDS, EventRow, Field, Kind, Row, RunRow, So
 from core.tool_edges import edge_of, tool_of
 
 PROGRAMS, OFFSETS, EVENTS, RUNS = "programs", "offsets.toml", "events.csv", "runs.csv"
-TABLES = {  # of measured parts and of mills: whole tables, mm and seconds as the store has them
+TABLES = {  # complete tables of measured parts and mills, in mm and seconds as stored
     "features.csv": "part_features",
     "readings.csv": "part_readings",
     "cycles.csv": "part_cycles",
@@ -35,13 +35,14 @@ TABLES = {  # of measured parts and of mills: whole tables, mm and seconds as th
 }
 TABLE_OF = {Kind.MILL_TOOL: "mill_tools.csv", Kind.PRESET: "presets.csv"}
 _ALL = 2**62
-_LARGEST = 64 * MB  # of a table, or of a program
+_LARGEST = 64 * MB  # limit for one table or program
 
 
 def export(store: Store, folder: Path) -> int:
-    """Writes the newest version of every program, and all that is kept besides; answers how many programs.
+    """Write the newest version of every program and the other data; return the number of programs.
 
-    The folder appears when all of it is written. Raises StoreError when it is there already and not empty.
+    The folder appears only when it is complete. Raises StoreError if the folder exists and is not empty, or
+    cannot be written.
     """
     try:
         if folder.exists() and any(folder.iterdir()):
@@ -83,9 +84,7 @@ def _write_all(store: Store, folder: Path) -> int:
 
 
 def _file_name(name: object) -> str:
-    """Of a program. Raises StoreError for a name that would lead out of the folder, or is none: a store that
-    was changed from outside.
-    """
+    """Return a program's file name. Raises StoreError if the name is invalid or leads out of the folder."""
     if isinstance(name, str) and name and Path(name).name == name and "\0" not in name:
         return name
     raise StoreError(
@@ -114,7 +113,7 @@ def _offset_lines(store: Store) -> Iterator[str]:
 
 
 def _key(number: int) -> str:
-    """A tool, or a further edge of it as a table of its own: 3, 3.d2."""
+    """Return the TOML key of a tool, such as 3, or of a further cutting edge, such as 3.d2."""
     return f"{number}" if number == tool_of(number) else f"{tool_of(number)}.d{edge_of(number)}"
 
 
@@ -124,7 +123,7 @@ def _entry_lines(kind: Kind, row: Row) -> Iterator[str]:
 
 
 def _toml(field: Field, value: Value) -> str:
-    """A value of an offset as TOML writes it."""
+    """Return an offset's value in TOML syntax, lengths in inches."""
     if isinstance(value, str):
         return json.dumps(value, ensure_ascii=False)
     if isinstance(value, bool):
@@ -133,13 +132,13 @@ def _toml(field: Field, value: Value) -> str:
 
 
 def _run_columns() -> Iterator[str]:
-    """Times say that they are seconds."""
+    """Yield the columns of the run table, with ``_s`` appended to times in seconds."""
     for name in RunRow._fields:
         yield f"{name}_s" if name in {"best", "latest", "planned"} else name
 
 
 def _write_table(path: Path, head: Iterable[str], rows: Iterable[Iterable[object]]) -> None:
-    """For spreadsheets; what is not known is an empty cell."""
+    """Write a CSV file for spreadsheets; unknown values are empty cells."""
     with path.open("w", encoding="utf-8", newline="") as file:
         table = csv.writer(file)
         table.writerow(head)
@@ -147,9 +146,9 @@ def _write_table(path: Path, head: Iterable[str], rows: Iterable[Iterable[object
 
 
 def mill_rows(folder: Path) -> dict[Kind, dict[int, dict[str, Value]]]:
-    """Tools and presets of a mill in an exported folder, by number; fields that it lacks are left out.
+    """Return tools and presets of a mill from an exported folder, by number; missing fields are omitted.
 
-    Raises StoreError where the folder's tables cannot be read.
+    Raises StoreError if a table cannot be read.
     """
     return {kind: _rows(folder / TABLE_OF[kind], kind) for kind in TABLE_OF}
 
@@ -169,7 +168,10 @@ def _rows(path: Path, kind: Kind) -> dict[int, dict[str, Value]]:
 
 
 def _numbered(path: Path, line: int, row: dict[str, str], kind: Kind) -> tuple[int, dict[str, Value]]:
-    """One row. Raises StoreError with its place."""
+    """Return the number and values of one row.
+
+    Raises StoreError with the line number if the row is invalid.
+    """
     try:
         fields = {each.column: each for each in FIELDS[kind].values()}
         values = {
@@ -194,7 +196,7 @@ def _number(field: Field, text: str) -> Value:
 
 
 def program_files(folder: Path) -> dict[str, bytes]:
-    """The programs of an exported folder by name. Raises StoreError when it is no such folder."""
+    """Return the programs of an exported folder by name. Raises StoreError if the folder is not an export."""
     try:
         return {path.name: input_bytes(path, _LARGEST) for path in sorted((folder / PROGRAMS).iterdir())}
     except OSError as error:
@@ -214,9 +216,9 @@ def import_all(
     offsets: Mapping[Kind, Mapping[int, Mapping[str, Value]]],
     reason: Reason,
 ) -> None:
-    """Save programs by name and rows of offsets by number, within the transaction of the caller.
+    """Save programs by name and rows of offsets by number, within the caller's transaction.
 
-    Raise StoreError for an invalid name, and for a number or value out of range.
+    Raises StoreError if a name is invalid, or if a number or value is out of range.
     """
     for name, text in programs.items():
         program_records.save(connection, name, text, reason.why)

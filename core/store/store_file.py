@@ -1,4 +1,4 @@
-"""The store without its database: where it lies, and the settings that are kept of a program."""
+"""File name of the store, and the keys of the settings stored for each program."""
 
 from __future__ import annotations
 
@@ -9,9 +9,10 @@ FILE_NAME = "turndesk.db"
 
 
 def has_store(folder: Path) -> bool:
-    """Return whether anything has the store's name: also a pipe, or a link whose disk is not mounted.
+    """Return whether a file of the store's name exists, even if it cannot be read.
 
-    True also where the folder is such a link, or closed to this user. Reading it reports what is wrong.
+    The result is also True for a pipe, for a link whose disk is not mounted, and for a folder that is such a
+    link or is closed to this user. The error is reported when the store is read.
     """
     try:
         os.lstat(folder / FILE_NAME)
@@ -23,25 +24,25 @@ def has_store(folder: Path) -> bool:
 
 
 def real_path(path: Path) -> Path:
-    """Return the file that a link leads to; ``path`` itself if it is not a link."""
+    """Return the target of a link; ``path`` itself if it is not a link."""
     return path.resolve() if path.is_symlink() else path
 
 
 def stock_key(program: str) -> str:
-    """The setting that holds the stock of a program."""
+    """Return the key of the setting with the stock of a program."""
     return f"stock:{program}"
 
 
 def notes_key(program: str) -> str:
-    """The setting that holds what the setup person has noted about a program."""
+    """Return the key of the setting with the setup notes of a program."""
     return f"notes:{program}"
 
 
 def text_key(program: str) -> str:
-    """Return the setting that states which text was last loaded under this name."""
+    """Return the key of the setting that specifies which text was last loaded under this name."""
     return f"text:{program}"
 
 
 def part_key(program: str) -> str:
-    """The setting that holds what else is kept of a program's part: stick-out and silenced checks."""
+    """Return the key of the setting with a program's stick-out and silenced checks."""
     return f"part:{program}"

@@ -1,4 +1,7 @@
-"""What the store hands out, and the fields of an offset: lengths mm, X a radius; times UTC, ISO 8601."""
+"""Row types of the store and the fields of an offset.
+
+Lengths are in mm with X as a radius. Times are UTC in ISO 8601 format.
+"""
 
 from __future__ import annotations
 
@@ -13,18 +16,18 @@ from core.message import Message
 from core.tool_edges import EDGES, edge_key
 
 MM_PER_INCH = 25.4
-TOOL_REACH = 1270.0  # mm: 50 in, more than any such lathe travels
-SECONDARY_REACH = 254.0  # mm: 10 in, what the control's display has digits for
-RADIUS_MAX = 50.8  # mm: 2 in
-WEAR_REACH = 2.54  # mm: .1 in; a tool that is off by more has to be touched off
+TOOL_REACH = 1270.0  # mm, 50 in, more than the travel of any such lathe
+SECONDARY_REACH = 254.0  # mm, 10 in, the limit of the digits on the control's display
+RADIUS_MAX = 50.8  # mm, 2 in
+WEAR_REACH = 2.54  # mm, .1 in; a tool with more wear has to be touched off again
 REMARK_LONGEST = 40  # characters
-SHAPE_REACH = 508.0  # mm: 20 in, longer than any tool of such a lathe sticks out
+SHAPE_REACH = 508.0  # mm, 20 in, more than the stick-out of any tool of such a lathe
 OUTLINE_LONGEST = 600  # characters
-ZERO_REACH = 5000.0  # mm, more than any such lathe travels
-MILL_TOOL_REACH = 1000.0  # mm, longer and thicker than any tool of a mill
-OVERSIZE_REACH = 99.999  # mm, as TOOL CALL takes it
+ZERO_REACH = 5000.0  # mm, more than the travel of any such lathe
+MILL_TOOL_REACH = 1000.0  # mm, more than the length or diameter of any mill tool
+OVERSIZE_REACH = 99.999  # mm, as in TOOL CALL
 LIFE_REACH = 100_000.0  # minutes
-ANGLE_REACH = 360.0  # degrees: further is the same place
+ANGLE_REACH = 360.0  # degrees; larger angles repeat the same positions
 TOOL_KINDS = (
     *("turning", "boring", "grooving", "parting", "threading", "drill"),
     *("centre-drill", "reamer", "tap", "end-mill", "form"),
@@ -36,14 +39,14 @@ TOOL_ROWS = frozenset(edge_key(tool, edge) for tool in OFFSETS for edge in EDGES
 """Numbers of the tables of tools: T, and their further cutting edges."""
 ZERO_CODES = range(54, 60)
 MILL_TOOLS = range(1, 1000)
-PRESETS = range(1, 100)  # 0 is that of the machine file
+PRESETS = range(1, 100)  # preset 0 is specified in the machine file
 Value = float | int | str | bool
 
 
 class Sort(StrEnum):
-    """What a value is."""
+    """Type and unit of a field's value."""
 
-    LENGTH = "length"  # mm, and inches for whoever enters it
+    LENGTH = "length"  # stored in mm, entered and shown in inches
     METRIC = "millimetres"
     ANGLE = "degrees"
     MINUTES = "minutes"
@@ -57,22 +60,23 @@ _UNITS = {Sort.METRIC: "mm", Sort.ANGLE: "degrees", Sort.MINUTES: "minutes"}
 
 @dataclass(frozen=True, slots=True)
 class Field:
-    """One field: ``low`` and ``high`` are mm for a length, characters for a text.
+    """Name, limits and type of one field of a row.
 
-    It stands at its place in a row (``store_rows``), whose name is what commands and files call it.
+    ``low`` and ``high`` are in mm for a length and numbers of characters for a text. A field is declared as
+    the annotation of a row's attribute, whose name commands and files use.
     """
 
-    word: str  # as a sentence calls it
+    word: str  # the name used in messages
     low: float = 0.0
     high: float = 0.0
     sort: Sort = Sort.LENGTH
-    choices: tuple[str, ...] = ()  # of a text that is one of these
-    column: str = ""  # of the database, where it is not the name
+    choices: tuple[str, ...] = ()  # valid values of a text with fixed values
+    column: str = ""  # the database column, if it differs from the name
     name: str = ""
 
     @property
     def range(self) -> str:
-        """What it takes, in the unit of the door."""
+        """Accepted range as text, in the unit in which the value is entered."""
         if self.choices:
             return ", ".join(self.choices)
         if self.sort is Sort.LENGTH:
@@ -88,7 +92,7 @@ class Field:
         return f"{self.low:g}…{self.high:g}"
 
     def takes(self, value: object) -> bool:
-        """Whether the store keeps this value; a NaN is out of every range."""
+        """Return whether the store accepts this value. NaN is never accepted."""
         if self.choices:
             return value in self.choices
         if isinstance(value, str):
@@ -102,14 +106,17 @@ class Field:
 
 
 def fields_of(row: type) -> Mapping[str, Field]:
-    """The fields of a row by name, in their order; each stands beside its type."""
+    """Return the fields of a row type by name, in order, read from its annotations."""
     fields = {name: get_args(hint)[1] for name, hint in get_type_hints(row, include_extras=True).items()}
     return {name: replace(field, name=name, column=field.column or name) for name, field in fields.items()}
 
 
 class Kind(StrEnum):
-    """The tables of offsets: T, D, the settable zero offsets G54 to G59, the shapes of the tools; and those
-    of a mill, its tools and the presets of the workpiece's zero."""
+    """Kinds of offset tables.
+
+    A lathe has T, D, zero offsets G54 to G59 and tool shapes. A mill has tools and presets of the workpiece
+    zero.
+    """
 
     TOOL = "tool"
     SECONDARY = "secondary"
@@ -128,9 +135,10 @@ def _size(word: str) -> Field:
 
 
 class ToolRow(NamedTuple):
-    """Machine position at which the tip stood on part zero when it was touched off, and its wear since.
+    """A tool offset: the machine position with the tip at part zero when touched off, and the wear since.
 
-    ``quadrant`` is where the tip lies as seen from the nose centre, 0…9; one tool at most is the master.
+    Lengths are in mm, X as a radius. ``quadrant`` is the direction of the tip from the nose center, 0 to 9.
+    At most one tool is the master tool.
     """
 
     x: Annotated[float, _reach("X", TOOL_REACH)] = 0.0
@@ -144,12 +152,12 @@ class ToolRow(NamedTuple):
 
     @property
     def offset(self) -> tuple[float, float]:
-        """Geometry and wear together: what the control moves by."""
+        """Geometry plus wear in X and Z, in mm, X as a radius."""
         return self.x + self.wear_x, self.z + self.wear_z
 
 
 class SecondaryRow(NamedTuple):
-    """D offset as stored: X a radius, R the nose radius."""
+    """A secondary offset (D) in mm, X as a radius; ``r`` is the nose radius."""
 
     x: Annotated[float, _reach("X", SECONDARY_REACH)] = 0.0
     z: Annotated[float, _reach("Z", SECONDARY_REACH)] = 0.0
@@ -157,7 +165,7 @@ class SecondaryRow(NamedTuple):
 
 
 class ZeroRow(NamedTuple):
-    """Zero offset: machine position of the program's zero, X a radius, C in degrees."""
+    """A zero offset: the machine position of program zero, in mm and degrees, X as a radius."""
 
     x: Annotated[float, _reach("X", ZERO_REACH, Sort.METRIC)] = 0.0
     z: Annotated[float, _reach("Z", ZERO_REACH, Sort.METRIC)] = 0.0
@@ -165,10 +173,12 @@ class ZeroRow(NamedTuple):
 
 
 class ShapeRow(NamedTuple):
-    """Shape of a tool, mm and degrees, 0 or empty: not stated; nose radius and tip are those of its offset.
+    """Shape of a tool, in mm and degrees; 0 or empty means not specified.
 
-    ``length`` is what can cut, ``stick_out`` where the tool is held, ``entry`` the entering angle of the main
-    edge; ``rear``: it works at X negative; ``profile`` is an outline, ``z,x z,x z,x`` in mm.
+    The nose radius and the tip quadrant are in the tool offset. ``length`` is the cutting length,
+    ``stick_out`` the distance from the holder to the tip, and ``entry`` the entering angle of the main
+    cutting edge. ``rear`` means that the tool works at negative X. ``profile`` is an outline, ``z,x z,x z,x``
+    in mm.
     """
 
     kind: Annotated[str, Field("kind", sort=Sort.TEXT, choices=TOOL_KINDS)] = ""
@@ -188,9 +198,10 @@ class ShapeRow(NamedTuple):
 
 
 class MillRow(NamedTuple):
-    """A tool of a mill: L, R, R2 (its corner), what they are off by (DL, DR, DR2), mm; its life in min.
+    """A tool of a mill: length L, radius R and corner radius R2, with their oversizes, in mm.
 
-    ``stops``: no other part begins with it when its life is gone.
+    ``life`` is the tool life in minutes. ``stops`` prevents the start of another part when the tool life is
+    used up.
     """
 
     name: Annotated[str, Field("NAME", 0, REMARK_LONGEST, Sort.TEXT)] = ""
@@ -207,8 +218,10 @@ class MillRow(NamedTuple):
 
 
 class PresetRow(NamedTuple):
-    """Machine position of the workpiece's zero, mm, and its basic rotation, with the rotary axes at A B C,
-    where they read 0."""
+    """Machine position of the workpiece zero in mm, and the basic rotation in degrees.
+
+    ``a``, ``b`` and ``c`` are the positions at which the rotary axes show 0, in degrees.
+    """
 
     x: Annotated[float, _reach("X", ZERO_REACH, Sort.METRIC)] = 0.0
     y: Annotated[float, _reach("Y", ZERO_REACH, Sort.METRIC)] = 0.0
@@ -230,17 +243,17 @@ FIELDS: Mapping[Kind, Mapping[str, Field]] = {
 }
 Row = ToolRow | SecondaryRow | ZeroRow | ShapeRow | MillRow | PresetRow
 R = TypeVar("R", ToolRow, SecondaryRow, ZeroRow, ShapeRow, MillRow, PresetRow)
-RowT = TypeVar("RowT", bound=Row)  # also where only the kind is known when the program runs
+RowT = TypeVar("RowT", bound=Row)  # also for rows whose type is known only at run time
 
 
 def with_fields(row: R, values: Mapping[str, Value]) -> R:
-    """The row with these fields, by their names in ``FIELDS``. Raises ValueError for one that it has not."""
-    named: dict[str, Any] = dict(values)  # each field is of its own sort
+    """Return the row with these fields replaced. Raises ValueError for an unknown field name."""
+    named: dict[str, Any] = dict(values)  # the fields have different types
     return row._replace(**named)
 
 
 class Change(NamedTuple):
-    """One offset's change: its row before and after, None where it was not set. Ids give the order."""
+    """A change of one offset: the row before and after, None if it was not set. Ids increase with time."""
 
     id: int
     step: int
@@ -255,7 +268,7 @@ class Change(NamedTuple):
 
 
 class ProgramRow(NamedTuple):
-    """A program's name and its newest version."""
+    """The name of a program, with its newest version."""
 
     name: str
     created: str
@@ -264,7 +277,7 @@ class ProgramRow(NamedTuple):
 
 
 class VersionRow(NamedTuple):
-    """One saved version of a program."""
+    """One saved version of a program, without its text."""
 
     number: int
     sha256: str
@@ -275,9 +288,10 @@ class VersionRow(NamedTuple):
 
 
 class EventRow(NamedTuple):
-    """One line of the log; ``line`` is the program's, 0 none; ``record`` is a file of the folder records.
+    """One entry of the event log.
 
-    ``who`` has changed something, where people say who they are.
+    ``line`` is the program line, or 0. ``record`` is a file in the folder ``records``, or empty. ``who`` is
+    the user who made a change, if users log in.
     """
 
     at: str
@@ -289,9 +303,10 @@ class EventRow(NamedTuple):
 
 
 class RunRow(NamedTuple):
-    """What a program has done: parts counted, last run and its outcome, cycles since ever, times in seconds.
+    """The run record of a program: part count, last run and its outcome, and cycles, with times in seconds.
 
-    ``proof`` is what proving found last, ``planned`` the cycle time it reckoned with; None: never.
+    ``proof`` is the result of the last proof and ``planned`` its calculated cycle time. None means that no
+    value exists yet.
     """
 
     program: str
@@ -307,15 +322,15 @@ class RunRow(NamedTuple):
 
 
 def inches(mm: float) -> float:
-    """Millimetres as inches with ten places: what was entered in inches comes back as it was entered."""
+    """Return mm as inches, rounded to ten decimals so that a value entered in inches is shown unchanged."""
     return round(mm / MM_PER_INCH, 10)
 
 
 def utc_now() -> str:
-    """This moment, to the millisecond."""
+    """Return the present time as UTC text, to the millisecond."""
     return utc(datetime.now(UTC))
 
 
 def utc(moment: datetime) -> str:
-    """A moment as it is kept; what is later is greater as a text too."""
+    """Return a time as UTC text in the stored format, which sorts in chronological order."""
     return moment.astimezone(UTC).isoformat(timespec="milliseconds").replace("+00:00", "Z")

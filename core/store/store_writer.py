@@ -1,4 +1,4 @@
-"""The one thread that writes. Whoever wants something stored posts it and need not wait for the disk."""
+"""The thread that writes the store, so that callers need not wait for the disk."""
 
 from __future__ import annotations
 
@@ -21,14 +21,15 @@ from core.store.store_access import Backlog, Keeping, Operation
 from core.store.store_errors import Cause, StoreError, cause_of, why
 from core.store.store_rows import EventRow, utc_now
 
-# --- What is still to be written: events, part counts, runs and settings, held until the disk takes them.
+# --- Entries to be written: events, part counts, runs and settings, buffered until the disk accepts them.
 
 
-EVENTS = 20_000  # more than a week of them; beyond that the oldest go, and how many is told
+# more than a week of events; beyond this number the oldest are dropped and their number is reported
+EVENTS = 20_000
 
 
 class _Parts(NamedTuple):
-    """Of one program: put to nought first, then so many more."""
+    """Pending change of a program's part count: an optional reset, then the parts to add."""
 
     reset: bool = False
     more: int = 0
@@ -36,7 +37,7 @@ class _Parts(NamedTuple):
 
 
 class _Cycles(NamedTuple):
-    """Of one program: whole cycles, and their times in seconds."""
+    """Pending complete cycles of a program, with their times in seconds."""
 
     made: int
     best: float
@@ -44,9 +45,10 @@ class _Cycles(NamedTuple):
 
 
 class Unwritten:
-    """Takes what happens and writes all of it in one transaction. On the writer's thread alone.
+    """Entries that are not on the disk yet; used only by the writer's thread.
 
-    Counts add up and of settings only the last stays, so that what is held does not grow with the days.
+    All entries are written in one transaction. Part counts are added up and only the last value of a setting
+    is stored, so the memory used does not grow with time.
     """
 
     def __init__(self) -> None:
@@ -60,40 +62,40 @@ class Unwritten:
         return bool(self._events or self._parts or self._cycles or self._latest or self._dropped)
 
     def event(self, row: EventRow) -> None:
-        """One line of the log."""
+        """Add an event; drop the oldest event if there are too many."""
         if len(self._events) >= EVENTS:
             self._events.popleft()
             self._dropped += 1
         self._events.append(row)
 
     def count_parts(self, program: str, by: int) -> None:
-        """Parts made, or added and taken away by hand."""
+        """Add parts to a part count, or subtract them if ``by`` is negative."""
         before = self._parts.get(program, _Parts())
         self._parts[program] = before._replace(more=before.more + by, last=utc_now())
 
     def reset_parts(self, program: str) -> None:
-        """The count begins again at nought."""
+        """Set a part count to zero."""
         self._parts[program] = _Parts(reset=True, last=utc_now())
 
     def cycle(self, program: str, seconds: float) -> None:
-        """One whole cycle and its time."""
+        """Add a complete cycle and its time in seconds."""
         before = self._cycles.get(program, _Cycles(0, seconds, seconds))
         self._cycles[program] = _Cycles(before.made + 1, min(before.best, seconds), seconds)
 
     def latest(self, name: tuple[str, str], operation: Operation[object]) -> None:
-        """Of several under one name only the last counts."""
-        self._latest.pop(name, None)  # what comes last is written last
+        """Add an operation that replaces a waiting operation with the same name."""
+        self._latest.pop(name, None)  # moves the operation to the end, so that it is written last
         self._latest[name] = operation
 
     def backlog(self, why: str) -> Backlog:
-        """How much there is of everything."""
+        """Return the numbers of the waiting entries, with the reason ``why`` they wait."""
         parts = sum(abs(each.more) for each in self._parts.values())
         others = len(self._latest) + len(self._cycles) + sum(each.reset for each in self._parts.values())
         counts = {program: (each.reset, each.more) for program, each in self._parts.items()}
         return Backlog(why, len(self._events), parts, others, self._dropped, counts)
 
     def write(self, connection: sqlite3.Connection) -> None:
-        """Everything, inside the caller's transaction. What the store would never take is told in its log."""
+        """Write all entries inside the caller's transaction. Entries that the store rejects are logged."""
         refused = [why for why in (_done(each, connection) for each in self._operations()) if why]
         if self._dropped:
             refused.append(
@@ -106,7 +108,7 @@ class Unwritten:
         event_log.log(connection, (*self._events, *(EventRow(now, "warning", why) for why in refused)))
 
     def clear(self) -> None:
-        """All of it is on the disk."""
+        """Remove all entries, because they are on the disk."""
         self._events.clear()
         self._dropped = 0
         self._parts.clear()
@@ -122,7 +124,10 @@ class Unwritten:
 
 
 def _done(operation: Operation[object], connection: sqlite3.Connection) -> str:
-    """Why it can never be written; a disk that takes nothing now raises, and all of it is tried again."""
+    """Run an operation and return the reason if the store can never accept it, otherwise an empty text.
+
+    A temporary disk error is raised, so that all entries are tried again later.
+    """
     try:
         operation(connection)
     except (StoreError, sqlite3.IntegrityError) as error:
@@ -149,21 +154,18 @@ def _writing_cycles(program: str, cycles: _Cycles) -> Operation[object]:
 
 T = TypeVar("T")
 _Task = Callable[[Unwritten], None]
-HANGS = 2.0  # s; a change that is not stored for longer is reported
-ENDS = 10.0  # s that closing waits for the disk
-AGAIN = 2.0  # s after which what the disk did not take is tried again
+HANGS = 2.0  # s, a change that waits longer is reported
+ENDS = 10.0  # s that ``close`` waits for the disk
+AGAIN = 2.0  # s until a failed write is tried again
 
 
 class StoreWriter:
-    """Runs operations one after the other, each in a transaction of its own.
+    """A thread that runs operations one after the other, each in its own transaction.
 
-    The future of ``post`` is answered only when its transaction is on the disk. It answers with StoreError
-    when it is not; the store is then as before. What is given to ``keep`` nobody waits for: what the disk
-    does not take stays in memory and is written as soon as it does. ``trouble`` is the sentence of the last
-    write that failed, until one succeeds; ``held`` what waits, None while nothing has to.
-
-    A disk that hangs reports nothing, but the age of the oldest change that is not stored shows it. ``clock``
-    returns seconds.
+    The future of ``post`` is done when its transaction is on the disk. It raises StoreError if the operation
+    fails; the store is then unchanged. An entry given to ``keep`` that the disk does not accept remains in
+    memory and is written later. A disk that hangs reports no error, so the age of the oldest unfinished
+    change is checked. ``clock`` returns seconds.
     """
 
     def __init__(
@@ -172,10 +174,10 @@ class StoreWriter:
         self._trouble = ""
         self._backlog: Backlog | None = None
         self._clock = clock
-        self._posted: deque[float] = deque()  # when what is queued or in hand was posted
+        self._posted: deque[float] = deque()  # times at which the queued and current tasks were submitted
         self._connection, self._path = connection, path
         self._unwritten = Unwritten()
-        self._waiting: list[Future[None]] = []  # for what is not on the disk yet
+        self._waiting: list[Future[None]] = []  # futures of entries that are not on the disk yet
         self._queue: queue.SimpleQueue[_Task | None] = queue.SimpleQueue()
         self._closing = threading.Lock()
         self._closed = False
@@ -184,12 +186,12 @@ class StoreWriter:
 
     @property
     def trouble(self) -> str:
-        """Why changes are not stored; empty while all is well."""
+        """Reason why changes are not stored; empty if all changes are stored."""
         return self._trouble or self._hanging
 
     @property
     def backlog(self) -> Backlog | None:
-        """What waits in memory; None while nothing has to."""
+        """Entries that wait in memory for the disk; None if there are none."""
         why, waiting = self._hanging, len(self._posted)
         if self._backlog is None:
             return Backlog(why, others=waiting) if why else None
@@ -197,7 +199,7 @@ class StoreWriter:
 
     @property
     def _hanging(self) -> str:
-        """That the disk does not answer; empty while the oldest change is younger than ``HANGS``."""
+        """Message that the disk does not respond; empty while the oldest change is younger than ``HANGS``."""
         try:
             waited = self._clock() - self._posted[0]
         except IndexError:
@@ -205,15 +207,15 @@ class StoreWriter:
         return str(Cause.HANGS.error(self._path, "")) if waited > HANGS else ""
 
     def post(self, operation: Operation[T]) -> Future[T]:
-        """Queue ``operation``; it gets the connection inside a transaction. Raises StoreError once closed."""
+        """Queue ``operation`` to run inside a transaction. Raises StoreError if the store is closed."""
         future: Future[T] = Future()
         self._put(lambda _unwritten: self._answer(operation, future))
         return future
 
     def keep(self, keeping: Keeping) -> Future[None]:
-        """Queue something that must be written, sooner or later. Raises StoreError once closed.
+        """Queue an entry that must be written sooner or later. Raises StoreError if the store is closed.
 
-        The future is answered when it is on the disk, and with StoreError when it is held for later.
+        The future is done when the entry is on the disk. It raises StoreError if the entry has to wait.
         """
         future: Future[None] = Future()
 
@@ -234,9 +236,10 @@ class StoreWriter:
             self._queue.put(task)
 
     def close(self, limit: float = ENDS) -> bool:
-        """Write what is queued, then end the thread; ``backlog`` tells what could not be written.
+        """Write the queued changes, then end the thread; return whether the thread has ended.
 
-        Returns False when the disk takes longer than ``limit`` seconds: the thread still uses the connection.
+        The result is False if the disk takes longer than ``limit`` seconds; the thread then still uses the
+        connection. ``backlog`` has the entries that could not be written.
         """
         with self._closing:
             if not self._closed:
@@ -259,7 +262,7 @@ class StoreWriter:
         self._write_held()
 
     def _write_held(self) -> None:
-        """All that waits, in one transaction: on the disk, or held as before."""
+        """Write all waiting entries in one transaction; retain them if the write fails."""
         if not self._unwritten:
             return
         try:
@@ -286,7 +289,7 @@ class StoreWriter:
                 answer(future)
 
     def _answer(self, operation: Operation[T], future: Future[T]) -> None:
-        self._write_held()  # what happened before it stands before it
+        self._write_held()  # earlier entries must be written first
         if not future.set_running_or_notify_cancel():
             return
         try:
@@ -298,7 +301,7 @@ class StoreWriter:
         future.set_result(answer)
 
     def _failed(self, error: Exception) -> Exception:
-        """The transaction is taken back; a failure of the store becomes its sentence."""
+        """Roll back the transaction and return the error, converted to StoreError if SQLite raised it."""
         with suppress(sqlite3.Error):
             self._connection.rollback()
         if not isinstance(error, sqlite3.Error):
@@ -306,7 +309,7 @@ class StoreWriter:
         if isinstance(error, sqlite3.IntegrityError):
             return StoreError(
                 Message("nothing was stored ({error})", error=error), "constraint"
-            )  # nothing is wrong with the disk
+            )  # the disk has no fault
         self._trouble = str(why(self._path, error))
         cause = cause_of(self._path, error)
         told = StoreError(

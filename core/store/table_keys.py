@@ -1,4 +1,4 @@
-"""Columns of the public tables of the store and of its export, for the reference and its tests."""
+"""Columns of the public tables of the store and its export, for the reference page and its tests."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from core.store.store_rows import EventRow, MillRow, PresetRow, SecondaryRow, Sh
 
 
 class TableKeys(NamedTuple):
-    """A table of the store: its name, the file of ``store export`` with the same columns, and the columns."""
+    """A table of the store: its name, columns, and the export file with the same columns."""
 
     name: str
     file: str
@@ -170,7 +170,7 @@ remark | | Remark.
 def _columns(
     row: type[tuple[object, ...]], text: str, renamed: dict[str, str] | None = None
 ) -> tuple[Key, ...]:
-    """Return a row type's fields as columns, where SQLite has integers for booleans."""
+    """Return the fields of a row type as columns, with integers for booleans as in SQLite."""
     columns = row_keys("", row, text)
     names = renamed or {}
     return tuple(

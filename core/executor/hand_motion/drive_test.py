@@ -1,10 +1,11 @@
-"""Drive test: one axis plays a step, ramp or sine as long as its lease is renewed, as in a jog.
+"""Drive test: one axis performs a step, a ramp or a sine while its lease is renewed, as in a jog.
 
-What is queued already ends in the stop of a lost lease. The whole excursion has to lie within the travel
-before anything moves. Nothing is written to a drive.
+The queued setpoints always end in the stop of an expired lease. The full excursion must be within the travel
+before the axis moves. Nothing is written to a drive.
 
-A setpoint cannot leap, so a step is the way done as hard as the axis may: speeding up over one half, braking
-over the other. A sine is s/2·(1 - cos ωt): it begins at rest, and lies to one side of where it began.
+A setpoint cannot jump, so a step is a move with the full acceleration of the axis over the first half and
+full braking over the second. A sine is s/2·(1 - cos ωt). It starts at rest and stays on one side of the start
+position.
 """
 
 from __future__ import annotations
@@ -24,23 +25,23 @@ from core.machine.machine_model import Axis
 from core.message import Message
 from core.ports import MachinePorts
 
-LARGEST = 2.54  # mm: what is larger is no small test
-LONGEST = 25.4  # mm of a ramp, which needs way to become even
-PAUSE = 0.5  # s of rest behind every way, in which it settles
-_BETWEEN = 0.2  # s of rest behind every sine
-_WAVES, _LASTS = 5, 0.8  # of a sine at least, and s; the first wave is the one in which it swings in
-_PIECES = 40  # of a wave at most; a piece is no shorter than
-_SHORTEST = 0.002  # s, and a wave has no less than
-_LEAST = 12  # pieces
+LARGEST = 2.54  # mm, largest travel of a step or a sine
+LONGEST = 25.4  # mm, largest travel of a ramp, which needs distance to reach a constant speed
+PAUSE = 0.5  # s of rest after each move, for settling
+_BETWEEN = 0.2  # s of rest after each sine
+_WAVES, _LASTS = 5, 0.8  # least number of periods and least s of a sine; the first period is for settling
+_PIECES = 40  # most ramps per period
+_SHORTEST = 0.002  # s, shortest ramp
+_LEAST = 12  # least ramps per period
 _ROUND = 1e-9
 PLANS = (
     "drive tests are not available because the controller plans its own motion and does not accept setpoints"
 )
-TICKS = 100.0  # samples a second where the driver has none of its own
+TICKS = 100.0  # samples per second if the driver has no samples
 
 
 class Shape(StrEnum):
-    """What the setpoints of a test look like over time."""
+    """The shape of the setpoints of a test over time."""
 
     STEP = "step"
     RAMP = "ramp"
@@ -49,7 +50,7 @@ class Shape(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """What the axis may in a test: mm/s, mm/s², and how many samples a second tell of it."""
+    """The limits of the axis in a test: speed in mm/s, acceleration in mm/s², and samples per second."""
 
     top: float
     amax: float
@@ -57,13 +58,17 @@ class Limits:
 
     @property
     def fastest_sine(self) -> float:
-        """Hz: of a wave ten samples are needed."""
+        """The highest sine frequency in Hz, which gives ten samples per period."""
         return self.rate / 10.0
 
 
 @dataclass(frozen=True, slots=True)
 class DriveTestPath:
-    """``size`` mm, signed, peak to peak of a sine; ``speed`` mm/s of a ramp; ``frequencies`` Hz of sines."""
+    """The motion of a drive test.
+
+    ``size`` is the signed travel in mm, peak to peak for a sine. ``speed`` is the speed of a ramp in mm/s.
+    ``frequencies`` are those of the sines in Hz.
+    """
 
     axis: str
     shape: Shape
@@ -72,7 +77,7 @@ class DriveTestPath:
     frequencies: tuple[float, ...] = ()
 
     def refusal(self, limits: Limits) -> str:
-        """Why this is no test; empty when it is one."""
+        """Return why the values are not valid for a test, or an empty string."""
         longest = LONGEST if self.shape is Shape.RAMP else LARGEST
         if not 0.0 < abs(self.size) <= longest + _ROUND:
             return Message(
@@ -110,13 +115,13 @@ class DriveTestPath:
         return ""
 
     def size_at(self, frequency: float, limits: Limits) -> float:
-        """Peak to peak of the sine of this frequency, mm, signed: less where the axis cannot do the whole."""
+        """Return the signed peak-to-peak travel in mm of the sine, reduced to what the axis can follow."""
         omega = 2.0 * math.pi * frequency
         able = min(2.0 * limits.top / omega, 2.0 * limits.amax / omega**2)
         return math.copysign(min(abs(self.size), able), self.size)
 
     def ramps(self, limits: Limits) -> list[Ramp]:
-        """Pieces from rest to rest, (seconds, speed at its start, acceleration)."""
+        """Return the ramps of the test from rest to rest: (seconds, start speed, acceleration)."""
         if self.shape is Shape.SINE:
             return [piece for each in self.frequencies for piece in self._sine(each, limits)]
         top = self.speed if self.shape is Shape.RAMP else limits.top
@@ -127,9 +132,10 @@ class DriveTestPath:
         ]
 
     def _sine(self, frequency: float, limits: Limits) -> list[Ramp]:
-        """Its velocity is exact at the ends of the pieces and straight between: it comes back exactly.
+        """Return the ramps of one sine, whose velocity is exact at the ends and linear between them.
 
-        Its size is less than asked by (ω dt)²/12: 2 % of the fastest, .2 % of the others.
+        The amplitude is smaller than requested by (ω dt)²/12: 2 % for the fastest sine and 0.2 % for the
+        others. The axis returns exactly to its start.
         """
         count = max(_LEAST, min(_PIECES, int(1.0 / (frequency * _SHORTEST))))
         waves = max(_WAVES, math.ceil(_LASTS * frequency))
@@ -142,14 +148,15 @@ class DriveTestPath:
 
 
 def seconds(ramps: list[Ramp]) -> float:
-    """How long they take."""
+    """Return the duration of the ramps in seconds."""
     return math.fsum(piece[0] for piece in ramps)
 
 
 def reach(ramps: list[Ramp]) -> tuple[float, float]:
-    """How far they lead from where they begin, mm down and up.
+    """Return the lowest and the highest position relative to the start, in mm.
 
-    Wherever they are broken off the axis comes to rest within that: they themselves brake no harder than it.
+    If the ramps are interrupted, the axis stops within this range, because it can always brake as hard as the
+    ramps do.
     """
     p, low, high = 0.0, 0.0, 0.0
     for dt, v, a in ramps:
@@ -161,7 +168,7 @@ def reach(ramps: list[Ramp]) -> tuple[float, float]:
 
 
 def cut(ramps: list[Ramp], begin: float, end: float) -> list[Ramp]:
-    """The part of them between two instants, s from their beginning."""
+    """Return the part of the ramps between two times in seconds from their start."""
     found, at = [], 0.0
     for dt, v, a in ramps:
         first, last = max(begin - at, 0.0), min(end - at, dt)
@@ -172,7 +179,7 @@ def cut(ramps: list[Ramp], begin: float, end: float) -> list[Ramp]:
 
 
 def braking(ramps: list[Ramp], amax: float) -> list[Ramp]:
-    """From their end to rest."""
+    """Return the ramp from the final speed to rest, or an empty list if the ramps end at rest."""
     if not ramps:
         return []
     dt, v, a = ramps[-1]
@@ -181,24 +188,24 @@ def braking(ramps: list[Ramp], amax: float) -> list[Ramp]:
 
 
 def barred(ports: MachinePorts) -> str:
-    """Why this machine has no drive tests; empty when it has."""
+    """Return why this machine cannot run drive tests, or an empty string."""
     return PLANS if ports.blocks is not None else ports.untraced
 
 
 class DriveTester:
-    """The drive test that is under way, if any."""
+    """Runs the drive tests of the executor, one at a time."""
 
     def __init__(self, context: MachineContext, jogger: Jogger) -> None:
         self._context, self._jogger = context, jogger
         self._ramps: list[Ramp] = []
-        self._lasts = 0.0  # s, of all of them
+        self._lasts = 0.0  # s, duration of all ramps
         self._began = 0.0
-        self._until = 0.0  # s from there for which they are queued
+        self._until = 0.0  # s from the start of the test that are queued
         self._number = 0
 
     @property
     def state(self) -> DriveTestState:
-        """For the snapshot."""
+        """The state of the drive tests for the snapshot."""
         jogger = self._jogger
         return DriveTestState(
             barred(self._context.ports),
@@ -215,7 +222,7 @@ class DriveTester:
         return samples.rate if samples is not None else TICKS
 
     def refusal(self, path: DriveTestPath, lease: float) -> str:
-        """Why this test is refused; empty when it may begin."""
+        """Return why this test is refused, or an empty string if it may start."""
         if why := barred(self._context.ports) or self._jogger.missing(path.axis):
             return why
         if not math.isfinite(lease) or lease <= 0.0:
@@ -265,7 +272,10 @@ class DriveTester:
         return Limits(self._jogger.top(axis, homed=True), axis.amax, self._rate)
 
     def begin(self, path: DriveTestPath, lease: float) -> bool:
-        """Begin it from rest; False where its lease is over before anything moves. Raises DriverError."""
+        """Start a test from rest; return False if its lease expires before anything moves.
+
+        Raises DriverError if the setpoints are rejected.
+        """
         self._ramps = path.ramps(self._limits(self._context.machine.axis(path.axis)))
         self._lasts, self._until = seconds(self._ramps), 0.0
         begins = self._queue(path.axis, lease)
@@ -273,25 +283,28 @@ class DriveTester:
         return begins
 
     def renew(self, lease: float) -> None:
-        """Another lease; what is over, or braking already, goes on no more. Raises DriverError."""
+        """Renew the lease of the test. A test that is braking or finished is not extended.
+
+        Raises DriverError if the setpoints are rejected.
+        """
         jogger = self._jogger
         if jogger.testing and not jogger.ending and self._until < self._lasts and lease > 0.0:
             self._queue(jogger.axis, lease)
 
     def look(self) -> None:
-        """Once a tick: a test ends where a guard is opened. Raises DriverError."""
+        """Stop the test if the guard is open. Called once per tick. Raises DriverError."""
         if self._jogger.testing and not self._jogger.ending and self._context.spindle.guard_open:
             self._jogger.stop()
 
     def _queue(self, name: str, lease: float) -> bool:
-        """Queue as much as the lease lasts, and the braking behind it; False where there is nothing left."""
+        """Queue the setpoints for the lease and the braking after it; return False if nothing remains."""
         amax, until = self._context.machine.axis(name).amax, self._context.now + min(lease, LONGEST_LEASE)
 
         def go(start: float, _p: float, _v: float) -> list[Ramp]:
             if not self._until:
                 self._began = start
             if start - self._began > self._until:
-                return []  # the lease ran out: it brakes already
+                return []  # the lease has expired and the axis is braking
             kept = cut(self._ramps, start - self._began, until - self._began)
             return [*kept, *braking(kept, amax)]
 

@@ -1,8 +1,8 @@
-"""Handwheel: clicks move one selected axis, as long as somebody asks and nothing speaks against it.
+"""Handwheel: each click moves one selected axis while the lease is renewed and no condition prevents it.
 
-The slide follows the wheel a tenth of a second behind, and what is queued is never more than that and the
-braking: clicks that come faster than the axis goes are dropped. Any end that was not asked for lasts until
-the wheel is selected anew.
+The axis follows the wheel with a delay of 0.1 s. The queue never contains more than this distance and the
+braking, so clicks faster than the axis are dropped. If the control ends the motion, the wheel must be
+selected again.
 """
 
 from __future__ import annotations
@@ -19,32 +19,38 @@ from core.machine.machine_model import Axis
 from core.machine.station_rules import ENABLE, WHEEL, selector
 from core.message import Message
 
-# --- counts and clicks ----------------------------------------------------------------------------------
+# --- encoder counts and clicks --------------------------------------------------------------------------
 
 
-_FASTEST = 1000.0  # clicks a second and
-_AT_ONCE = 10  # clicks more are what a hand can do; 300 a second is a hard spin
-_AWAY = 0.1  # s between two looks; what was turned in a longer one is old
+_FASTEST = 1000.0  # clicks per second and
+_AT_ONCE = 10  # additional clicks are the most that a hand can do; 300 per second is a fast spin
+_AWAY = 0.1  # s between two readings; counts of a longer gap are too old
 LONGEST_CLICK = 0.254  # mm (.01 in)
 LONGEST_TURN = 0.5  # degrees
-_BEHIND = 0.1  # s by which the slide follows the wheel
-_STILL = 0.1  # s for which the wheel must stand when it is selected
-_APART = 0.5  # s between the last of two at once and the next jog
+_BEHIND = 0.1  # s, delay of the axis after the wheel
+_STILL = 0.1  # s for which the wheel must be still after it is selected
+_APART = 0.5  # s between a simultaneous use of key and wheel and the next jog
 _ROUNDING = 1e-9
 
 
 class WheelClicks:
-    """Turns counts into clicks: ``per`` counts are one; a negative number reverses the wheel."""
+    """Converts encoder counts to clicks.
+
+    ``per`` is the number of counts per click; a negative number reverses.
+    """
 
     def __init__(self, per: int) -> None:
         self._per = per
-        self._last: tuple[float, int] | None = None  # time and counts of the last look
-        self._base = 0  # counts that have become clicks
-        self.still = 0.0  # s since it has last moved
-        self.leapt = False  # this look: a leap that no hand makes
+        self._last: tuple[float, int] | None = None  # time and counts of the last reading
+        self._base = 0  # counts that were converted to clicks
+        self.still = 0.0  # s since the last motion of the wheel
+        self.leapt = False  # the count has jumped in this tick, faster than a hand can turn
 
     def take(self, counts: int, now: float) -> int:
-        """Clicks since the last look, signed. Half a click waits: a wheel that rests on its edge is still."""
+        """Return the signed clicks since the last call.
+
+        Half a click is ignored, so that a resting wheel is still.
+        """
         before, self._last = self._last, (now, counts)
         if before is None:
             self._base = counts
@@ -54,14 +60,17 @@ class WheelClicks:
         if self.leapt or passed > _AWAY:
             self._base, self.still = counts, 0.0
             return 0
-        clicks = int((counts - self._base) / self._per)  # towards 0
+        clicks = int((counts - self._base) / self._per)  # rounded towards zero
         self._base += clicks * self._per
         self.still = 0.0 if clicks else self.still + passed
         return clicks
 
 
 class Handwheel:
-    """Moves ``axis``, empty while it moves nothing; ``ended`` says why the control has taken it away."""
+    """Moves ``axis``, which is empty while no axis is selected.
+
+    ``ended`` is why the control disabled the wheel.
+    """
 
     def __init__(self, context: MachineContext, jogger: Jogger) -> None:
         model = context.machine.hardware.analog.get(WHEEL)
@@ -73,12 +82,12 @@ class Handwheel:
         self.ended = ""
         self._step = 0.0
         self._until = 0.0
-        self._ready = False  # it has stood still since it was selected
-        self._reported = ""  # what was said once of this motion
-        self._apart = -math.inf  # until then no key jogs: it came together with the wheel
+        self._ready = False  # the wheel was still after it was selected
+        self._reported = ""  # the message already logged for this motion
+        self._apart = -math.inf  # time until which jog keys are refused after simultaneous use
 
     def select(self, command: Wheel, state: State) -> None:
-        """Select axis and step, or renew. Raises DriverError."""
+        """Select axis and step, or renew the lease. Raises DriverError if a driver fails."""
         if self.ended:
             return
         if why := self._refusal(command) or self._lost(state, command.axis):
@@ -89,18 +98,18 @@ class Handwheel:
         self._until = self._context.now + min(command.lease, LONGEST_LEASE)
 
     def off(self, state: State) -> None:
-        """The page no longer asks for the handwheel: what it moves stops. Raises DriverError."""
+        """Deselect the handwheel and stop its axis. Raises DriverError if a driver fails."""
         self._stop(state)
         self.axis = self.ended = ""
 
     def end(self, why: str, state: State) -> None:
-        """Take the handwheel away, and log why. Raises DriverError."""
+        """Disable the handwheel and log the reason ``why``. Raises DriverError if a driver fails."""
         self._stop(state)
         self.axis, self.ended = "", why
         self._context.log("refused", Message("handwheel: {what}", what=why))
 
     def turn(self, state: State) -> bool:
-        """Called once a tick: follow the clicks; returns whether the axis moves. Raises DriverError."""
+        """Follow the clicks, once per tick; return whether the axis moves. Raises DriverError."""
         context, jogger = self._context, self._jogger
         clicks = self._clicks.take(context.signals.wheel, context.now)
         if not self.axis:
@@ -120,7 +129,7 @@ class Handwheel:
         return self._follow(clicks)
 
     def bars(self, state: State) -> str:
-        """Why a jog by key is refused because of the handwheel; empty when it is not."""
+        """Return why the handwheel prevents a jog by key, or an empty string."""
         if self._jogger.goal is not None:
             self._together("a key or the screen was pressed while the handwheel was turning", state)
         if self._context.now >= self._apart:
@@ -155,7 +164,7 @@ class Handwheel:
         return ""
 
     def _lost(self, state: State, axis: str) -> str:
-        """What takes the wheel away in this tick."""
+        """Return the reason to disable the handwheel in this tick, or an empty string."""
         context, signals, inputs = self._context, self._context.signals, self._context.inputs
         reasons = (
             (
@@ -200,7 +209,7 @@ class Handwheel:
         return self._jogger.top(self._context.machine.axes[index], self._context.sample.homed[index])
 
     def _within(self, index: int, wanted: float) -> float:
-        """Up to the soft limit, and no click kept beyond it."""
+        """Limit a target to the travel. Clicks beyond the limit are dropped."""
         axis = self._context.machine.axes[index]
         if axis.travel is None or not self._context.sample.homed[index]:
             return wanted
@@ -218,14 +227,14 @@ class Handwheel:
 
 
 class _Chase:
-    """The way to ``wanted``, or as much of it as is not too far behind; ``goal`` is where it ends."""
+    """The move to ``wanted``, or as much of it as the axis can cover in time; ``goal`` is its end."""
 
     def __init__(self, axis: Axis, top: float, step: float, wanted: float) -> None:
         self._amax, self._top, self._step, self._wanted = axis.amax, top, step, wanted
         self.goal = wanted
 
     def pieces(self, _start: float, p: float, v: float) -> list[Ramp]:
-        """For ``Jogger.chase``: as fast as is needed to be a tenth of a second behind."""
+        """Return the ramps for ``Jogger.chase``, with the speed that gives a delay of 0.1 s."""
         way = self._wanted - p
         longest = max(self._top * _BEHIND + v * v / (2.0 * self._amax), self._step)
         if abs(way) > longest:

@@ -1,4 +1,4 @@
-"""The line that a jog moves along: one axis, or X Y Z together along an axis of a tilted plane (3D-ROT)."""
+"""The line of a jog: one axis, or X, Y and Z together along an axis of a tilted plane (3D-ROT)."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from core.ports import Segments
 
 FloatArray = npt.NDArray[np.float64]
 Ramp = tuple[float, float, float]  # seconds, speed at its start, acceleration
-Direction = tuple[float, float, float]  # of a unit vector in the machine's X Y Z
+Direction = tuple[float, float, float]  # unit vector in the machine's X, Y and Z
 
-LIMIT_MARGIN = 0.01  # mm or degrees kept from the soft limit
-_UNIT = 1e-6  # by which the length of a direction may be off
-_ASIDE = 1e-9  # share of the line below which an axis stands still
+LIMIT_MARGIN = 0.01  # mm or degrees of clearance to the soft limit
+_UNIT = 1e-6  # tolerance of the length of a direction
+_ASIDE = 1e-9  # share below which an axis does not move
 
 
 def room_to_limit(axis: Axis, at: float, direction: float) -> float:
-    """How far the axis may go in this direction; less than a count is nothing."""
+    """Return the distance to the soft limit in this direction; 0 if it is less than one encoder count."""
     if axis.travel is None:
         return math.inf
     low, high = axis.travel
@@ -32,21 +32,21 @@ def room_to_limit(axis: Axis, at: float, direction: float) -> float:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class JogLine:
-    """Axes of a machine with their shares of the way; of one axis alone its share is 1."""
+    """The axes of a machine with their shares of the distance along a line. A single axis has the share 1."""
 
     axes: Sequence[Axis]
     shares: FloatArray
 
     @classmethod
     def of_axis(cls, axes: Sequence[Axis], index: int) -> JogLine:
-        """One axis alone."""
+        """Return the line of one axis alone."""
         shares = np.zeros(len(axes))
         shares[index] = 1.0
         return cls(axes, shares)
 
     @classmethod
     def along(cls, axes: Sequence[Axis], direction: Direction) -> JogLine:
-        """X Y Z together; an axis whose share is nothing stands still."""
+        """Return the line of X, Y and Z in a direction. An axis with a share near zero does not move."""
         shares = np.zeros(len(axes))
         for name, share in zip("XYZ", direction, strict=True):
             index = next(place for place, axis in enumerate(axes) if axis.name == name)
@@ -54,11 +54,11 @@ class JogLine:
         return cls(axes, shares)
 
     def same(self, other: JogLine | None) -> bool:
-        """Whether both are one line."""
+        """Return whether both lines have the same direction."""
         return other is not None and bool(np.allclose(self.shares, other.shares, rtol=0.0, atol=_ASIDE))
 
     def moving(self) -> Iterator[tuple[int, Axis, float]]:
-        """The axes that move: place, axis, share."""
+        """Yield index, axis and share of each axis that moves."""
         yield from (
             (place, axis, share)
             for place, (axis, share) in enumerate(zip(self.axes, self.shares.tolist(), strict=True))
@@ -67,22 +67,22 @@ class JogLine:
 
     @property
     def amax(self) -> float:
-        """The acceleration along the line at which no axis goes beyond its own."""
+        """The acceleration along the line at which every axis stays within its own limit."""
         return min(axis.amax / abs(share) for _, axis, share in self.moving())
 
     def on(self, values: FloatArray) -> float:
-        """How far a place, or a velocity, goes along the line."""
+        """Return the component of a position or a velocity along the line."""
         return float(sum(values[place] * share for place, _, share in self.moving()))
 
     def room(self, at: FloatArray | Sequence[float], sign: float) -> float:
-        """How far it goes along the line, + or −, before the first axis is at the end of its travel."""
+        """Return the distance along the line, in the direction ``sign``, to the first end of travel."""
         return min(
             room_to_limit(axis, at[place], math.copysign(share, share * sign)) / abs(share)
             for place, axis, share in self.moving()
         )
 
     def setpoints(self, start: float, p: FloatArray, pieces: Sequence[Ramp]) -> Segments:
-        """The pieces from ``start`` on as setpoints of all axes; those aside stay at ``p``."""
+        """Return the ramps from ``start`` on as setpoints of all axes. Other axes stay at ``p``."""
         n = len(pieces)
         dt = np.array([piece[0] for piece in pieces])
         t = start + np.concatenate([[0.0], np.cumsum(dt)[:-1]])
@@ -95,5 +95,5 @@ class JogLine:
 
 
 def wrong_direction(direction: Direction) -> bool:
-    """Whether it is no unit vector."""
+    """Return whether the direction is not a unit vector."""
     return not abs(math.hypot(*direction) - 1.0) <= _UNIT

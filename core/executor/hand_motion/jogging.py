@@ -1,7 +1,7 @@
-"""Jog: one axis moves by hand as long as its lease is renewed, or by one step of a given length.
+"""Jog: manual motion of one axis while its lease is renewed, or by one step of a given length.
 
-What is queued already ends in the stop of a lost lease. The setpoints of one axis are ramps, pieces of
-constant acceleration that always end at rest; a controller that plans by itself jogs by itself.
+The queued setpoints always end in the stop of an expired lease. They consist of ramps, which are phases of
+constant acceleration that end at rest. A controller with its own planner uses its own jog function.
 """
 
 from __future__ import annotations
@@ -29,19 +29,20 @@ from core.ports import BlockSink, DriverError, at_rest
 # --- setpoints of one axis ------------------------------------------------------------------------------
 
 
-_SHORTEST = 1e-12  # s; a piece that takes less is none
-_SAME = 1e-9  # mm or degrees; places nearer than that are one
-_UNHOMED = 0.1  # of the manual rapid, for an axis that does not know where it is
-LONGEST_LEASE = 1.0  # s; no lease is longer, whoever asks
-_LONGEST_STEP = 2.54  # mm (.1 in) or degrees: what is longer is no step
+_SHORTEST = 1e-12  # s; shorter ramps are dropped
+_SAME = 1e-9  # mm or degrees; closer positions count as equal
+_UNHOMED = 0.1  # fraction of the manual rapid for an axis that is not homed
+LONGEST_LEASE = 1.0  # s, the longest lease that is accepted
+_LONGEST_STEP = 2.54  # mm (.1 in) or degrees, the longest step
 _STEP_ROUNDING = 1e-9
-_MARGINS = (0.0, 0.002, 0.02)  # s of grace for the time between asking the clock and queueing
+_MARGINS = (0.0, 0.002, 0.02)  # s added to the start for the time between reading the clock and queueing
 
 
 def jog_ramps(v0: float, v1: float, a: float, time: float, way: float) -> list[Ramp]:
-    """Ramps from speed ``v0`` to ``v1``, on for the rest of ``time`` s, then to rest, within ``way`` mm.
+    """Return ramps from speed ``v0`` to ``v1``, a cruise for the rest of ``time``, and braking to rest.
 
-    A jog that ``way`` is too short for goes less fast or less long. Braking alone takes v0²/2a.
+    If ``way`` (mm) is too short, the jog is slower or ends earlier. The braking distance v0²/2a is always
+    used.
     """
     if v0 * v1 < 0.0:
         first = abs(v0) / a
@@ -63,9 +64,9 @@ def jog_ramps(v0: float, v1: float, a: float, time: float, way: float) -> list[R
 
 
 def step_ramps(distance: float, speed: float, a: float) -> list[Ramp]:
-    """From rest to rest over exactly ``distance``: up to ``speed``, on, down again.
+    """Return ramps from rest to rest over exactly ``distance``, at ``speed`` at most.
 
-    A way too short for that speed is half speeding up, half braking: top = √(a·|distance|).
+    A short distance has no cruise; its top speed is √(a·|distance|).
     """
     sign, way = math.copysign(1.0, distance), abs(distance)
     top = min(speed, math.sqrt(a * way))
@@ -78,9 +79,10 @@ def step_ramps(distance: float, speed: float, a: float) -> list[Ramp]:
 
 
 def reach_ramps(v0: float, way: float, top: float, a: float) -> list[Ramp]:
-    """From speed ``v0`` to rest at exactly ``way`` from here, no faster than ``top`` once it is that slow.
+    """Return ramps from speed ``v0`` to rest at exactly the distance ``way``.
 
-    A ``way`` that lies behind, or is shorter than the braking, is come back to from rest.
+    The speed does not exceed ``top`` except while the axis slows down to it. If the target is in the opposite
+    direction or within the braking distance, the axis stops first and then returns.
     """
     stop = v0 * abs(v0) / (2.0 * a)
     if v0 * way < 0.0 or abs(stop) > abs(way) + _SAME:
@@ -105,27 +107,27 @@ def _ramps(*pieces: Ramp) -> list[Ramp]:
 
 
 class Jogger:
-    """The jog that is under way, if any: held by a lease, or a step of a given length."""
+    """Jogs one axis, either while a lease lasts or by one step of a given length."""
 
     def __init__(self, context: MachineContext) -> None:
         self._context = context
         self._axis = -1
-        self._line: JogLine | None = None  # along which it moves, or has moved last
+        self._line: JogLine | None = None  # the line of the present or the last motion
         self.stepping = False
         self._short = False  # the step was stopped before its end
-        self.goal: float | None = None  # where the handwheel sends the axis; None: it does not
-        self.ending = False  # told to stop, and still on its way to rest
-        self.testing = False  # a drive test is played
-        self.tested = 0  # drive tests that came to their end
-        self.while_on = ""  # the input of the button that holds it
+        self.goal: float | None = None  # target of the handwheel, or None
+        self.ending = False  # the axis is braking after a stop
+        self.testing = False  # a drive test is running
+        self.tested = 0  # number of completed drive tests
+        self.while_on = ""  # input of the button that must stay pressed
 
     @property
     def axis(self) -> str:
-        """Name of the axis that moves, empty without one."""
+        """The name of the moving axis, or an empty string."""
         return self._context.machine.axes[self._axis].name if self._axis >= 0 else ""
 
     def refusal(self, name: str, velocity: float, lease: float, along: Direction | None = None) -> str:
-        """Why this jog is refused; empty when it may begin or go on."""
+        """Return why this jog is refused, or an empty string if it may start or continue."""
         if why := self.missing(name) or self._astray(name, along):
             return why
         if not (math.isfinite(velocity) and math.isfinite(lease)) or lease <= 0.0:
@@ -137,7 +139,7 @@ class Jogger:
         return self._barred(name)
 
     def step_refusal(self, name: str, distance: float, speed: float, along: Direction | None = None) -> str:
-        """Why this step is refused; empty when it may begin."""
+        """Return why this step is refused, or an empty string if it may start."""
         if why := self.missing(name) or self._astray(name, along):
             return why
         if not math.isfinite(speed) or speed <= 0.0:
@@ -153,7 +155,7 @@ class Jogger:
         return self._barred(name) or self._too_far(name, distance, along)
 
     def _astray(self, name: str, along: Direction | None) -> str:
-        """Why nothing moves along an axis of a tilted plane."""
+        """Return why the axis cannot be jogged along this direction, or an empty string."""
         context = self._context
         if self.axis == name and not self._line_of(name, along).same(self._line):
             return Message("{axis} is still being jogged", axis=self.axis)
@@ -172,7 +174,7 @@ class Jogger:
         return JogLine.of_axis(axes, self._context.ports.axes.axes.index(name))
 
     def missing(self, name: str) -> str:
-        """Why there is no such axis to move by hand; empty when there is."""
+        """Return why this axis does not exist or cannot be jogged, or an empty string."""
         machine = self._context.machine
         known = name in {axis.name for axis in machine.axes}
         there = known and (name != "C" or machine.c_enabled or machine.kind != "lathe")
@@ -187,7 +189,7 @@ class Jogger:
         return self.spinning(name) or self.uncoupled(name)
 
     def spinning(self, name: str) -> str:
-        """Why C does not move as long as it turns as the spindle."""
+        """Return why C cannot move while it turns as the spindle, or an empty string."""
         context = self._context
         turns = context.spindle.asked or not context.spindle.stopped
         if name == "C" and context.machine.spindle_is_c and turns:
@@ -195,13 +197,13 @@ class Jogger:
         return ""
 
     def uncoupled(self, name: str) -> str:
-        """Why C does not move yet: the spindle's drive has to become C first, which begins here."""
+        """Start the change to C-axis mode if needed; return why C cannot move yet, or an empty string."""
         if name != "C" or not self._context.machine.spindle_is_c or self._context.spindle.hold(orient=False):
             return ""
         return "the spindle drive is switching to C-axis mode; release the key or button and jog again in 2 s"
 
     def _too_far(self, name: str, distance: float, along: Direction | None) -> str:
-        """A step that would leave the travel is not shortened: it would no longer be what was asked."""
+        """Return why a step that would leave the travel is refused. A step is never shortened."""
         line, sample = self._line_of(name, along), self._context.sample
         homed = all(sample.homed[place] for place, _, _ in line.moving())
         if not homed or abs(distance) <= line.room(sample.demand, distance) + _STEP_ROUNDING:
@@ -209,16 +211,17 @@ class Jogger:
         return at_the_end(name, distance)
 
     def step(self, name: str, distance: float, speed: float, along: Direction | None = None) -> None:
-        """Begin a step from rest. Raises DriverError."""
+        """Start a step from rest. Raises DriverError if the setpoints are rejected."""
         line = self._line_of(name, along)
         top = min(speed, self._top_of(line))
         self._splice(line, lambda _start, _p, _v: step_ramps(distance, top, line.amax))
         self._axis, self.stepping = self._context.ports.axes.axes.index(name), True
 
     def move(self, name: str, velocity: float, lease: float, along: Direction | None = None) -> bool:
-        """Begin or renew; False when there is no way to go in that direction. Raises DriverError.
+        """Start or renew a jog; return False if no travel is left in that direction.
 
-        ``along``: not the machine's axis but that of a tilted plane, as a direction in the machine.
+        ``along`` is the direction, in machine coordinates, of an axis of a tilted plane. Raises DriverError
+        if the setpoints are rejected.
         """
         context, line = self._context, self._line_of(name, along)
         homed = all(context.sample.homed[place] for place, _, _ in line.moving())
@@ -235,12 +238,12 @@ class Jogger:
         return moves
 
     def _top_of(self, line: JogLine) -> float:
-        """How fast it goes along the line by hand at most."""
+        """Return the highest jog speed along the line."""
         homed = self._context.sample.homed
         return min(self.top(axis, homed[place]) / abs(share) for place, axis, share in line.moving())
 
     def play(self, name: str, ramps: Callable[[float, float, float], list[Ramp]]) -> bool:
-        """A drive test begins, or goes on; False where there is nothing left of it. Raises DriverError."""
+        """Start or continue a drive test; return False if nothing of it remains. Raises DriverError."""
         index = self._context.ports.axes.axes.index(name)
         plays = self._splice_axis(index, ramps)
         if plays:
@@ -248,11 +251,11 @@ class Jogger:
         return plays
 
     def whole(self, queued: bool) -> None:
-        """Whether all of a drive test is queued: one that ends sooner is said to have been stopped."""
+        """Store whether the whole drive test is queued. If not, its end is logged as a premature stop."""
         self._short = not queued
 
     def toward(self, name: str, target: float, speed: float, lease: float) -> bool:
-        """As ``move``, and no further than ``target``, where it rests. Raises DriverError."""
+        """Jog like ``move``, but no further than ``target``, where the axis stops. Raises DriverError."""
         context = self._context
         index = context.ports.axes.axes.index(name)
         axis, until = context.machine.axes[index], context.now + min(lease, LONGEST_LEASE)
@@ -273,13 +276,13 @@ class Jogger:
         return moves
 
     def chase(self, name: str, ramps: Callable[[float, float, float], list[Ramp]], goal: float) -> None:
-        """Go where the handwheel sends the axis, from whatever it does now. Raises DriverError."""
+        """Move to the target of the handwheel from any present motion. Raises DriverError."""
         index = self._context.ports.axes.axes.index(name)
         if self._splice_axis(index, ramps):
             self._axis, self.goal, self.ending = index, goal, False
 
     def stop(self) -> None:
-        """The lease is given back, or taken away; a step ends short, and that is said when it rests."""
+        """Stop the jog. The early end of a step is logged when the axis is at rest."""
         line = self._line
         if self._axis < 0 or line is None:
             return
@@ -288,13 +291,13 @@ class Jogger:
         self.stepping, self.goal, self.ending = False, None, True
 
     def mind_button(self) -> None:
-        """A jog that a button holds ends when that comes up, or is no longer known. Raises DriverError."""
+        """Stop the jog if its button is released or its state is unknown. Raises DriverError."""
         if self.while_on and not self._context.button(self.while_on):
             self.while_on = ""
             self.stop()
 
     def over(self) -> bool:
-        """Whether it has come to rest."""
+        """Return whether the jog is at rest; if so, finish and log it."""
         axes = self._context.ports.axes
         horizon = axes.horizon()
         if not at_rest(horizon, axes.now()):
@@ -303,7 +306,7 @@ class Jogger:
         return True
 
     def ended(self) -> None:
-        """It rests; a step that was cut short is said to be so."""
+        """Finish the jog at rest, and log a completed test or a step that was stopped early."""
         if self._short and self.testing:
             self._context.log(
                 "refused",
@@ -320,19 +323,20 @@ class Jogger:
         self.forget()
 
     def forget(self) -> None:
-        """Nothing is jogged any more: it has come to rest, or something else has stopped it."""
+        """Clear the jog because the axis is at rest or another function has stopped it."""
         self._axis, self.stepping, self._short, self.testing = -1, False, False, False
         self.goal, self.ending, self.while_on = None, False, ""
 
     def _splice_axis(self, index: int, ramps: Callable[[float, float, float], list[Ramp]]) -> bool:
-        """The same of one axis, with its own position and velocity."""
+        """Queue the ramps of one axis, based on its own position and velocity."""
         line = JogLine.of_axis(self._context.machine.axes, index)
         return self._splice(line, lambda start, p, v: ramps(start, float(p[index]), float(v[index])))
 
     def _splice(self, line: JogLine, ramps: Callable[[float, FloatArray, FloatArray], list[Ramp]]) -> bool:
-        """Queue what ``ramps`` makes of (start, positions, velocities); later when the clock was faster.
+        """Queue the ramps that ``ramps`` returns for (start, positions, velocities).
 
-        False when it makes nothing. Raises DriverError.
+        A splice that was too late is retried with a later start. Returns False if there are no ramps. Raises
+        DriverError if the setpoints are rejected.
         """
         axes = self._context.ports.axes
         for margin in _MARGINS:
@@ -352,14 +356,14 @@ class Jogger:
         return False
 
     def top(self, axis: Axis, homed: bool) -> float:
-        """How fast an axis goes by hand at most."""
+        """Return the highest jog speed of an axis."""
         endless = axis.travel is None or axis.rotary
         rapid = axis.vmax if endless else min(axis.vmax, self._context.machine.limits.manual_rapid)
         return rapid if homed else _UNHOMED * rapid
 
 
 def at_the_end(name: str, direction: float) -> str:
-    """Why an axis goes no further."""
+    """Return the message that an axis is at the end of its travel."""
     return Message(
         "{name} is at the end of its travel in the {ending} direction",
         name=name,
@@ -371,12 +375,12 @@ def at_the_end(name: str, direction: float) -> str:
 
 
 def jogger_of(context: MachineContext) -> Jogger:
-    """By setpoints, or by the controller's own jog."""
+    """Return the jogger for setpoints, or the one for a controller with its own jog function."""
     return Jogger(context) if context.ports.blocks is None else BlockJogger(context, context.ports.blocks)
 
 
 class _Pressed(NamedTuple):
-    """A jog that is asked for while the one before still ends; ``until`` is the end of its lease."""
+    """A jog requested while the previous one is still stopping; ``until`` is the end of its lease."""
 
     axis: str
     velocity: float
@@ -384,10 +388,10 @@ class _Pressed(NamedTuple):
 
 
 class BlockJogger(Jogger):
-    """Same questions and refusals; the controller moves.
+    """A jogger that uses the jog function of the controller, with the same refusals as ``Jogger``.
 
-    It takes no other jog before the one that was let go is over: a key that is pressed again meanwhile waits
-    for that as long as it is held.
+    The controller accepts a jog only after the previous one has ended. A key pressed again in the meantime
+    waits until then, if it is still pressed.
     """
 
     def __init__(self, context: MachineContext, sink: BlockSink) -> None:
@@ -396,27 +400,30 @@ class BlockJogger(Jogger):
         self._pressed: _Pressed | None = None
 
     def refusal(self, name: str, velocity: float, lease: float, along: Direction | None = None) -> str:
-        """Why this jog is refused; empty when it may begin or go on."""
+        """Return why this jog is refused, or an empty string if it may start or continue."""
         return super().refusal(name, velocity, lease, along) or ("" if self.axis else self._unready())
 
     def step_refusal(self, name: str, distance: float, speed: float, along: Direction | None = None) -> str:
-        """Why this step is refused; empty when it may begin."""
+        """Return why this step is refused, or an empty string if it may start."""
         return super().step_refusal(name, distance, speed, along) or self._unready()
 
     def _astray(self, name: str, along: Direction | None) -> str:
-        """A controller that jogs by itself jogs its own axes."""
+        """Return why the axis cannot be jogged along this direction, or an empty string."""
         return "" if along is None else Message("{name}: the controller can jog only its own axes", name=name)
 
     def step(self, name: str, distance: float, speed: float, along: Direction | None = None) -> None:
-        """Begin a step from rest. Raises DriverError."""
-        assert along is None  # else it was refused
+        """Start a step from rest. Raises DriverError if the controller rejects it."""
+        assert along is None  # otherwise the request was refused
         index, top = self._speed(name, speed)
         self._sink.jog_to(name, self._context.sample.demand[index] + distance, top)
         self._axis, self.stepping = index, True
 
     def move(self, name: str, velocity: float, lease: float, along: Direction | None = None) -> bool:
-        """Begin or renew; False when there is no way to go in that direction. Raises DriverError."""
-        assert along is None  # else it was refused
+        """Start or renew a jog; return False if no travel is left in that direction.
+
+        Raises DriverError if the controller rejects the jog.
+        """
+        assert along is None  # otherwise the request was refused
         if self.ending:
             self._pressed = _Pressed(name, velocity, self._context.now + min(lease, LONGEST_LEASE))
             return True
@@ -431,7 +438,7 @@ class BlockJogger(Jogger):
         return moves
 
     def toward(self, name: str, target: float, speed: float, lease: float) -> bool:
-        """As ``move``, and no further than ``target``, where it rests. Raises DriverError."""
+        """Jog like ``move``, but no further than ``target``, where the axis stops. Raises DriverError."""
         index, top = self._speed(name, speed)
         here = self._context.sample.demand[index]
         limits = (min(here, target), max(here, target))
@@ -441,7 +448,7 @@ class BlockJogger(Jogger):
         return moves
 
     def stop(self) -> None:
-        """The lease is given back, or taken away; a step ends short, and that is said when it rests."""
+        """Stop the jog. The early end of a step is logged when the axis is at rest."""
         if self._axis < 0:
             return
         self._short = self._short or self.stepping
@@ -449,7 +456,7 @@ class BlockJogger(Jogger):
         self._sink.jog_stop()
 
     def over(self) -> bool:
-        """Whether it has come to rest, and nothing is held any more."""
+        """Return whether the jog is at rest and no other jog is waiting."""
         if not self._sink.state().resting:
             return False
         pressed, button = self._pressed, self.while_on
@@ -460,7 +467,7 @@ class BlockJogger(Jogger):
         return not self.move(pressed.axis, pressed.velocity, pressed.until - self._context.now)
 
     def forget(self) -> None:
-        """Nothing is jogged any more, and nothing waits."""
+        """Clear the jog and the waiting jog."""
         super().forget()
         self._pressed = None
 

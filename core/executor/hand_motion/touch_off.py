@@ -1,7 +1,7 @@
 """Homing of the axes in their order, and touch-off of a tool against a tool setter or probe.
 
-Whatever ends the holding stops the slide, as in a jog. The place of the second touch is what is told, with
-how much it may be off; nothing is changed by it here.
+The axis stops when the key is released, as in a jog. The position of the second touch is reported with its
+uncertainty. This module does not change any offset.
 """
 
 from __future__ import annotations
@@ -16,15 +16,15 @@ from core.machine.setter_table import SetterModel
 from core.message import Message
 from core.ports import PROBE, Latch, Stop, Unknown
 
-_SETTLED = 0.1  # s at rest until the input is believed to be off
-_RENEWED = 0.03  # s between two renewals of the way
-_THERE = 0.003  # mm or two counts: nearer than that it is where it was sent
+_SETTLED = 0.1  # s at rest before the input is evaluated
+_RENEWED = 0.03  # s between two renewals of the motion
+_THERE = 0.003  # mm; within this distance, or two counts, the target is reached
 _NONE = -1
-_SETTLES = 1.0  # s that the slides may take to stand before the next axis looks for home
+_SETTLES = 1.0  # s that the axes may take to stop before the next axis is homed
 
 
 class TouchOff:
-    """``phase`` is what is done now, None for nothing; ``touched`` how the last one ended."""
+    """Performs touch-offs. ``phase`` is the present phase or None; ``touched`` is the last result."""
 
     def __init__(self, context: MachineContext, jogger: Jogger) -> None:
         self._context = context
@@ -32,22 +32,22 @@ class TouchOff:
         self._model = context.machine.hardware.table(SetterModel)
         self.phase: TouchPhase | None = None
         self.touched: Touched | None = None
-        self._ended = _NONE  # the press whose touch-off is over
+        self._ended = _NONE  # number of the key press whose touch-off has ended
         self._command = Touch("", 0, 0.0, _NONE)
         self._until = 0.0  # end of the lease
-        self._start = self._first = 0.0  # where the axis stood at the beginning, and at the first touch
+        self._start = self._first = 0.0  # positions at the start and at the first touch
         self._target = 0.0
-        self._was_made = False  # the input, a tick ago
-        self._braking = False  # it has touched, and comes to rest
+        self._was_made = False  # state of the input in the previous tick
+        self._braking = False  # the axis is braking after a touch
         self._renewed = self._rested = 0.0
-        self._seen = (0.0, 0.0)  # time and place of the last look
+        self._seen = (0.0, 0.0)  # time and position in the previous tick
         self._latch: Latch | None = None
-        self._failed = ""  # what was found wrong, to be told when it is back
+        self._failed = ""  # the failure to report when the axis is back
 
     def asked(self, command: Touch, state: State, wheel: str) -> bool:
-        """Begin or renew; True when it begins. Raises DriverError."""
+        """Start or renew a touch-off; return True when it starts. Raises DriverError."""
         if command.press == self._ended:
-            return False  # the key is still held, and it is over
+            return False  # the key is still pressed, but its touch-off has ended
         if self.phase is None:
             return self._begin(command, state, wheel)
         if (command.axis, command.sign, command.press) != (
@@ -62,15 +62,17 @@ class TouchOff:
         return False
 
     def end(self, why: str) -> None:
-        """It is over, and why; what moves stops. Raises DriverError."""
+        """Cancel the touch-off for the reason ``why`` and stop the axis. Raises DriverError."""
         if self.phase is None:
             return
         self._jogger.stop()
         self._over(why)
 
     def mind(self, state: State) -> bool:
-        """Once a tick: whatever has stopped the machine has ended it too. True when a jog runs into the
-        setter: that has to stop, and the next one leads away.
+        """Check the state, once per tick; return True if a jog runs into the tool setter.
+
+        A touch-off ends if the machine leaves the jog state. A jog that hits the setter must stop; the next
+        jog can lead away.
         """
         before, self._was_made = self._was_made, self._made
         if self.phase is not None and state is not State.JOG:
@@ -79,7 +81,7 @@ class TouchOff:
         return runs_in and self.phase is None and state is State.JOG
 
     def step(self) -> None:
-        """Once a tick. Raises DriverError."""
+        """Advance the touch-off by one tick. Raises DriverError."""
         assert self.phase is not None
         if why := self._broken():
             self.end(why)
@@ -97,7 +99,7 @@ class TouchOff:
             self._arrived()
         self._seen = (self._context.sample.t, here)
 
-    # --- whether it may -------------------------------------------------------------------------------------
+    # --- conditions -----------------------------------------------------------------------------------------
 
     def _begin(self, command: Touch, state: State, wheel: str) -> bool:
         if why := self._refusal(command, state, wheel):
@@ -116,7 +118,7 @@ class TouchOff:
         return True
 
     def _refusal(self, command: Touch, state: State, wheel: str) -> str:
-        """Why nothing is touched off now; empty when it may be."""
+        """Return why a touch-off may not start now, or an empty string."""
         axis, inputs = command.axis, self._context.inputs
         if self._model is None or PROBE not in self._context.machine.inputs:
             return "this machine has no tool setter; add [setter] and the input probe to the machine file"
@@ -141,7 +143,7 @@ class TouchOff:
         return found or self._broken(command) or self._too_far(command)
 
     def _broken(self, command: Touch | None = None) -> str:
-        """What ends it in any tick; ``command``: what is to begin."""
+        """Return why the touch-off must end. ``command`` is a touch-off that has not started yet."""
         context = self._context
         button = (command or self._command).while_on
         reasons = (
@@ -161,7 +163,7 @@ class TouchOff:
         return next((why for so, why in reasons if so), "")
 
     def _too_far(self, command: Touch) -> str:
-        """The whole of it has to lie inside the travel: half a search says nothing."""
+        """Return why the search would leave the travel. The full search distance must be available."""
         assert self._model is not None
         axis = self._context.machine.axis(command.axis)
         low, high = axis.reach
@@ -178,14 +180,14 @@ class TouchOff:
         )
 
     def _length(self, mm: float) -> str:
-        """In the unit of the machine's builder."""
+        """Return a length as text in the units of the machine file."""
         return (
             Message("{mm} in", mm=f"{mm / INCH:.3f}")
             if self._context.machine.inch
             else Message("{unit} mm", unit=f"{mm:.2f}")
         )
 
-    # --- from phase to phase --------------------------------------------------------------------------------
+    # --- phases of a touch-off ------------------------------------------------------------------------------
 
     @property
     def _made(self) -> bool:
@@ -204,7 +206,7 @@ class TouchOff:
         self._arrives(self._here)
 
     def _arrives(self, here: float) -> bool:
-        """Move on under the lease; True once it has rested at the target for a while."""
+        """Renew the motion to the target; return True after a short rest there."""
         context, model, command = self._context, self._model, self._command
         assert model is not None
         axis = context.machine.axis(command.axis)
@@ -218,7 +220,7 @@ class TouchOff:
         return False
 
     def _touch(self, here: float) -> None:
-        """The input has come on: the slide brakes, and where that was is kept."""
+        """Stop the axis because the input has turned on, and store the position."""
         context, port = self._context, self._context.ports.touch
         if self.phase is TouchPhase.SLOW:
             kept = port.latched() if port is not None else None
@@ -276,8 +278,9 @@ class TouchOff:
             self._found()
 
     def _found(self) -> None:
-        """Half of what it may have been seen late is taken off; the other half, and half a count of the
-        encoder, is how far it may be off.
+        """Finish the touch-off with the position corrected by half of the detection delay.
+
+        The other half, plus half an encoder count, is the uncertainty.
         """
         assert self._latch is not None
         command, place = self._command, self._latch.place[self._index(self._command.axis)]
@@ -295,16 +298,16 @@ class TouchOff:
 
 
 class Homing:
-    """The homing that is under way, if any."""
+    """Homes the axes, one after the other."""
 
     def __init__(self, context: MachineContext) -> None:
         self._context = context
         self._left: list[str] = []
         self._now = ""
-        self._found_at = 0.0  # when the last one was found, s
+        self._found_at = 0.0  # time at which the last axis was homed, s
 
     def begin(self, name: str) -> str:
-        """Start with one axis, or with all; returns why not, empty when it has begun."""
+        """Start homing of one axis, or of all; return why it is refused, or an empty string."""
         axes = self._context.machine.axes
         if name and name not in {axis.name for axis in axes}:
             return Message("this machine has no axis {name} to home", name=name)
@@ -320,12 +323,15 @@ class Homing:
         return ""
 
     def stop(self) -> None:
-        """Give the homing up; the drives brake on their own and hold."""
+        """Cancel the homing. The drives brake and hold position."""
         self._left, self._now = [], ""
         self._context.ports.axes.stop(Stop.RAMP_HOLD)
 
     def step(self) -> bool:
-        """Every tick: home the next axis when one is done; returns whether all are. Raises DriverError."""
+        """Home the next axis when one is done; return whether all are done. Called every tick.
+
+        Raises DriverError if a drive rejects homing.
+        """
         context = self._context
         homed = dict(zip(context.ports.axes.axes, context.sample.homed, strict=True))
         if self._now and not homed[self._now]:

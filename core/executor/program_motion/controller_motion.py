@@ -1,7 +1,8 @@
-"""Motion by a controller that plans by itself: it gets a cycle's blocks, no more than it must have.
+"""Motion by a controller with its own planner, which receives as few blocks ahead as possible.
 
-What has been handed over runs to its end whatever becomes of the host. So a long block goes out in parts of a
-fraction of a second on its own line or circle, between which the controller does not slow down.
+The controller executes the blocks that it has received even if the host fails. A long block is therefore sent
+in parts of a fraction of a second. The parts are on the same line or circle, so the controller does not slow
+down between them.
 """
 
 from __future__ import annotations
@@ -26,18 +27,18 @@ from core.ports import ArcOp, BlockOp, BlockSink, BlockState, LineOp, RapidOp, T
 # --- elementary blocks in parts -------------------------------------------------------------------------
 
 
-LONGEST = 0.2  # s of a piece at its programmed speed
-_SHORTEST_PART = 0.05  # mm; a slow feed is not cut up finer
+LONGEST = 0.2  # s, longest part at its programmed speed
+_SHORTEST_PART = 0.05  # mm, shortest part at a slow feed
 _WIDEST = 3.0  # radians
-_CUT = 1.0  # s of motion that lie ready in pieces
-_SLOWEST = 0.1  # of the feed: what has been handed over counts as no longer than that
-_AWAY = 1.0  # s; setpoints would have run out too
-_SEEN = 4  # looks in which the spindle has been told of a block that is shown
+_CUT = 1.0  # s of motion prepared in parts
+_SLOWEST = 0.1  # lowest feed override assumed for the duration of the sent parts
+_AWAY = 1.0  # s without a tick, after which the queue counts as run out
+_SEEN = 4  # ticks after which the spindle follows the displayed block
 _NEAR = 0.01  # mm; the controller reports thousandths
 
 
 class BlockPart(NamedTuple):
-    """A part of a block for the controller, the block, and the seconds that it takes at least."""
+    """A part of a block as a controller operation, with the block and the shortest time in seconds."""
 
     op: BlockOp
     block: Block
@@ -45,7 +46,7 @@ class BlockPart(NamedTuple):
 
 
 class Turning(NamedTuple):
-    """What feeds per revolution go by: spindle speed over programmed speed, and the highest rpm allowed."""
+    """The spindle speed for feeds per revolution: actual over programmed speed, and the highest rpm."""
 
     scale: float
     highest: float
@@ -54,9 +55,9 @@ class Turning(NamedTuple):
 def parts_of(
     block: Block, turning: Turning, most: Callable[[Block], float] = lambda _: math.inf
 ) -> Iterator[BlockPart]:
-    """The parts of one moving block, none faster than ``most`` (mm/s) allows it.
+    """Yield the parts of one moving block, limited to the speed ``most`` (mm/s).
 
-    Raises AlarmError for what has no speed or is not X and Z alone.
+    Raises AlarmError if the block has no feed rate or moves other axes than X and Z.
     """
     if block.travel is not None or block.plane is not None or block.c != block.c0:
         raise AlarmError("program", "this controller can move only X and Z", block.line)
@@ -73,22 +74,24 @@ def parts_of(
 
 
 def _no_faster(op: RapidOp | LineOp | ArcOp, fastest: float) -> BlockOp:
-    """The controller's own limits may be wider than those that were proved."""
+    """Limit the speed of an operation, because the controller's own limits may be higher."""
     if isinstance(op, RapidOp):
         return op._replace(rate=min(op.rate, fastest))
     return op._replace(feed=min(op.feed, fastest))
 
 
 def _cuts(block: Block, seconds: float) -> int:
-    """An arc in parts of less than half a turn: the controller has ends and centre only, which do not tell a
-    whole turn from none.
+    """Return the number of parts. The parts of an arc are shorter than half a circle.
+
+    The controller receives only end points and the center, which do not distinguish a full circle from a zero
+    move.
     """
     least = math.ceil(abs(_sweep(block)[1]) / _WIDEST) if block.kind is Kind.ARC else 1
     return max(least, min(math.ceil(seconds / LONGEST - 1e-9), math.ceil(block.length / _SHORTEST_PART)))
 
 
 def _op(block: Block, begin: float, end: float, turning: Turning) -> RapidOp | LineOp | ArcOp:
-    """The part of a block between two fractions of its way."""
+    """Return the operation for the part of a block between two fractions of its length."""
     if block.kind is Kind.ARC:
         return _arc(block, begin, end, turning)
     x, z = _on_line(block, end)
@@ -112,7 +115,10 @@ def _arc(block: Block, begin: float, end: float, turning: Turning) -> ArcOp:
 
 
 def _on_circle(block: Block, part: float) -> tuple[float, float]:
-    """Exact at both ends, where the radii may differ by a rounding of the program."""
+    """Return the point of an arc at a fraction of its length.
+
+    Both ends are exact, even if the rounded program gives them slightly different radii.
+    """
     if part == 0.0:
         return block.x0 + block.offset_x, block.z0 + block.offset_z
     if part == 1.0:
@@ -130,7 +136,7 @@ def _sweep(block: Block) -> tuple[float, float]:
 
 
 def _feed_rate(block: Block, x: float, turning: Turning) -> float:
-    """mm/s. A feed per revolution follows the spindle's command, as it does with setpoints."""
+    """Return the feed rate in mm/s. A feed per revolution follows the commanded spindle speed."""
     feed = block.feed
     if block.per_rev:
         rpm = abs(block.rpm)
@@ -149,7 +155,7 @@ class _Sent(NamedTuple):
 
 
 class _Surface(NamedTuple):
-    """A surface speed, mm/s: as M03 or M04 turns, and its clamps."""
+    """A surface speed in mm/s with its direction of rotation and rpm limits."""
 
     speed: float
     forward: bool
@@ -158,16 +164,17 @@ class _Surface(NamedTuple):
 
     @classmethod
     def of(cls, block: Block) -> _Surface | None:
-        """That of a block, if any."""
+        """Return the surface speed of a block, or None."""
         if block.css is None or not block.rpm:
             return None
         return cls(block.css, block.rpm > 0.0, block.modal.css_min, block.modal.css_max)
 
 
 class ControllerMotion:
-    """A path section given to the controller block by block, on the executor's thread alone.
+    """Executes a path section by sending blocks to the controller, on the executor's thread only.
 
-    Single block acts at the end of the last block that the controller has, ``BlockSink.ahead`` away at most.
+    Single block takes effect at the end of the last block that the controller has, at most
+    ``BlockSink.ahead`` seconds later.
     """
 
     def __init__(self, context: MachineContext, sink: BlockSink) -> None:
@@ -175,44 +182,45 @@ class ControllerMotion:
         self._sink = sink
         machine = context.machine
         self._limits = MotionLimits.of(machine.axes, machine.timing.setpoint, machine.limits.corner_tolerance)
-        self._waiting: deque[Block] = deque()  # not yet cut
-        self._pieces: deque[BlockPart] = deque()  # cut, not yet handed over
-        self._sent: deque[_Sent] = deque()  # handed over, not yet done
-        self._seconds = 0.0  # that the sent ones take
+        self._waiting: deque[Block] = deque()  # blocks not yet divided into parts
+        self._pieces: deque[BlockPart] = deque()  # parts not yet sent
+        self._sent: deque[_Sent] = deque()  # parts sent but not finished
+        self._seconds = 0.0  # duration of the sent parts
         self._shown: Block | None = None
         self._overrides = Overrides()
-        self._last: int | None = None  # single block: nothing behind this block is handed over
+        self._last: int | None = None  # number of the block after which single block sends nothing
         self._thread = False
-        self._still = False  # held because an override is 0
-        self._lost: tuple[Block, float] | None = None  # thread without its spindle, and where X goes
-        self._laid: _Surface | None = None  # what the spindle is laid out for
-        self._looks = 0  # at the block before which it is
-        self._speed: Wait | None = None  # for which nothing moves
+        self._still = False  # in hold because an override is 0
+        # the thread that has lost its spindle, and the target of X
+        self._lost: tuple[Block, float] | None = None
+        self._laid: _Surface | None = None  # the surface speed for which the spindle is set up
+        self._looks = 0  # ticks spent on the block for which it is set up
+        self._speed: Wait | None = None  # wait for the spindle before the next motion
         self._active = False
-        self._seen = context.now  # when it was last followed
-        self._dry = False  # it was followed too late
+        self._seen = context.now  # time of the last tick of this motion
+        self._dry = False  # a tick was too late, so the motion must not resume automatically
 
-    # --- how it stands ------------------------------------------------------------------------------------
+    # --- state --------------------------------------------------------------------------------------------
 
     @property
     def active(self) -> bool:
-        """Whether there is a path section at all."""
+        """True if there is a path section."""
         return self._active
 
     @property
     def moving(self) -> bool:
-        """Whether anything still moves."""
+        """True if anything is moving."""
         return self._active and self._moves(self._look())
 
     @property
     def block(self) -> Block | None:
-        """The block being moved."""
+        """The block being executed, or None."""
         self._look()
         return self._shown
 
     @property
     def following(self) -> Block | None:
-        """The block behind it, when it has been read into the path section."""
+        """The block after the one being executed, if it belongs to the path section."""
         if self._shown is None:
             return None
         cut = [*(each.piece.block for each in self._sent), *(each.block for each in self._pieces)]
@@ -221,23 +229,23 @@ class ControllerMotion:
 
     @property
     def complete(self) -> bool:
-        """Whether nothing of the path section is left to be moved."""
+        """True if no block of the path section remains to be executed."""
         return not (self._waiting or self._pieces or self._sent)
 
     @property
     def ended_with(self) -> Block | None:
-        """At the end of the path section: its last block."""
+        """The last block at the end of the path section."""
         return self.block
 
     @property
     def starving(self) -> float:
-        """Minus infinity where the control was away too long, else endless: it stops by itself."""
+        """Minus infinity if the control was absent too long, otherwise infinity."""
         return -math.inf if self._dry else math.inf
 
-    # --- what is asked ------------------------------------------------------------------------------------
+    # --- requests -----------------------------------------------------------------------------------------
 
     def begin(self, blocks: list[Block]) -> None:
-        """A new path section, from rest. Raises AlarmError, DriverError."""
+        """Start a new path section from rest. Raises AlarmError or DriverError."""
         self.forget()
         self._active, self._shown, self._seen = True, blocks[0], self._context.now
         self._thread = blocks[0].kind is Kind.THREAD
@@ -246,14 +254,14 @@ class ControllerMotion:
         self._hand_over()
 
     def go_on(self, behind: Block | None) -> None:  # noqa: ARG002  it always goes on where it rests
-        """From rest within the path section: the controller goes on, or gets the next block."""
+        """Resume from rest within the path section: release the hold or send the next block."""
         self._last, self._dry, self._seen = None, False, self._context.now
         if not self._still:
             self._sink.resume()
         self._hand_over()
 
     def progress(self, feed: ReadAhead) -> Progress:
-        """Follow switches and overrides, hand over what may be, and say how far it is."""
+        """Apply switches and overrides, send permitted blocks and return the progress."""
         if not self._active:
             return Progress.DONE
         self._override()
@@ -269,36 +277,36 @@ class ControllerMotion:
         return Progress.DONE if self.complete else self._resting()
 
     def keep_up(self) -> None:
-        """A thread pass that is being held ends: what pulls out of it is handed over."""
+        """Send the remaining parts of a thread pass that is stopping, including its pull-out."""
         self._look()
         if self._thread:
             self._hand_over()
 
     def hold(self) -> None:
-        """Come to rest on the path; a thread pass first ends."""
+        """Stop on the path; a thread pass ends first."""
         if not self._thread:
             self._sink.hold()
 
     def brake(self) -> None:
-        """Come to rest at once; what the controller still has is void."""
+        """Stop at once and discard the blocks in the controller."""
         self._empty()
         self._sink.abort()
 
     def let_stop(self) -> None:
-        """The controller stops by itself."""
+        """Do nothing, because the controller stops at the end of its blocks."""
 
     def release(self) -> bool:
-        """Never gives a thread pass back: the controller alone knows whether it still waits for its index."""
+        """Return False, because only the controller knows whether a thread pass still waits for its index."""
         return False
 
     def retract(self, block: Block) -> None:
-        """Begin to leave a thread whose spindle is lost: stop, to draw X back then."""
+        """Stop a thread that has lost its spindle, to retract X afterwards."""
         left = [*(each.piece.block for each in self._sent), *(each.block for each in self._pieces)]
         self._lost = block, [block, *left, *self._waiting][-1].mx
         self.brake()
 
     def retracted(self) -> None:
-        """At rest: draw back, or be done. Raises AlarmError("thread-lost") in the end."""
+        """Retract X at rest, and raise AlarmError("thread-lost") when the tool is out."""
         assert self._lost is not None
         block, out = self._lost
         x, z = self._context.sample.actual[:2]
@@ -308,7 +316,7 @@ class ControllerMotion:
         self._hand_over()
 
     def forget(self) -> None:
-        """The path section is over, or nothing of it holds any more: the controller forgets it too."""
+        """Clear the path section, in the controller as well."""
         self._look()
         if self._sent:
             self._sink.abort()
@@ -316,7 +324,7 @@ class ControllerMotion:
         self._shown = self._last = self._lost = None
         self._thread = self._active = False
 
-    # --- inside -------------------------------------------------------------------------------------------
+    # --- internal methods ---------------------------------------------------------------------------------
 
     def _empty(self) -> None:
         self._waiting.clear()
@@ -325,7 +333,7 @@ class ControllerMotion:
         self._seconds, self._still, self._dry, self._laid, self._speed = 0.0, False, False, None, None
 
     def _look(self) -> BlockState:
-        """The state of the controller; blocks that it has done are forgotten."""
+        """Return the state of the controller and remove the blocks that it has finished."""
         state = self._sink.state()
         while self._sent and self._sent[0].ticket <= state.done:
             done = self._sent.popleft().piece
@@ -335,11 +343,14 @@ class ControllerMotion:
         return state
 
     def _moves(self, state: BlockState) -> bool:
-        """A controller that is held rests, with all that it still has to move."""
+        """Return whether the axes move. A controller in feed hold does not move although it has blocks."""
         return not state.held and (bool(self._sent) or not state.resting)
 
     def _left_alone(self) -> None:
-        """A control that was away for longer than its blocks last does not go on: nobody expects it."""
+        """Detect that the control was absent for longer than its blocks last.
+
+        The motion then does not resume automatically.
+        """
         away, self._seen = self._context.now - self._seen, self._context.now
         self._dry = self._dry or (away > _AWAY and bool(self._pieces or self._waiting))
 
@@ -350,7 +361,7 @@ class ControllerMotion:
         return Progress.BLOCK_END if stepped else Progress.MOVING
 
     def _override(self) -> None:
-        """Feed and rapid override; at 0 the controller is held. Threads know neither."""
+        """Apply the overrides. At 0 the controller is in feed hold, except in a thread."""
         feed = self._context.feed_override
         turn = round(self._context.spindle.override, 2)
         self._overrides = Overrides(feed, min(feed, 1.0), turn)
@@ -371,13 +382,15 @@ class ControllerMotion:
         return self._cut_ahead + (_CUT if self._waiting else 0.0)
 
     def _highest(self) -> float:
-        """rpm that feeds a turn count by at most: the spindle comes no further."""
+        """Return the highest rpm that the spindle can reach, which limits feeds per revolution."""
         reach = self._sink.reach if self._laid is not None else math.inf
         return min(self._context.spindle.highest, reach)
 
     def _laid_out(self, block: Block) -> bool:
-        """Whether the spindle can follow the radius in this block. One whose steps count from its last S is
-        laid out for each surface speed, at rest, and turns as it ought to before anything moves.
+        """Return whether the spindle can follow the radius in this block.
+
+        A spindle whose speed steps depend on its last S word is set up for each surface speed, at rest. It
+        must be at speed before any axis moves.
         """
         surface = _Surface.of(block)
         if surface is None or surface == self._laid or math.isinf(self._sink.reach):
@@ -386,7 +399,7 @@ class ControllerMotion:
         if self._sent or self._pieces or not self._sink.state().resting:
             return False
         if self._shown is not block or self._speed is None:
-            self._shown, self._looks = block, 0  # the spindle follows what is shown
+            self._shown, self._looks = block, 0  # the spindle follows the displayed block
             self._speed = at_speed(self._context)
         self._looks += 1
         turns = self._speed.over(self._context.now)
@@ -408,8 +421,10 @@ class ControllerMotion:
             self._seconds += piece.seconds
 
     def _most(self, block: Block) -> float:
-        """mm/s: as the time law has it, each axis by itself on a line, the slower one and its
-        acceleration on an arc.
+        """Return the highest speed of a block in mm/s.
+
+        On a line, each axis has its own limit, as in the motion planner. On an arc, the slower axis and its
+        acceleration set the limit.
         """
         if block.kind is not Kind.ARC:
             return self._sink.fastest(block.x - block.x0, block.z - block.z0)
@@ -421,7 +436,10 @@ class ControllerMotion:
         return min(self._sink.fastest(1.0, 0.0), self._sink.fastest(0.0, 1.0), math.sqrt(around))
 
     def _may(self, piece: BlockPart) -> bool:
-        """Whether the controller gets this one now: by single block, and by how far it could run on alone."""
+        """Return whether this part may be sent now.
+
+        Single block and the time that the controller could run alone limit the number of parts.
+        """
         if self._still or self._dry or not self._single(piece.block):
             return False
         if self._thread or not self._sent:

@@ -1,8 +1,8 @@
-"""A cycle: one run of a program, block by block, single block and feed hold on its path.
+"""One cycle: a run of a program, block by block, with single block and feed hold on the path.
 
-Feed hold: the operator asks for it, or what must not go on: a lost spindle, an open guard, an output that is
-not as it was commanded, a queue that runs dry. The cycle comes to rest on its path, in a thread behind the
-pull-out. Going on waits for the spindle before the slides move.
+A feed hold is requested by the operator, or caused by a lost spindle, an open guard, an output in the wrong
+state or an empty setpoint queue. The axes stop on their path, in a thread after its pull-out. Before the axes
+resume, the cycle waits for the spindle.
 """
 
 from __future__ import annotations
@@ -26,76 +26,77 @@ from core.interpreter.shared.modal_state import Modal
 PathMotion = SetpointMotion | ControllerMotion
 """What moves the blocks from rest to rest: our own setpoints, or a controller that plans by itself."""
 
-_BLOCKS = 400  # read in one tick at most: a press is never kept waiting for a long program
-_ACTIONS = 50  # carried out in one tick at most
-_BUFFER = 1.0  # of the look-ahead: seconds of motion kept read beyond what is planned
+_BLOCKS = 400  # blocks read in one tick at most, so that a long program does not delay key presses
+_ACTIONS = 50  # actions executed in one tick at most
+_BUFFER = 1.0  # fraction of the look-ahead that is read beyond the planned motion
 _BEHIND_TAP = "FEED HOLD BEHIND THE TAP"
 _GOING = frozenset({State.RUN, State.WAIT})
-_SPINDLE_WORDS = (SpindleStop, SpindleLock, SpindleOrient, ProgramEnd)  # done whether it turns or not
+# executed whether the spindle turns or not
+_SPINDLE_WORDS = (SpindleStop, SpindleLock, SpindleOrient, ProgramEnd)
 
 
 class FeedHold:
-    """Stops what a cycle has under way and lets it go on. On the executor's thread alone."""
+    """Stops and resumes the motion of a cycle. Used on the executor's thread only."""
 
     def __init__(self, context: MachineContext, motion: PathMotion, still: Standstill) -> None:
         self._context = context
         self._motion = motion
         self._still = still
-        self.reason = ""  # in the words of the catalogue; empty where the button was pressed
+        self.reason = ""  # text of the alarm catalog; empty if a button was pressed
         self._since = 0.0
-        self._spin_up: Wait | None = None  # before motion that was stopped goes on
-        self._behind: Block | None = None  # single block goes on behind this one
-        self._retracting = False  # out of a thread whose spindle is lost
+        self._spin_up: Wait | None = None  # wait for the spindle before the motion resumes
+        self._behind: Block | None = None  # single block resumes after this block
+        self._retracting = False  # the tool retracts from a thread that has lost its spindle
 
     @property
     def within_section(self) -> bool:
-        """Whether motion goes on within a path section, and not with the next one."""
+        """True if motion resumes within the present path section instead of the next one."""
         return self._motion.active and not self._motion.complete
 
     @property
     def retracting(self) -> bool:
-        """Whether the tool is on its way out of a thread that has lost its spindle."""
+        """True while the tool retracts from a thread that has lost its spindle."""
         return self._retracting
 
     @property
     def spins_up(self) -> bool:
-        """Whether going on still waits for the spindle."""
+        """True while the resume waits for the spindle."""
         return self._spin_up is not None
 
     @property
     def label(self) -> str:
-        """In words, what going on waits for; empty where it waits for nothing."""
+        """The condition for which the resume waits, as a text, or an empty string."""
         return self._spin_up.label() if self._spin_up is not None else ""
 
     def begin(self, reason: str = "", by: str = "", code: Code | None = None) -> State:
-        """Come to rest; returns the state of the machine from now on.
+        """Stop the motion and return the new state of the machine.
 
-        ``reason`` in the words of the catalogue or with its ``code``; empty where it was pressed, ``by``
-        whom.
+        ``reason`` is a text of the alarm catalog, or a detail for ``code``. It is empty if a button was
+        pressed; ``by`` then names the button.
         """
         self.reason, self._since = reason, self._context.now
         self._context.show_stop(*(code_of_hold(reason, by) if code is None else (code, reason.lower())))
         if self._motion.moving:
             self._motion.hold()
             return State.HOLDING
-        self._motion.let_stop()  # of a plan whose queue has run out meanwhile nothing holds any more
+        self._motion.let_stop()  # a plan whose queue has run out must not be continued
         return State.HOLD
 
     def starve(self, code: Code, detail: str) -> None:
-        """The queue was not refilled in time and stops the slides: keep and show why."""
+        """Store and show that the queue was not refilled in time, so that the axes stop."""
         self.reason, self._since = CATALOGUE[code].text.upper(), self._context.now
         self._context.show_stop(code, detail)
 
     def retract(self, block: Block) -> None:
-        """The spindle is lost in a thread: brake along it, then draw X back."""
+        """Stop along a thread that has lost its spindle, to retract X afterwards."""
         self._context.log("thread", "spindle speed lost during threading")
         self._motion.retract(block)
         self._retracting = True
 
     def stopped(self) -> bool:
-        """Called every tick while the slides come to rest; returns whether they are at rest.
+        """Return whether the axes are at rest. Called every tick while they stop.
 
-        Raises AlarmError("thread-lost") once a lost thread is left.
+        Raises AlarmError("thread-lost") when the tool has left a lost thread.
         """
         self._motion.keep_up()
         if self._motion.moving:
@@ -105,9 +106,9 @@ class FeedHold:
         return not self._retracting
 
     def go_on(self, behind: Block | None, *, starts_spindle: bool) -> None:
-        """Cycle Start after a stop, with single block ``behind`` the block that was the last one.
+        """Resume after Cycle Start, as soon as a requested spindle is at speed.
 
-        A spindle that is to turn is waited for first.
+        ``behind`` is the last block that single block executed, or None.
         """
         self.reason = ""
         within = self.within_section
@@ -120,9 +121,9 @@ class FeedHold:
             self._motion.go_on(behind)
 
     def spin_up(self) -> State:
-        """Every tick while the spindle speeds up; returns the state of the machine from now on.
+        """Wait for the spindle, once per tick; return the new state of the machine.
 
-        One that does not come to its speed is a hold again: the program is not lost with it.
+        If the spindle does not reach its speed, the result is another hold, so that the program is not lost.
         """
         if self._spin_up is None:
             return State.RUN
@@ -140,7 +141,7 @@ class FeedHold:
         return State.RUN
 
     def _slow_spindle(self) -> Wait | None:
-        """What motion waits for that goes on: the spindle, when the program has it turning."""
+        """Return the wait for a requested spindle that is not at speed, or None."""
         spindle = self._context.spindle
         if not spindle.asked or spindle.at_speed(self._context.now):
             return None
@@ -148,9 +149,10 @@ class FeedHold:
 
 
 class Cycle:
-    """``step`` is called every tick, ``enter`` at each change of state, ``ended`` at the end of the program.
+    """One cycle, advanced by ``step`` in every tick.
 
-    ``begins`` is the modal state before its first block.
+    ``enter`` is called at each change of state, and ``ended`` at the end of the program. ``begins`` is the
+    modal state before the first block.
     """
 
     def __init__(
@@ -171,14 +173,15 @@ class Cycle:
         self._state = State.RUN
         self._still = Standstill(context, self._feed, lambda: self._tapping)
         self._hold = FeedHold(context, motion, self._still)
-        self._later: Callable[[], State] | None = None  # a hold, as soon as the tap is out of its hole
-        self.message = ""  # of M00 and M01 while the stop lasts
+        # a pending hold that starts when the tap has left its hole
+        self._later: Callable[[], State] | None = None
+        self.message = ""  # message of M00 or M01 during the stop
         self.current: Block | None = None
         self.modal = begins
 
     @property
     def waiting_for(self) -> str:
-        """In words, what the cycle waits for."""
+        """The condition for which the cycle waits, as a text, or an empty string."""
         if self._state is State.HOLD:
             return self._hold.reason
         if self._later is not None:
@@ -191,24 +194,24 @@ class Cycle:
 
     @property
     def next_block(self) -> Block | None:
-        """The block after the one that is being executed; none while a standstill is awaited."""
+        """The block after the one being executed, or None while a standstill is pending."""
         following = self._motion.following or self._feed.next_block
         return None if following is self.current else following
 
     @property
     def at_rest(self) -> bool:
-        """Whether nothing moves any more."""
+        """True if no axis moves."""
         return not self._motion.moving
 
-    # --- what the operator asks ---------------------------------------------------------------------------
+    # --- requests of the operator -------------------------------------------------------------------------
 
     def hold(
         self, reason: str = "", by: str = "", code: Code | None = None, *, at_once: bool = False
     ) -> None:
-        """Feed hold; for ``reason``, ``by`` and ``code`` see ``FeedHold.begin``.
+        """Hold the cycle. The parameters ``reason``, ``by`` and ``code`` are those of ``FeedHold.begin``.
 
-        A tap first comes out of its hole, in which the spindle would turn on; without a spindle, or
-        ``at_once``, it stops.
+        A tap first leaves its hole, because the spindle turns on. The axes stop at once if the spindle is
+        stopped or ``at_once`` is True.
         """
         if self._state in {State.HOLD, State.HOLDING}:
             self._hold.reason = self._hold.reason or reason
@@ -224,12 +227,12 @@ class Cycle:
 
     @property
     def _tapping(self) -> bool:
-        """Whether a tap is in its hole, which it has to leave while the spindle turns."""
+        """True if a tap is in its hole, which it must leave while the spindle turns."""
         block = self.current
         return block is not None and (block.in_hole or (block.coupled and self._motion.moving))
 
     def _held_behind_tap(self) -> bool:
-        """Begin the hold that has waited for the tap, once that is out."""
+        """Start a pending hold when the tap has left its hole; return whether it started."""
         if self._later is None or self._tapping:
             return False
         begin, self._later = self._later, None
@@ -237,30 +240,30 @@ class Cycle:
         return True
 
     def starve(self, code: Code = "low-queue", detail: str = "") -> None:
-        """The queue was not refilled in time: its tail stops the slides, Cycle Start goes on."""
+        """Enter feed hold because the queue was not refilled in time. Cycle Start resumes the program."""
         self._motion.let_stop()
         if self._state in _GOING:
             self._hold.starve(code, detail)
             self._change(State.HOLDING)
 
     def wait_for(self, label: str) -> None:
-        """Its program is over; stand still until another cycle takes its place."""
+        """Wait after the end of the program until another cycle replaces this one."""
         self._still.wait_for(label)
 
     def abandon(self) -> None:
-        """Come to rest and be given up; the caller waits for ``at_rest``."""
+        """Stop the motion of a canceled cycle. The caller waits for ``at_rest``."""
         if self._motion.moving:
             self._motion.brake()
         if self._state in _GOING:
             self._change(State.HOLDING)
 
     def why_not_on(self) -> str:
-        """Why a stopped cycle cannot go on now; empty when it can."""
+        """Return why a stopped cycle cannot resume now, or an empty string."""
         spindle = self._context.spindle
         return spindle.start_barred.lower() if spindle.waits and self._turns_next() else ""
 
     def go_on(self, *, starts_spindle: bool = False) -> None:
-        """Cycle Start after hold, single block, M00, M01; a spindle that it starts is waited for."""
+        """Resume after a hold, single block, M00 or M01. If the start turns on the spindle, wait for it."""
         stopped, self._later = self._state, None
         self.message = ""
         if stopped is State.PROGRAM_STOP:
@@ -269,14 +272,14 @@ class Cycle:
         behind = self.current if stopped is State.BLOCK_END else None
         self._hold.go_on(behind, starts_spindle=starts_spindle)
 
-    # --- every tick ---------------------------------------------------------------------------------------
+    # --- actions in every tick ----------------------------------------------------------------------------
 
     def catch_up(self) -> None:
-        """Show the block in which the slides are or stand, also when none of it was seen while they moved."""
+        """Show the block at which the axes are, even if no tick has seen it while they moved."""
         self._show_later(self._motion.block)
 
     def step(self) -> None:
-        """Keep the queue filled, then do what comes next. Raises AlarmError, MotionError, DriverError."""
+        """Refill the queue, then do the next action. Raises AlarmError, MotionError or DriverError."""
         playing = self._motion.block if self._motion.moving else None
         if playing is not None:
             self._show(playing)
@@ -303,7 +306,7 @@ class Cycle:
             self._progress()
 
     def _turns_next(self) -> bool:
-        """Whether what is done now, or comes next, is meant for a spindle that turns."""
+        """Return whether the present or the next block needs a turning spindle."""
         if self._hold.within_section or self._still.label is not None or self._feed.pending:
             return True
         stop = self._feed.stop
@@ -325,7 +328,7 @@ class Cycle:
                 self._stand()
 
     def _stand(self) -> None:
-        """At rest: wait, act, begin the next path section, as far as this tick's budget goes."""
+        """Wait, act or start the next path section at rest, within the limits of one tick."""
         for _ in range(_ACTIONS):
             match self._still.next():
                 case Next.GO_ON:
@@ -338,7 +341,7 @@ class Cycle:
                     return
 
     def _rest(self, what: Next) -> None:
-        """Wait, stop, begin motion or end: what this tick ends with."""
+        """Finish the tick with a wait, a stop, the start of motion or the end of the program."""
         match what:
             case Next.WAIT:
                 self._change(State.WAIT if self._still.label else State.RUN)
@@ -356,7 +359,7 @@ class Cycle:
                 pass
 
     def _act(self, block: Block) -> bool:
-        """Carry out the block that needed the standstill; False when the cycle stops or ends with it."""
+        """Execute the block that needs the standstill; return False if the cycle stops or ends with it."""
         context, action = self._context, block.action
         if action is not None:
             self._show(block)
@@ -373,7 +376,7 @@ class Cycle:
         return True
 
     def _watch_spindle(self, block: Block) -> None:
-        """Feeding by the revolution needs a spindle that turns; a thread that lost it is left at once."""
+        """Hold a feed per revolution that has lost its spindle; retract from a thread at once."""
         spindle = self._context.spindle
         if not needs_speed(block) or self._hold.retracting or not spindle.lost or not self._motion.moving:
             return
@@ -384,7 +387,7 @@ class Cycle:
             self.hold(spindle.why_slow or "SPINDLE BELOW HALF COMMANDED SPEED")
 
     def _show_later(self, block: Block | None) -> None:
-        """At rest: blocks that go nowhere have been executed too."""
+        """Show a block at rest, because blocks without motion have been executed too."""
         if block is not None and (self.current is None or block.n > self.current.n):
             self._show(block)
 

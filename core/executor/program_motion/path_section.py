@@ -1,7 +1,7 @@
-"""A path section: its blocks, its path and speeds, and the plans that fill the queue of the axes.
+"""A path section: its blocks, its path with speeds, and the plans that fill the setpoint queue.
 
-A plan is spliced in time, kept filled ahead, and ends in a braking tail. Only a second or so is ever queued,
-and the tail behind it, so the slides stop on the path when nobody comes back.
+Only about one second of a plan is queued, followed by a braking tail. The axes therefore stop on the path if
+the queue is not extended.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ from core.motion.motion_plan import plan
 from core.motion.motion_profile import Profile
 from core.ports import AxisSink, DriverError, Segments
 
-_SETTLED = 0.4  # s before a plan's end within which its braking may differ from the law of a longer path
+_SETTLED = 0.4  # s before the end of a plan within which a longer path would give another speed
 _TRIES = 3
-_PATIENCE = 0.02  # s added to the lead when a plan came too late
+_PATIENCE = 0.02  # s added to the splice time when a plan came too late
 
 
 class Progress(Enum):
-    """How far the present path section is."""
+    """The progress of the present path section."""
 
     DONE = "no move is active, or all moves of the path are finished"
     MOVING = "moving"
@@ -37,7 +37,7 @@ class Progress(Enum):
 
 
 class Overrides(NamedTuple):
-    """Fractions of the programmed speeds. ``spindle``: its speed over the programmed one."""
+    """The overrides as fractions of the programmed speeds. ``spindle`` is actual over programmed speed."""
 
     feed: float = 1.0
     rapid: float = 1.0
@@ -45,7 +45,7 @@ class Overrides(NamedTuple):
 
 
 class PathSection:
-    """Blocks that are played without a standstill between them."""
+    """A sequence of blocks that are executed without a standstill between them."""
 
     def __init__(self, limits: MotionLimits, rpm_max: float) -> None:
         self._builder = PathBuilder(limits, rpm_max=rpm_max)
@@ -53,7 +53,7 @@ class PathSection:
         self.first_block: Block | None = None
 
     def add(self, blocks: Iterable[Block], reached: float = -np.inf) -> None:
-        """Append; ``reached`` as for ``PathBuilder.add``."""
+        """Append blocks; ``reached`` is described in ``PathBuilder.add``."""
         new = list(blocks)
         self._builder.add(new, reached)
         for block in new:
@@ -61,35 +61,35 @@ class PathSection:
             self._blocks[block.n] = block
 
     def block(self, n: int) -> Block | None:
-        """The block with this number."""
+        """Return the block with this number, or None."""
         return self._blocks.get(n)
 
     def behind(self, n: int) -> list[Block]:
-        """The blocks after this one, in order."""
+        """Return the blocks after block ``n``, in order."""
         return [block for number, block in sorted(self._blocks.items()) if number > n]
 
     @property
     def length(self) -> float:
-        """Length of what is held, mm (degrees where only C turns)."""
+        """The length of the stored path in mm, or in degrees if only C turns."""
         return self._builder.path().length
 
     @property
     def end_s(self) -> float:
-        """Distance of the end."""
+        """The distance along the path at its end."""
         return float(self._builder.path().s[-1])
 
     @property
     def last_block(self) -> Block | None:
-        """The block with the highest number."""
+        """The block with the highest number, or None."""
         return self._blocks[max(self._blocks)] if self._blocks else None
 
     def end_of(self, n: int) -> float:
-        """Distance at which this block ends; behind everything when it is not held."""
+        """Return the distance at which block ``n`` ends; inf if the block is not on the path."""
         path = self._builder.path()
         return path.block_span(n)[1] if n in self._blocks else np.inf
 
     def drop_before(self, n: int | None) -> None:
-        """Forget what lies behind block ``n``."""
+        """Drop the blocks before block ``n``."""
         if n is None or n not in self._blocks:
             return
         self._builder.drop_before(n)
@@ -98,10 +98,10 @@ class PathSection:
             del self._blocks[old]
 
     def path(self, overrides: Overrides, last: int | None) -> Path:
-        """The path with its speeds scaled; behind block ``last`` they are 0, so that a plan stops there.
+        """Return the path with scaled speeds, which are 0 after block ``last`` so that a plan stops there.
 
-        Limits do not depend on the overrides, so a plan made from a moving state meets the limits of the plan
-        that it replaces.
+        The limits do not depend on the overrides. A new plan from a moving state therefore meets the limits
+        of the plan that it replaces.
         """
         path = self._builder.path()
         if last is None and overrides == (1.0, 1.0, 1.0):
@@ -111,9 +111,9 @@ class PathSection:
         return dataclasses.replace(path, pieces=dataclasses.replace(path.pieces, rate=rate))
 
     def stoppable(self, last: int | None, s: float) -> int | None:
-        """The first block from ``last`` on that ends at or behind distance ``s`` and may be stopped at.
+        """Return the first block from ``last`` on that ends at or after ``s`` and permits a stop.
 
-        None where there is none, as behind a tap that is in its hole.
+        Returns None if no block does, for example while a tap is in its hole.
         """
         path = self._builder.path()
         numbers: list[int] = path.blocks.tolist()
@@ -135,103 +135,104 @@ class PathSection:
         return overrides.feed * overrides.spindle if turns else overrides.feed
 
 
-# --- what the queue holds -------------------------------------------------------------------------------
+# --- contents of the setpoint queue ---------------------------------------------------------------------
 
 
 class Track(NamedTuple):
-    """From time ``since`` on this plan is played; its own time zero is at ``origin``."""
+    """A plan in the queue. It is executed from time ``since`` on, and its own time zero is ``origin``."""
 
     since: float
     origin: float
     profile: Profile
 
     def state(self, t: float) -> tuple[float, float]:
-        """Distance along the path and speed at ``t``."""
+        """Return the distance along the path and the speed at time ``t``."""
         s, v = self.profile.at(t - self.origin)
         return float(s[0]), float(v[0])
 
     def block(self, t: float) -> int:
-        """Number of the block being played at ``t``."""
+        """Return the number of the block that is executed at time ``t``."""
         return self.profile.block_of(t - self.origin)
 
 
 class Tracks:
-    """The plans in the order in which they are played."""
+    """The queued plans in the order of their execution."""
 
     def __init__(self) -> None:
         self._tracks: list[Track] = []
 
     def clear(self) -> None:
-        """Nothing is queued."""
+        """Remove all plans."""
         self._tracks = []
 
     @property
     def last(self) -> Track | None:
-        """How the queue ends."""
+        """The last plan in the queue, or None."""
         return self._tracks[-1] if self._tracks else None
 
     def at(self, t: float) -> Track | None:
-        """The plan that is played at ``t``; before the first one, that."""
+        """Return the plan that is executed at ``t``, or the first plan if ``t`` is before it."""
         for track in reversed(self._tracks):
             if track.since <= t:
                 return track
         return self._tracks[0] if self._tracks else None
 
     def replace(self, t: float, tracks: Sequence[Track], now: float) -> None:
-        """What was spliced at ``t``; what is over by ``now`` is forgotten."""
+        """Replace the plans from ``t`` on, and drop the plans that are over at ``now``."""
         kept = [track for track in self._tracks if track.since < t]
         over = max((i for i, track in enumerate(kept) if track.since <= now), default=0)
         self._tracks = [*kept[over:], *tracks]
 
 
 class PlanQueue:
-    """What is queued and what of the present plan is still to be; on the executor's thread alone."""
+    """The setpoint queue and the rest of the present plan. Used on the executor's thread only."""
 
     def __init__(self, axes: AxisSink, lateness: Lateness) -> None:
         self._axes = axes
         self._lateness = lateness
-        self._cost = 0.0  # s that planning took of late
+        self._cost = 0.0  # s that recent planning took
         self._tracks = Tracks()
         self._profile: Profile | None = None
         self._origin = 0.0
-        self._queued_to = 0.0  # end of the plan's part in the queue; behind it lies the tail
+        self._queued_to = 0.0  # end of the queued part of the plan, after which the braking tail follows
 
     @property
     def planned_to(self) -> float:
-        """When the present plan comes to rest."""
+        """The time at which the present plan comes to rest."""
         return self._origin + (self._profile.duration if self._profile else 0.0)
 
     @property
     def starving(self) -> float:
-        """When the tail begins although the plan goes on; endless when the whole plan is queued."""
+        """The start time of the braking tail if the queue is not extended; inf if all is queued."""
         return self._queued_to if self._queued_to < self.planned_to - 1e-9 else np.inf
 
     @property
     def last(self) -> Track | None:
-        """How the queue ends."""
+        """The last plan in the queue, or None."""
         return self._tracks.last
 
     def lead(self, now: float) -> float:
-        """The earliest moment for which a plan that is begun now can still be spliced."""
+        """Return the earliest time from which a plan started now can change the queue."""
         return now + self._axes.commit + 1.5 * self._cost
 
     def latest(self, now: float) -> float:
-        """The moment for which it is spliced if it takes every try."""
+        """Return the splice time if the plan needs all its attempts."""
         return self.lead(now) + _TRIES * _PATIENCE
 
     def at(self, t: float) -> Track | None:
-        """What is played at ``t``; None: nothing was queued."""
+        """Return the plan that is executed at ``t``, or None if the queue is empty."""
         return self._tracks.at(t)
 
     def clear(self) -> None:
-        """Nothing of it holds any more."""
+        """Discard the plan and the record of the queue."""
         self._tracks.clear()
         self._profile, self._origin, self._queued_to = None, 0.0, 0.0
 
     def splice(self, make: Callable[[float], Profile], *, soon: bool) -> None:
-        """Plan for a moment that can still be changed, and splice; again, later, when that took too long.
+        """Make a plan from a time that can still be changed, and splice it. Retry later if it came too late.
 
-        ``soon``: as soon as the queue allows; else behind what is queued. Raises MotionError, DriverError.
+        With ``soon`` the plan starts as soon as possible, otherwise after the queued motion. Raises
+        MotionError or DriverError.
         """
         for attempt in range(_TRIES):
             began = self._axes.now()
@@ -252,7 +253,7 @@ class PlanQueue:
             return
 
     def extend(self, now: float) -> bool:
-        """Keep it filled from the present plan; False when it is too late for that."""
+        """Extend the queue from the present plan; return False if that is too late."""
         if (
             self._profile is None
             or self._queued_to - now >= self._lateness.lookahead
@@ -266,14 +267,14 @@ class PlanQueue:
         return True
 
     def let_stop(self) -> None:
-        """Leave the tail as it is: what was planned beyond it no longer holds."""
+        """Leave the tail in the queue and discard the rest of the plan."""
         track = self._tracks.last
         if track is not None:
             self._origin, self._profile = track.origin, track.profile
             self._queued_to = self.planned_to
 
     def _queue(self, t: float, origin: float, profile: Profile) -> None:
-        """Splice the plan from ``t`` on, as far as the look-ahead, and its tail."""
+        """Splice the plan from ``t`` to the end of the look-ahead, followed by its braking tail."""
         ahead = self._axes.now() + self._lateness.lookahead + AHEAD
         end = min(origin + profile.duration, max(ahead, t + AHEAD))
         parts = [profile.segments(t - origin, end - origin, origin)]

@@ -1,7 +1,7 @@
 """Motion by setpoints: one path section or thread pass at a time, from rest to rest.
 
-Feed hold, override and single block are the same act: plan from the present state with the overrides and
-switches of now, and splice the result into the queue.
+Feed hold, override and single block use the same method. A new plan starts from the present state with the
+present overrides and switches, and is spliced into the queue.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ from core.motion.motion_plan import plan
 from core.motion.motion_profile import Profile
 from core.ports import at_rest
 
-_LEAST = 0.2  # of the acceleration: what braking has in short chords at least
+_LEAST = 0.2  # fraction of the acceleration that braking has at least in short chords
 
 
 class SetpointMotion:
-    """Plans a path section, keeps it queued, brakes it, goes on. Called by the executor's thread alone."""
+    """Plans, queues, stops and resumes a path section. Used on the executor's thread only."""
 
     def __init__(self, context: MachineContext) -> None:
         machine = context.machine
@@ -35,35 +35,36 @@ class SetpointMotion:
         self._limits = MotionLimits.of(machine.axes, machine.timing.setpoint, machine.limits.corner_tolerance)
         self._queue = PlanQueue(self._axes, context.lateness)
         self._section: PathSection | None = None
-        self._pass: ThreadPass | GearedThreadPass | None = None  # instead of a path section
+        # a thread pass, used instead of a path section
+        self._pass: ThreadPass | GearedThreadPass | None = None
         self._retract: ThreadRetract | None = None
         self._shown: Block | None = None
-        self._overrides = Overrides()  # of the present plan
+        self._overrides = Overrides()  # overrides of the present plan
         self._single = False  # the present plan stops at the end of a block
-        self._single_from: int | None = None  # the block from which on it may stop
+        self._single_from: int | None = None  # the first block at whose end the plan may stop
         self._last: int | None = None  # the block at whose end the present plan stops
-        self._stepped: int | None = None  # the block at whose end single block has come to rest
+        self._stepped: int | None = None  # the block at whose end single block has stopped
 
-    # --- how it stands ------------------------------------------------------------------------------------
+    # --- state --------------------------------------------------------------------------------------------
 
     @property
     def active(self) -> bool:
-        """Whether there is a path section or a thread pass at all."""
+        """True if there is a path section or a thread pass."""
         return self._section is not None or self._pass is not None
 
     @property
     def moving(self) -> bool:
-        """Whether anything still moves."""
+        """True if anything is moving."""
         return self.active and not self._rests()
 
     @property
     def block(self) -> Block | None:
-        """The block being played, not one planned ahead."""
+        """The block being executed, not one that is planned ahead."""
         return self._block_at(self._context.now)
 
     @property
     def following(self) -> Block | None:
-        """The block behind it, when it belongs to the path section."""
+        """The block after the one being executed, if it belongs to the path section."""
         if self._pass is not None:
             behind = self._behind(self._pass.block(self._axes.now()))
             return behind[0] if behind else None
@@ -71,28 +72,29 @@ class SetpointMotion:
 
     @property
     def complete(self) -> bool:
-        """Whether nothing of the path section is left to be begun: what is queued ends where it does."""
+        """True if no block of the path section remains to be started."""
         left = self._context.switches.single_block and self._steps_left()
         return self._all_queued() and not left
 
     @property
     def ended_with(self) -> Block | None:
-        """At the end of the path section: its last block, which may go nowhere."""
+        """The last block at the end of the path section, which may have no length."""
         if self._pass is not None:
             return self._pass.blocks[-1]
         return self._section.last_block if self._section is not None else None
 
     @property
     def starving(self) -> float:
-        """When the braking tail begins although the plan goes on; endless when all of it is queued."""
+        """The start time of the braking tail if the queue is not extended; inf if all is queued."""
         return np.inf if self._pass is not None else self._queue.starving
 
-    # --- what is asked ------------------------------------------------------------------------------------
+    # --- requests -----------------------------------------------------------------------------------------
 
     def begin(self, blocks: list[Block]) -> None:
-        """A new path section, from rest; a thread pass is tied to the spindle.
+        """Start a new path section, or a thread pass that follows the spindle, from rest.
 
-        Raises AlarmError without a turning spindle, MotionError for what cannot be moved, DriverError.
+        Raises AlarmError if the spindle does not turn, MotionError if a block cannot be planned, or
+        DriverError.
         """
         self._single_from = None
         if blocks[0].kind is Kind.THREAD:
@@ -102,15 +104,19 @@ class SetpointMotion:
         self._go()
 
     def go_on(self, behind: Block | None) -> None:
-        """From rest within the path section; with single block to the end of the block after this one."""
+        """Resume from rest within the path section.
+
+        With single block, the motion ends with the block after ``behind``.
+        """
         self._single_from = behind.n + 1 if behind else None
         self._go()
 
     def progress(self, feed: ReadAhead) -> Progress:
-        """Follow switches and overrides, take read-ahead blocks in, and say how far it is."""
+        """Apply switches and overrides, add blocks that were read ahead, and return the progress."""
         if not self.active:
             return Progress.DONE
-        ran_dry = self.starving < self._axes.now()  # within this tick: the next one holds the cycle
+        # the queue has run dry within this tick; the next tick holds the cycle
+        ran_dry = self.starving < self._axes.now()
         changed = self._wanted() != self._overrides or self._context.switches.single_block != self._single
         if changed and not ran_dry:
             self._go()
@@ -128,11 +134,11 @@ class SetpointMotion:
         return Progress.MOVING
 
     def keep_up(self) -> None:
-        """Keep the queue filled while the slides come to rest."""
+        """Extend the queue while the axes stop."""
         self._extend(self._context.now)
 
     def hold(self) -> None:
-        """Feed hold: come to rest as soon as the path allows; a thread pass ends behind its pull-out."""
+        """Stop as soon as the path permits; a thread pass ends after its pull-out."""
         if self._pass is not None:
             self._pass.hold()
         else:
@@ -140,39 +146,39 @@ class SetpointMotion:
             self._queue.splice(lambda t: self._plan_stop(t, overrides), soon=True)
 
     def brake(self) -> None:
-        """Come to rest at once on the path, thread or not."""
+        """Stop at once on the path, even in a thread."""
         if self._pass is not None:
             self._pass.brake()
         else:
             self._queue.splice(lambda t: self._plan_stop(t, Overrides()), soon=True)
 
     def let_stop(self) -> None:
-        """Leave the tail in the queue as it is: what was planned beyond it no longer holds."""
+        """Leave the tail in the queue and discard the rest of the plan."""
         self._queue.let_stop()
 
     def release(self) -> bool:
-        """Give a thread pass back that still waits for its index; False when it moves."""
+        """Cancel a thread pass that still waits for its index; return False if it moves."""
         if self._pass is not None:
             self._pass.hold()
         return self._pass is not None and not self._pass.complete
 
     def retract(self, block: Block) -> None:
-        """Begin to leave a thread whose spindle is lost: brake along it, to draw X back then."""
+        """Stop along a thread that has lost its spindle, to retract X afterwards."""
         self._retract = ThreadRetract.of(block, self._behind(block), self._context.spindle)
         self.brake()
 
     def retracted(self) -> None:
-        """At rest: draw back, or be done. Raises AlarmError("thread-lost") in the end."""
+        """Retract X at rest, and raise AlarmError("thread-lost") when the tool is out."""
         if self._retract is None:
             return
-        # The time of the tick may be before the end of the braking where the computer was late.
+        # The time of the tick may be before the end of the braking if the computer was late.
         at, _ = self._axes.demand_at(self._axes.now())
         self._retract.demand_left(at)
         self._begin_section([self._retract.way_out(at)])
         self._splice(Overrides(), None)
 
     def forget(self) -> None:
-        """The path section is over, or nothing of it holds any more."""
+        """Clear the path section or thread pass."""
         self._retract = None
         self._clear()
 
@@ -184,9 +190,9 @@ class SetpointMotion:
         self._section.add(blocks)
 
     def _begin_thread(self, blocks: list[Block]) -> None:
-        """Followed inside the driver where it has a gear, else by setpoints in time.
+        """Start a thread pass, inside the driver if it has a gear, otherwise by setpoints over time.
 
-        Overrides, holds and single block act at its end.
+        Overrides, holds and single block take effect at its end.
         """
         self._clear()
         gear, angle = self._context.ports.gear, self._context.spindle.angle
@@ -201,12 +207,12 @@ class SetpointMotion:
         self._queue.clear()
 
     def _wanted(self) -> Overrides:
-        """The overrides of now. A rapid is never faster than its rate; G95 follows the spindle's pot."""
+        """Return the present overrides. A rapid never exceeds its rate; G95 follows the spindle override."""
         feed = self._context.feed_override
         return Overrides(feed, min(feed, 1.0), round(self._context.spindle.override, 2))
 
     def _go(self, *, soon: bool = True) -> None:
-        """Plan on with the overrides and switches of now. Raises MotionError and DriverError."""
+        """Plan with the present overrides and switches. Raises MotionError or DriverError."""
         self._overrides = self._wanted()
         self._single = self._context.switches.single_block
         self._last = self._last_block() if self._single else None
@@ -215,10 +221,9 @@ class SetpointMotion:
         self._splice(self._overrides, self._last, soon=soon)
 
     def _splice(self, overrides: Overrides, last: int | None, *, soon: bool = True) -> None:
-        """Plan on from the present state to the end of the path section, or of block ``last``.
+        """Plan from the present state to the end of the path section or of block ``last``.
 
-        ``soon`` takes effect as soon as the queue allows; without it what is queued stays and the plan goes
-        on behind it.
+        With ``soon`` the plan takes effect as soon as possible, otherwise after the queued motion.
         """
         if self._pass is not None:
             self._pass.go_on()
@@ -236,7 +241,7 @@ class SetpointMotion:
         return _planned(self._section.path(overrides, None), self._queue.at(t), t, stop=True)
 
     def _refill(self, feed: ReadAhead) -> None:
-        """Read-ahead blocks join the path section before its braking end comes near."""
+        """Add blocks that were read ahead before the braking end of the path section is near."""
         now = self._context.now
         left = (self._pass.end if self._pass is not None else self._queue.planned_to) - now
         ahead = self._context.lateness.lookahead
@@ -252,18 +257,18 @@ class SetpointMotion:
             )
 
     def _add(self, blocks: Iterable[Block]) -> None:
-        """More of the path section; planned with the next splice."""
+        """Append blocks to the path section; the next splice plans them."""
         assert self._section is not None
         self._section.add(blocks, self._reached())
 
     def _extend(self, now: float) -> None:
-        """Keep the queue filled from the present plan."""
+        """Extend the queue from the present plan."""
         if self._pass is not None:
             self._pass.track()
         self._queue.extend(now)
 
     def _reached(self) -> float:
-        """Distance before which the motion under way can come to rest, from when it can be changed on."""
+        """Return the distance before which the present motion can stop if it is changed now."""
         t = self._queue.latest(self._axes.now())
         track = self._queue.at(t)
         if track is None:
@@ -271,10 +276,10 @@ class SetpointMotion:
         s, v = track.state(t)
         return s + v * v / (2.0 * _LEAST * self._limits.plane_acceleration)
 
-    # --- single block and what is played ------------------------------------------------------------------
+    # --- single block and the present block ---------------------------------------------------------------
 
     def _last_block(self) -> int | None:
-        """Single block: the block at whose end to stop, no earlier than the slides still can."""
+        """Return the block at whose end single block stops, no earlier than the axes can."""
         now = self._context.now
         current = self._block_at(now)
         first = self._single_from if self._single_from is not None else (current.n if current else None)
@@ -283,7 +288,7 @@ class SetpointMotion:
         return last
 
     def _stoppable(self, first: int | None, now: float) -> int | None:
-        """The first block at or after ``first`` at whose end the slides can still come to rest."""
+        """Return the first block from ``first`` on at whose end the axes can still stop, or None."""
         if self._pass is not None:
             return self._pass.blocks[-1].n
         assert self._section is not None
@@ -292,7 +297,7 @@ class SetpointMotion:
         return self._section.stoppable(first, self._plan_stop(self._queue.lead(now), Overrides()).end_s)
 
     def _stepped_over(self, last: int) -> bool:
-        """At rest: whether block ``last`` is done; it then is the one being played, length or not."""
+        """Return whether block ``last`` is finished at rest, and record it as the present block."""
         if self._pass is not None:
             return self._pass.complete
         assert self._section is not None
@@ -303,14 +308,14 @@ class SetpointMotion:
         return True
 
     def _steps_left(self) -> bool:
-        """At rest: whether there are blocks behind the one that was reached, if only such as go nowhere."""
+        """Return whether blocks follow the present one at rest, including blocks without length."""
         if self._section is None:
             return False
         at = self._block_at(self._axes.now())
         return at is None or bool(self._section.behind(at.n))
 
     def _all_queued(self) -> bool:
-        """Whether what is queued ends where the path section does."""
+        """Return whether the queue ends where the path section ends."""
         if self._pass is not None:
             return self._pass.complete
         track = self._queue.last
@@ -319,7 +324,7 @@ class SetpointMotion:
         return track is not None and track.profile.end_s >= self._section.end_s - 1e-9
 
     def _rests(self) -> bool:
-        """Nothing that was queued moves any more. The clock goes on between two questions: asked last."""
+        """Return whether the queue has ended. The clock is read last because it continues to run."""
         horizon = self._axes.horizon()
         return at_rest(horizon, self._axes.now())
 
@@ -336,14 +341,14 @@ class SetpointMotion:
         return self._shown
 
     def _behind(self, block: Block) -> list[Block]:
-        """Blocks of the path section or thread pass that come after this one."""
+        """Return the blocks of the path section or thread pass after ``block``."""
         if self._pass is not None:
             return [each for each in self._pass.blocks if each.n > block.n]
         return self._section.behind(block.n) if self._section else []
 
 
 def _planned(path: Path, playing: Track | None, t: float, *, stop: bool = False) -> Profile:
-    """A plan from the state in which the one that is being played is at ``t``; from rest without one."""
+    """Return a plan from the state of the present plan at time ``t``, or from rest without one."""
     if playing is None:
         return plan(path, stop=stop)
     s, v = playing.state(t)

@@ -1,6 +1,6 @@
-"""Standstill between path sections: M functions and dwell carried out, and what is waited for.
+"""Standstill between path sections: execution of M functions and dwells, and their waits.
 
-Each wait has words for the screen, an end, and a time limit behind which it is an alarm.
+Each wait has a text for the screen, an end condition, and a time limit after which it is an alarm.
 """
 
 from __future__ import annotations
@@ -33,15 +33,15 @@ from core.message import Message
 # --- waits and actions ----------------------------------------------------------------------------------
 
 
-_IN_POSITION = 1.0  # s for a slide that is at rest to arrive
-_COLLET_LATE = 2.0  # s beyond its time
-_CHANGE_OVER = 25.0  # s in which a spindle's drive has become C, its index found
-_TURNS = 3.0  # at the speed of orienting: to its index, to the angle, and one to spare
+_IN_POSITION = 1.0  # s that an axis may take to get in position
+_COLLET_LATE = 2.0  # s beyond the closing or opening time
+_CHANGE_OVER = 25.0  # s for the change to C-axis mode, including the search for the index
+_TURNS = 3.0  # revolutions at orienting speed: to the index, to the angle, and one in reserve
 
 
 @dataclass(slots=True)
 class Wait:
-    """One wait. ``label`` is empty for waits that are too short to show; time held does not count."""
+    """A wait for a condition. ``label`` is empty for short waits. Time in feed hold does not count."""
 
     label: Callable[[], str]
     done: Callable[[float], bool]
@@ -50,7 +50,7 @@ class Wait:
     alarm: Code = "internal"
 
     def over(self, now: float) -> bool:
-        """Whether it is over; raises AlarmError when it took too long."""
+        """Return whether the wait is over. Raises AlarmError if its time limit has passed."""
         if self.done(now - self.since):
             return True
         if now - self.since > self.timeout:
@@ -58,19 +58,19 @@ class Wait:
         return False
 
     def shift(self, held: float) -> None:
-        """Feed hold has lasted so long, s: it does not count."""
+        """Exclude the duration of a feed hold, in seconds, from the wait."""
         self.since += held
 
 
 def in_position(context: MachineContext) -> Wait:
-    """Until the slides are where they were sent."""
+    """Return a wait until all axes are in position."""
     return Wait(lambda: "", lambda _: context.in_position(), context.now, _IN_POSITION, "in-position")
 
 
 def at_speed(context: MachineContext, *, thread: bool = False) -> Wait:
-    """Until the spindle turns as commanded, and for a thread until its encoder is read again after a stall.
+    """Return a wait until the spindle is at speed, and for a thread until its encoder can be read.
 
-    While the operator keeps it still there is no time limit.
+    The wait has no time limit while the operator prevents the spindle from turning.
     """
     spindle = context.spindle
     wait = Wait(
@@ -86,7 +86,7 @@ def at_speed(context: MachineContext, *, thread: bool = False) -> Wait:
             wait.since = context.now
         read = spindle.angle.known or context.ports.spindle.angle() is None
         turns = spindle.at_speed(context.now)
-        wait.alarm = "late" if turns else "at-speed"  # its encoder is not read often enough
+        wait.alarm = "late" if turns else "at-speed"  # the encoder is not read often enough
         return turns and (read or not thread)
 
     wait.done = done
@@ -94,10 +94,9 @@ def at_speed(context: MachineContext, *, thread: bool = False) -> Wait:
 
 
 def carry_out(block: Block, context: MachineContext) -> Wait | None:
-    """Do what an action block says; returns what has to be waited for. Raises AlarmError, DriverError.
+    """Execute the action of a block and return its wait, or None. Raises AlarmError or DriverError.
 
-    Stops and ends of the program are the cycle's own business and do nothing here; offsets, shifts and
-    presets are in the blocks already.
+    The cycle handles stops and ends of the program. Offsets, shifts and presets are already in the blocks.
     """
     match block.action:
         case SpindleRun():
@@ -123,7 +122,7 @@ def carry_out(block: Block, context: MachineContext) -> Wait | None:
 
 
 def _stop_spindle(action: SpindleStop | SpindleLock | SpindleOrient, context: MachineContext) -> Wait | None:
-    """To rest, to an axis, or to an angle."""
+    """Stop the spindle, switch it to C-axis mode, or orient it."""
     match action:
         case SpindleLock(orient=orient):
             return _lock_spindle(context, orient=orient)
@@ -141,13 +140,16 @@ def _start_spindle(block: Block, context: MachineContext) -> None:
 
 
 def _until_it_stands(context: MachineContext) -> Wait:
-    """An edge is not freed, and no hand goes near it, before."""
+    """Return a wait until the spindle is stopped, before the tool or the operator approaches."""
     spindle, limit = context.spindle, context.machine.spindle.timeout
     return Wait(lambda: "SPINDLE STOP", lambda _: spindle.stopped, context.now, limit, "ignores-stop")
 
 
 def _lock_spindle(context: MachineContext, *, orient: bool) -> Wait:
-    """C may move once the spindle stands and its drive positions; held already it is only kept."""
+    """Return a wait until the spindle is stopped and engaged as the C axis.
+
+    A spindle that is already engaged is not stopped again.
+    """
     spindle, change = context.spindle, 0.0
     if context.ports.lock is None or not spindle.held:
         spindle.stop()
@@ -163,7 +165,7 @@ def _lock_spindle(context: MachineContext, *, orient: bool) -> Wait:
 
 
 def _orient_spindle(context: MachineContext, angle: float, sense: int) -> Wait:
-    """The drive brings it to its angle once it stands; nothing goes on before it is held there."""
+    """Return a wait until the spindle is stopped and its drive holds it at the angle."""
     spindle, model = context.spindle, context.machine.spindle
     if spindle.orientation.at != angle and start_conditions.unclamped(context):
         raise AlarmError(
@@ -196,7 +198,10 @@ def _orient_spindle(context: MachineContext, angle: float, sense: int) -> Wait:
 
 
 def _move_collet(closed: bool, context: MachineContext) -> Wait:
-    """Where the machine file forbids unclamping at speed, opening waits until the spindle has run down."""
+    """Switch the collet and return its wait.
+
+    If the machine file forbids unclamping at speed, opening waits until the spindle has stopped.
+    """
     waits = not closed and not context.machine.interlocks.unclamp_while_turning
     if waits and context.spindle.asked:
         raise AlarmError(
@@ -222,38 +227,38 @@ def _move_collet(closed: bool, context: MachineContext) -> Wait:
 
 
 class Next(Enum):
-    """What the cycle has to do now."""
+    """The next action of the cycle at rest."""
 
-    WAIT = auto()  # nothing: something is waited for
-    GO_ON = auto()  # ask again: a wait is over, or has been begun
-    BLOCK_END = auto()  # stop for single block
-    MOTION = auto()  # begin the blocks that are pending
-    ACTION = auto()  # carry out the block that needed the standstill
-    END = auto()  # nothing comes any more
-    NOTHING = auto()  # not in this tick
+    WAIT = auto()  # nothing, because a wait is active
+    GO_ON = auto()  # ask again, because a wait has started or ended
+    BLOCK_END = auto()  # =
+    MOTION = auto()  # start the pending blocks
+    ACTION = auto()  # execute the block that needs the standstill
+    END = auto()  # end the cycle, because no blocks remain
+    NOTHING = auto()  # nothing in this tick
 
 
 class Standstill:
-    """What comes next while all is at rest. ``done``: a block was executed since the last stop.
+    """Determines the next action at rest. ``done`` is True if a block was executed since the last stop.
 
-    ``in_hole`` tells whether a tap is in its hole, where single block does not stop.
+    ``in_hole`` returns whether a tap is in its hole, where single block does not stop.
     """
 
     def __init__(self, context: MachineContext, feed: ReadAhead, in_hole: Callable[[], bool]) -> None:
         self._context, self._feed, self._in_hole = context, feed, in_hole
         self._wait: Wait | None = None
-        self._settled = True  # in position since the last motion
+        self._settled = True  # the axes are in position after the last motion
         self.done = False
 
     @property
     def label(self) -> str | None:
-        """In words, what is waited for; empty for what is too short to show, None without a wait."""
+        """The text of the present wait, empty for a short wait, or None without a wait."""
         return self._wait.label() if self._wait is not None else None
 
     def next(self) -> Next:
-        """What the cycle has to do now, one thing at a time.
+        """Return the next single action of the cycle.
 
-        Raises AlarmError for a wait that takes too long and for bad blocks.
+        Raises AlarmError if a wait takes too long or a block is invalid.
         """
         feed = self._feed
         if self._wait is not None:
@@ -273,7 +278,7 @@ class Standstill:
         return Next.END if feed.ended else Next.NOTHING
 
     def carry_out(self, block: Block) -> None:
-        """Carry out an action, or wait for the speed that a block needs. Raises AlarmError, DriverError."""
+        """Execute an action, or wait for the speed that a block needs. Raises AlarmError or DriverError."""
         if block.action is not None:
             self._wait = carry_out(block, self._context)
         elif needs_speed(block):
@@ -282,12 +287,12 @@ class Standstill:
             self._waited()
 
     def wait_for(self, label: str) -> None:
-        """Stand until another cycle takes the place of this one."""
+        """Wait until another cycle replaces this one."""
         if self._wait is None:
             self._wait = Wait(lambda: label, lambda _: False, self._context.now)
 
     def shift_for_hold(self, seconds: float) -> None:
-        """Feed hold has lasted so long, s: it does not count."""
+        """Exclude the duration of a feed hold, in seconds, from the present wait."""
         if self._wait is not None:
             self._wait.shift(seconds)
 

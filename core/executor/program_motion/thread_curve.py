@@ -1,8 +1,9 @@
-"""Where the slides are along a chain of thread blocks: X and Z over s, the turns of the spindle times a lead.
+"""X and Z along a chain of thread blocks, as functions of s, the spindle revolutions times a lead.
 
-A thread of one block has Z in proportion to s. In a chain the lead changes from block to block, and with G34
-and G35 within one. A slide cannot change its speed at once: round the end of a block both slides go over into
-the next lead in so many turns as half of their acceleration takes at the speed that is commanded.
+In a thread of one block, Z is proportional to s. In a chain, the lead changes between blocks, and with G34
+and G35 also within a block. An axis cannot change its speed at once. Around each joint, both axes therefore
+change to the next lead over as many revolutions as half of their acceleration requires at the commanded
+speed.
 """
 
 from __future__ import annotations
@@ -19,14 +20,17 @@ from core.motion.axis_limits import MotionLimits
 
 Floats = npt.NDArray[np.float64]
 
-_CHORDS = 16  # a turn, of a lead that changes: .1 mm more a turn lies 5e-5 mm beside its chord
-_BLEND = 8  # chords of a change of lead
-_SHARE = 0.5  # of the acceleration
+_CHORDS = 16  # chords per revolution; a lead that grows by 0.1 mm per revolution deviates by 5e-5 mm
+_BLEND = 8  # chords per change of lead
+_SHARE = 0.5  # fraction of the acceleration used for a change of lead
 _SAME = 1e-9
 
 
 class ThreadCurve(NamedTuple):
-    """Machine X and Z, mm, at the knots ``s``, mm from 0 on; straight between them and behind the last."""
+    """Machine X and Z in mm at the knots ``s`` in mm, which start at 0.
+
+    The curve is linear between the knots and continues linearly after the last one.
+    """
 
     s: Floats
     x: Floats
@@ -34,11 +38,11 @@ class ThreadCurve(NamedTuple):
 
     @property
     def length(self) -> float:
-        """s of the end."""
+        """The value of s at the end."""
         return float(self.s[-1])
 
     def at(self, s: float) -> tuple[float, float, float, float]:
-        """X and Z at ``s``, and their change per mm of it."""
+        """Return X and Z at ``s``, and their derivatives by s."""
         i = int(np.clip(np.searchsorted(self.s, s, side="right") - 1, 0, len(self.s) - 2))
         step = float(self.s[i + 1] - self.s[i])
         dx, dz = float(self.x[i + 1] - self.x[i]) / step, float(self.z[i + 1] - self.z[i]) / step
@@ -46,24 +50,24 @@ class ThreadCurve(NamedTuple):
         return float(self.x[i]) + dx * ahead, float(self.z[i]) + dz * ahead, dx, dz
 
     def place(self, z: float) -> float:
-        """s at which Z stands at ``z``; before the start and behind the end as the next piece goes."""
+        """Return s at which Z is ``z``, extrapolated before the start and after the end."""
         sign = math.copysign(1.0, float(self.z[-1] - self.z[0]))
         i = int(np.clip(np.searchsorted(sign * self.z, sign * z, side="right") - 1, 0, len(self.s) - 2))
         return float(self.s[i] + (z - self.z[i]) * (self.s[i + 1] - self.s[i]) / (self.z[i + 1] - self.z[i]))
 
     def acceleration(self, ax: float, az: float) -> float:
-        """Along s, of what the slides have: mm/s²."""
+        """Return the acceleration along s in mm/s² that the axis limits ``ax`` and ``az`` permit."""
         dx, dz = np.abs(np.diff(self.x) / np.diff(self.s)), np.abs(np.diff(self.z) / np.diff(self.s))
         return float(min(az / dz.max(), ax / dx.max() if dx.max() else math.inf))
 
 
 def turns_of(block: Block) -> float:
-    """Turns of the spindle that a thread block takes; its feed is its mean lead."""
+    """Return the spindle revolutions of a thread block, whose feed is its mean lead."""
     return abs(block.z - block.z0) / block.feed
 
 
 def curve_of(blocks: Sequence[Block], limits: MotionLimits) -> ThreadCurve:
-    """The curve of a chain of threads, the first lead taken as that of s."""
+    """Return the curve of a chain of threads. Its s is measured with the first lead."""
     first = blocks[0]
     unit = first.feed - 0.5 * first.growth * turns_of(first)
     s, x, z = [0.0], [first.x0 + first.offset_x], [first.z0 + first.offset_z]
@@ -80,7 +84,7 @@ def curve_of(blocks: Sequence[Block], limits: MotionLimits) -> ThreadCurve:
 
 
 def _chords(block: Block) -> list[tuple[float, float]]:
-    """Shares of the way and the turns from one to the next, along a block."""
+    """Return points along a block: the share of its length, and the revolutions since the previous point."""
     whole = turns_of(block)
     if not block.growth:
         return [(1.0, whole)]
@@ -92,7 +96,7 @@ def _chords(block: Block) -> list[tuple[float, float]]:
 
 
 def _blended(raw: ThreadCurve, joints: Sequence[float], speed: float, limits: MotionLimits) -> ThreadCurve:
-    """The same with its joints rounded off, where the slides could not follow; ``speed`` along s, mm/s."""
+    """Return the curve with rounded joints where the axes cannot follow. ``speed`` is along s, in mm/s."""
     s, points = list(raw.s), {float(k): (float(a), float(b)) for k, a, b in zip(*raw, strict=True)}
     for joint in joints:
         x0, z0, dx1, dz1 = raw.at(joint)

@@ -1,9 +1,9 @@
-"""A thread pass tied to the measured spindle angle: by setpoints planned anew, or by gear.
+"""A thread pass that follows the measured spindle angle, by repeated planning of setpoints or by a gear.
 
-The slide is in step when s = lead · (turns - index): s along Z from the start of the pass, turns as the
-encoder counts them. So every pass enters at the same angle, whatever the speed. The queue always holds the
-whole pass, pull-out and rest included, as the spindle is expected to turn; each tick corrects that from a
-commit ahead on.
+The axis is in step if s = lead · (turns - index), with s along Z from the start of the pass and the
+revolutions as counted by the encoder. Every pass therefore enters at the same angle at any speed. The queue
+always contains the complete pass with pull-out and stop, based on the predicted spindle angle. Each tick
+corrects it from one commit time ahead.
 """
 
 from __future__ import annotations
@@ -21,28 +21,30 @@ from core.interpreter.shared.elementary_blocks import Block
 from core.motion.axis_limits import MotionLimits
 from core.ports import AxisSink, Cam, DriverError, Gear, Geared, Segments, Stop
 
-_BLEND = 0.01  # s in which a deviation is taken out
-_LONGEST = 0.16  # s; a deviation that takes more is no wander
-_EARLY = 0.01  # s between the first plan and the start, in which the start can still be corrected
-_SHARE = 0.7  # of the acceleration for running up: the rest corrects
-_PATIENCE = 0.002  # s more for a braking, which has one try
+_BLEND = 0.01  # s for the correction of a deviation
+_LONGEST = 0.16  # s, the longest correction
+_EARLY = 0.01  # s between the first plan and the start, for corrections of the start
+_SHARE = 0.7  # fraction of the acceleration for the run-up; the rest is for corrections
+_PATIENCE = 0.002  # additional s for braking, which has only one attempt
 _TRIES = 3
-_OVER = 1.0005  # of the greatest speed, for what corrections need
+_OVER = 1.0005  # fraction of the maximum speed that corrections may use
 _AT_START = 1e-6  # mm
-_ALLOWED = 0.01  # turns, between the slide and the spindle
+_ALLOWED = 0.01  # revolutions, permitted deviation between axis and spindle
 _log = logging.getLogger(__name__)
-_GEARED_SHARE = 0.9  # of the acceleration; the rest is for a spindle that turns faster than foretold
-_AHEAD = 0.01  # s between the plan and what it changes, doubled where that was too short
+# fraction of the acceleration; the rest is for a spindle that turns faster than predicted
+_GEARED_SHARE = 0.9
+_AHEAD = 0.01  # s between a plan and its first change, doubled if too short
 _FURTHER_AHEAD = tuple(_AHEAD * 2**attempt for attempt in range(4))
-_FROM_REST = tuple(_AHEAD * 2**attempt for attempt in range(7))  # .64 s: at rest a later index costs no more
-_CHANGED = 0.005  # of the speed: more, and what is still to come is planned again
-_SLOWEST = 0.1  # turns/s; a spindle that is as good as still asks for no other plan
+# up to 0.64 s, because a later index costs nothing at rest
+_FROM_REST = tuple(_AHEAD * 2**attempt for attempt in range(7))
+_CHANGED = 0.005  # relative speed change after which the rest is planned again
+_SLOWEST = 0.1  # rev/s; a slower spindle needs no other plan
 _ROUNDING = 1e-9  # turns
-_BEGINS = {"late", "broken-path"}  # what a driver says of setpoints behind a start that is near
+_BEGINS = {"late", "broken-path"}  # error codes of a driver if the pass is about to start
 
 
 class SpindlePass:
-    """One pass, tied to the spindle by setpoints or by gear, and how far it has come from it."""
+    """A thread pass that follows the spindle, with its largest deviation from it."""
 
     def __init__(
         self, axes: AxisSink, limits: MotionLimits, turns: SpindleAngle, blocks: Sequence[Block]
@@ -51,13 +53,13 @@ class SpindlePass:
         self._turns = turns
         self._path = ThreadPath.of(blocks, limits)
         self.blocks = tuple(blocks)
-        self._sign = 1.0  # of the spindle
+        self._sign = 1.0  # direction of the spindle
         self._stopped = False
         self._reported = False
-        self.worst = 0.0  # turns between the slide and the spindle while in step
+        self.worst = 0.0  # largest deviation in revolutions between axis and spindle while in step
 
     def cut_at(self, turns: float) -> Block:
-        """The block of the thread that is cut so many turns behind the start of the pass."""
+        """Return the thread block that is cut ``turns`` revolutions after the start of the pass."""
         cut = [self.blocks[0], *(block for block in self.blocks[1:] if block.continues)]
         for block in cut:
             turns -= turns_of(block)
@@ -67,19 +69,19 @@ class SpindlePass:
 
     @property
     def complete(self) -> bool:
-        """Whether what is queued is the whole pass."""
+        """True if the queue contains the complete pass."""
         return not self._stopped
 
     def lost_step(self) -> bool:
-        """Whether slide and spindle have come too far apart for a good thread; True once a pass."""
+        """Return True once per pass if axis and spindle deviate too much for a good thread."""
         before, self._reported = self._reported, self.worst > _ALLOWED
         return self._reported and not before
 
 
 class ThreadPass(SpindlePass):
-    """Blocks of one pass: the thread, and behind it its pull-out or the rapid straight out.
+    """A thread pass by setpoints: the thread, followed by its pull-out or a straight rapid in X.
 
-    Raises AlarmError where the spindle does not turn or has no encoder.
+    Raises AlarmError if the spindle does not turn or has no encoder.
     """
 
     def __init__(
@@ -88,28 +90,28 @@ class ThreadPass(SpindlePass):
         super().__init__(axes, limits, turns, blocks)
         self._top = limits.vmax[1]
         self._lead, self._ramp = self._path.lead, _SHARE * self._path.a
-        self._index = 0.0  # turns, unsigned, at which s = 0 is in step
-        self._begins = 0.0, 0.0  # when the running up begins, and the speed it leads to
-        self._leaves = math.inf  # when the thread itself ends
+        self._index = 0.0  # unsigned revolutions at which s = 0 is in step
+        self._begins = 0.0, 0.0  # start time of the run-up, and its final speed
+        self._leaves = math.inf  # time at which the thread itself ends
         self._ends = math.inf
         self._cost = 0.0
-        self._free = False  # too near its end for another plan
+        self._free = False  # too close to the end for another plan
 
     @property
     def end(self) -> float:
-        """When the pass comes to rest as planned now, s."""
+        """The planned time at which the pass comes to rest, in seconds."""
         return self._ends
 
     def block(self, now: float) -> Block:
-        """The block being played."""
+        """Return the block that is executed at time ``now``."""
         if now >= self._leaves:
             return self.blocks[-1]
         return self.cut_at(self._demand(now)[0] / self._lead) if len(self.blocks) > 1 else self.blocks[0]
 
     def begin(self) -> None:
-        """Choose the index and queue the pass from rest."""
+        """Select the index and queue the pass from rest."""
         now = self._axes.now()
-        # Nothing of it is done: what cannot be queued begins when it goes on.
+        # Nothing has started yet, so a pass that cannot be queued starts on resume.
         self._stopped, self._ends, self._leaves, self._index = True, now, math.inf, 0.0
         turns, speed = self._state(now)
         v = min(self._lead * speed, self._top)
@@ -122,17 +124,17 @@ class ThreadPass(SpindlePass):
         raise DriverError("the thread moves could not be queued in time", "late")
 
     def track(self) -> None:
-        """Once a tick: correct the way from a commit ahead on, and see how well the last one was met."""
+        """Correct the motion from one commit time ahead, and measure the deviation. Called once per tick."""
         now = self._axes.now()
         if self._stopped or now >= self._leaves or self._turns.at(now) is None:
-            return  # without an encoder what is queued is the best way out
+            return  # without encoder data the queued pass is the best choice
         self._measure(now)
         if self._free:
             return
         self._replan()
 
     def _replan(self) -> bool:
-        """Plan and queue; False when that came too late, and what is queued goes on."""
+        """Plan and queue the pass again; return False if that came too late, so that the old plan remains."""
         now = self._axes.now()
         t = now + self._axes.commit + 1.5 * self._cost
         try:
@@ -147,7 +149,7 @@ class ThreadPass(SpindlePass):
         return True
 
     def hold(self) -> None:
-        """A pass that has not begun to move does not begin; any other is finished."""
+        """Cancel a pass that has not started to move; any other pass is finished."""
         t = self._axes.now() + self._axes.commit + max(1.5 * self._cost, _PATIENCE)
         if self._stopped or t >= self._begins[0]:
             return
@@ -156,13 +158,13 @@ class ThreadPass(SpindlePass):
         self._stopped, self._ends, self._leaves = True, t, math.inf
 
     def go_on(self) -> None:
-        """Begin again after a hold before the first motion, at another index."""
+        """Start a pass again, at another index, after a hold before its first motion."""
         s, v = self._demand(self._axes.now())
         if self._stopped and abs(s) <= _AT_START and v == 0.0:
             self.begin()
 
     def brake(self) -> None:
-        """Come to rest along the thread; a pass that is already leaving it is left alone."""
+        """Stop along the thread, unless the pass already pulls out."""
         t = self._axes.now() + self._axes.commit + max(1.5 * self._cost, _PATIENCE)
         s, v = self._demand(t)
         if self._stopped or t >= self._leaves or s + 0.5 * v * v / self._path.a >= self._path.length:
@@ -179,19 +181,19 @@ class ThreadPass(SpindlePass):
             return
         segments, leaves = self._path.onwards(t, s, v, lead_in)
         if np.abs(segments.v[:, 1]).max() > self._top * _OVER:
-            return  # faster than the slide: it falls behind, and that is told
+            return  # The pass is faster than the axis, so the axis lags and the deviation is reported.
         self._axes.splice(segments)
         self._leaves, self._ends = leaves, _end(segments)
 
     def _run_up(self, t: float) -> Phases | None:
-        """From rest: wait, then accelerate onto the line; None where the start is past already."""
+        """Return a wait and an acceleration from rest to the line, or None if the start has passed."""
         starts, v = self._begins = self._start()
         if starts < t:
             return None
         return [(starts - t, 0.0), (v / self._ramp, self._ramp)]
 
     def _blend(self, t: float, s: float, v: float) -> Phases | None:
-        """Two accelerations that lead onto the line, never backwards; None where no room is left for that."""
+        """Return two phases that lead to the line without reversing, or None without room for them."""
         path, time = self._path, _BLEND
         while time <= _LONGEST:
             goal, speed, rest = self._target(t + time)
@@ -208,7 +210,7 @@ class ThreadPass(SpindlePass):
         return None
 
     def _target(self, t: float) -> tuple[float, float, Phases]:
-        """Where the slide ought to be at ``t`` and how fast, and the rest of its running up."""
+        """Return the required s and speed at time ``t``, and the rest of the run-up."""
         starts, v = self._begins
         into = t - starts
         if into * self._ramp < v:
@@ -219,10 +221,10 @@ class ThreadPass(SpindlePass):
         return self._lead * (turns - self._index), self._lead * speed, []
 
     def _start(self) -> tuple[float, float]:
-        """When to begin to be in step behind the ramp, and the speed it leads to.
+        """Return the start time of the run-up and its final speed.
 
-        Half the ramp before the index: a slide that speeds up from rest lags behind one that moves by
-        v²/2a, which it must have begun v/2a earlier.
+        The run-up starts half its duration before the index. An axis that accelerates from rest lags a moving
+        one by v²/2a, so it must start v/2a earlier.
         """
         at = self._axes.now()
         for _ in range(3):
@@ -232,14 +234,14 @@ class ThreadPass(SpindlePass):
         return at - 0.5 * v / self._ramp, v
 
     def _state(self, t: float) -> tuple[float, float]:
-        """Turns and turns per second at ``t``, both counted in the direction in which the spindle turns."""
+        """Return revolutions and revolutions per second at ``t``, positive in the direction of rotation."""
         state = self._turns.turning_at(t)
         if self._index == 0.0:
             self._sign = math.copysign(1.0, state[1])
         return self._sign * state[0], self._sign * state[1]
 
     def _measure(self, now: float) -> None:
-        """How far the setpoints are from the spindle, in leads, once the slide is up to speed."""
+        """Record the deviation between setpoints and spindle, in leads, when the axis is at speed."""
         s, v = self._demand(now)
         turns, speed = self._state(now)
         if v < 0.9 * self._lead * speed:
@@ -256,13 +258,13 @@ def _end(segments: Segments) -> float:
 
 
 class GearedThreadPass(SpindlePass):
-    """Blocks of one pass, as a cam along which the driver's slides follow the spindle, planned once.
+    """A thread pass by a cam along which the driver's axes follow the spindle; planned once.
 
-    The slide is in step when s = lead · turns, counted from an index that is chosen when the pass begins.
-    Running up, pull-out and rest are on the cam too: they depend on the spindle's speed only in that they
-    have to stay within what the slides can do.
+    The axis is in step if s = lead · turns, counted from an index that is selected when the pass starts.
+    Run-up, pull-out and stop are on the cam too. They depend on the spindle speed only because they must stay
+    within the axis limits.
 
-    Raises AlarmError where the spindle does not turn or has no encoder.
+    Raises AlarmError if the spindle does not turn or has no encoder.
     """
 
     def __init__(
@@ -271,25 +273,25 @@ class GearedThreadPass(SpindlePass):
         super().__init__(axes, limits, turns, blocks)
         self._gear = gear
         self._zero = 0.0
-        self._speed = 0.0  # turns/s, for which the cam is planned
-        self._ramp = 0.0  # turns of running up
-        self._leaves = math.inf  # turns at which the thread itself ends
+        self._speed = 0.0  # rev/s for which the cam is planned
+        self._ramp = 0.0  # revolutions of the run-up
+        self._leaves = math.inf  # revolutions at which the thread itself ends
 
     @property
     def end(self) -> float:
-        """When the pass will come to rest at the present speed."""
+        """The time at which the pass will come to rest at the present speed, in seconds."""
         return self._axes.horizon()
 
     def block(self, _now: float) -> Block:
-        """The block being played."""
+        """Return the block being executed."""
         geared = self._gear.geared()
         if geared is None:
             return self.blocks[0] if self._stopped else self.blocks[-1]
         return self.blocks[-1] if geared.turns >= self._leaves else self.cut_at(geared.turns)
 
     def begin(self) -> None:
-        """Choose the index and hand the pass over, from rest."""
-        self._stopped = True  # nothing of it is done: what cannot be queued begins when it goes on
+        """Select the index and send the pass to the driver, from rest."""
+        self._stopped = True  # Nothing has started yet, so a pass that cannot be queued starts on resume.
         for early in _FROM_REST:
             if self._mesh_from_rest(early):
                 self._stopped = False
@@ -297,7 +299,7 @@ class GearedThreadPass(SpindlePass):
         raise DriverError("the thread moves could not be queued in time", "late")
 
     def track(self) -> None:
-        """Once a tick: see how well it is followed; plan the end again when the speed has changed."""
+        """Measure the deviation, and plan the rest again if the speed has changed. Called once per tick."""
         geared = self._gear.geared()
         state = self._turns.at(self._axes.now())
         if self._stopped or geared is None or state is None:
@@ -309,7 +311,7 @@ class GearedThreadPass(SpindlePass):
             self._go_on_at(speed, geared)
 
     def hold(self) -> None:
-        """A pass that has not begun to move does not begin; any other is finished."""
+        """Cancel a pass that has not started to move; any other pass is finished."""
         t = self._axes.now() + self._axes.commit + _AHEAD
         geared = self._gear.geared()
         if self._stopped or geared is None or self._reached(geared, t) >= -self._ramp:
@@ -320,24 +322,24 @@ class GearedThreadPass(SpindlePass):
         except DriverError as error:
             if error.code not in _BEGINS:
                 raise
-            return  # it ends behind its pull-out
+            return  # the pass ends after its pull-out
         self._stopped = True
 
     def go_on(self) -> None:
-        """Begin again after a hold before the first motion, at another index."""
+        """Start a pass again, at another index, after a hold before its first motion."""
         (_, z, *_), _ = self._axes.demand_at(self._axes.now())
         if self._stopped and self._gear.geared() is None and abs(z - self._path.z) <= _AT_START:
             self.begin()
 
     def brake(self) -> None:
-        """Come to rest along the thread; a pass that only draws X back is left alone."""
+        """Stop along the thread, unless the pass only retracts X."""
         if self._stopped or self._gear.geared() is None:
             return
         self._axes.stop(Stop.RAMP_HOLD)
         self._stopped = True
 
     def _mesh_from_rest(self, early: float) -> bool:
-        """Plan the whole pass; False when that came too late."""
+        """Plan the complete pass; return False if it was too late."""
         state = self._turns.turning_at(self._axes.now())
         self._sign, self._speed = math.copysign(1.0, state[1]), abs(state[1])
         self._ramp = self._running_up(self._speed)
@@ -352,15 +354,18 @@ class GearedThreadPass(SpindlePass):
         return True
 
     def _running_up(self, speed: float) -> float:
-        """Turns from rest to the index: a slide that speeds up from rest lags behind one that moves by
-        v²/2a, which it must have begun v/2a earlier; half of its running up."""
+        """Return the revolutions from rest to the index.
+
+        An axis that accelerates from rest lags a moving one by v²/2a, so it must start v/2a earlier, which is
+        half of its run-up.
+        """
         return 0.5 * self._path.lead * speed**2 / (_GEARED_SHARE * self._path.a)
 
     def _go_on_at(self, speed: float, geared: Geared) -> None:
-        """What is still to come, for another speed: the running up, or what follows the thread.
+        """Plan the run-up, or the part after the thread, for another spindle speed.
 
-        What was handed over before is a whole pass: where a change of it is refused that goes on, and a slide
-        that it asks too much of slips.
+        If the driver rejects the change, the complete pass that it already has continues. An axis that cannot
+        follow it then lags.
         """
         path, ramp = self._path, self._running_up(speed)
         for early in _FURTHER_AHEAD:
@@ -377,25 +382,28 @@ class GearedThreadPass(SpindlePass):
             return
 
     def _mesh_up(self, speed: float, ramp: float) -> None:
-        """The whole path, from rest ``ramp`` turns before the index. Raises DriverError."""
+        """Send the complete path, which starts from rest ``ramp`` revolutions before the index.
+
+        Raises DriverError if the driver rejects it.
+        """
         self._mesh(-ramp, 0.0, 0.0, speed, [(2.0 * ramp, 0.5 * self._path.lead / ramp)])
         self._ramp = ramp
 
     def _mesh(self, turns: float, s: float, v: float, speed: float, up: Phases) -> None:
-        """Hand over the path from ``turns`` on, where the slide is at ``s`` with ``v`` mm per turn.
+        """Send the path from ``turns`` on, where the axis is at ``s`` with ``v`` mm per revolution.
 
-        Raises DriverError; what was handed over before then goes on.
+        Raises DriverError if the driver rejects it. The path sent before then remains in force.
         """
         path, leaves = self._paced(speed).onwards(turns, s, v, up)
         self._gear.mesh(Cam(self._zero, self._sign, path, self._path.drawn_back()))
         self._leaves, self._speed = leaves, speed
 
     def _paced(self, speed: float) -> ThreadPath:
-        """The path with limits per turn, up to where the spindle still matters."""
+        """Return the path with limits per revolution, up to where it no longer follows the spindle."""
         path, share = self._path, _GEARED_SHARE / speed**2
         out = path.out if path.beyond else path.x_end
         return path._replace(a=path.a * share, ax=path.ax * share, az=path.az * share, out=out)
 
     def _reached(self, geared: Geared, t: float) -> float:
-        """Turns that the cam will not have been played beyond at ``t``, the spindle not speeding up."""
+        """Return the furthest cam position in revolutions at time ``t`` if the speed does not rise."""
         return geared.turns + max(self._speed, geared.speed) * (t - self._axes.now())

@@ -1,6 +1,7 @@
-"""The path of one thread pass: s along Z from the start, X as a function of it, and the way out of it.
+"""The path of one thread pass: s along Z from the start, X as a function of s, and the exit.
 
-Plans are lists of phases (seconds, acceleration); all mm and seconds, X as a radius, signs of the machine.
+Plans are lists of phases (seconds, acceleration). Units are mm and seconds, X is a radius, and signs are
+those of the machine.
 """
 
 from __future__ import annotations
@@ -29,11 +30,14 @@ _INCH = 25.4  # mm
 
 
 class ThreadPath(NamedTuple):
-    """Machine coordinates. The thread runs from ``x z`` for ``length`` along Z (sign ``along``), X changing
-    by ``slope`` per s. Then X goes to ``out``: while Z goes on by ``beyond`` in step, or, ``beyond`` being 0,
-    at ``rapid`` with Z at rest. ``a`` is the acceleration along the thread, ``ax az`` those of the slides.
-    A chain of threads has a ``curve``: s are then the turns times ``lead``, and ``slope`` and ``end_lead``
-    are what X and Z change by per s at its end."""
+    """The path of a thread pass in machine coordinates.
+
+    The thread starts at ``x z`` and has the ``length`` along Z in the direction ``along`` (±1). X changes by
+    ``slope`` per s. Then X moves to ``out`` while Z continues in step by ``beyond``. If ``beyond`` is 0, X
+    moves at ``rapid`` with Z at rest. ``a`` is the acceleration along the thread, and ``ax az`` are those of
+    the axes. A chain of threads has a ``curve``, whose s is the revolutions times ``lead``. ``slope`` and
+    ``end_lead`` are then the changes of X and Z per s at its end.
+    """
 
     x: float
     z: float
@@ -53,7 +57,7 @@ class ThreadPath(NamedTuple):
 
     @classmethod
     def of(cls, blocks: Sequence[Block], limits: MotionLimits) -> ThreadPath:
-        """The pass that these blocks are: the thread, and what pulls out of it if anything does."""
+        """Return the path of a pass from its blocks: the thread and its pull-out, if any."""
         first, out = blocks[0], blocks[-1]
         cut = [first, *(block for block in blocks[1:] if block.continues)]
         length = abs(first.z - first.z0)
@@ -81,7 +85,7 @@ class ThreadPath(NamedTuple):
 
     @classmethod
     def _chained(cls, cut: Sequence[Block], last: Block, limits: MotionLimits) -> ThreadPath:
-        """A chain of threads, and what pulls out of it: the last block where that is none of the chain."""
+        """Return the path of a chain of threads. ``last`` is its pull-out, or the last block of the chain."""
         first = cut[0]
         curve, (ax, az) = curve_of(cut, limits), limits.amax[:2]
         _, _, slope, along = curve.at(curve.length)
@@ -110,20 +114,21 @@ class ThreadPath(NamedTuple):
         return self.x + self.slope * self.length if self.curve is None else float(self.curve.x[-1])
 
     def place(self, z: float, vz: float) -> tuple[float, float]:
-        """s and its speed where Z is at ``z``."""
+        """Return s and its speed where Z is at ``z`` and moves at ``vz``."""
         if self.curve is not None:
             s = self.curve.place(z)
             return s, vz / self.curve.at(s)[3]
         return (z - self.z) * self.along, vz * self.along
 
     def full_depth(self, v: float) -> float:
-        """s up to which nothing but the thread itself is cut at speed ``v``."""
+        """Return the s up to which only the thread itself is cut at speed ``v``."""
         return min(self.length, self.length + self.beyond - 0.5 * v * v / self.az)
 
     def onwards(self, t: float, s: float, v_in: float, lead_in: Phases) -> tuple[Segments, float]:
-        """From ``s`` at ``t``, with speed ``v_in``: ``lead_in``, then on at the speed reached to the end.
+        """Plan the rest of the pass from ``s`` at time ``t`` and speed ``v_in``.
 
-        Returns the setpoints and the moment at which the thread is left.
+        The phases ``lead_in`` come first. The pass then continues at the speed reached to its end. Returns
+        the setpoints and the time at which the thread is left.
         """
         at, speed = _after(s, v_in, lead_in)
         end = self.length + self.beyond
@@ -146,7 +151,10 @@ class ThreadPath(NamedTuple):
         return self._joined(t, x, self._z(s, v_in, z_phases)), t + left
 
     def drawn_back(self) -> Segments | None:
-        """Behind the end of a thread without pull-out: X straight out by time, from 0 on; None with one."""
+        """Return the straight retract of X after a thread without pull-out, or None with one.
+
+        Its time starts at 0.
+        """
         x = self.x_end
         phases = _trapezoid(abs(self.out - x), 0.0, self.rapid, self.ax)
         if self.beyond or not phases:
@@ -157,7 +165,7 @@ class ThreadPath(NamedTuple):
         return self._joined(0.0, _axis(x, 0.0, [(dt, sign * a) for dt, a in phases]), _axis(end, 0.0, still))
 
     def stopping(self, t: float, s: float, v: float) -> Segments:
-        """To rest at once along the thread."""
+        """Return the setpoints of an immediate stop along the thread."""
         phases = [(v / self.a, -self.a)] if v > 0.0 else [(_BRIEF, 0.0)]
         if self.curve is not None:
             return self._joined(t, *_mapped(self.curve, s, v, phases))
@@ -169,7 +177,7 @@ class ThreadPath(NamedTuple):
         return _axis(self.z + along * s, along * v, [(dt, along * acc) for dt, acc in phases])
 
     def _joined(self, t: float, x: _Track, z: _Track) -> Segments:
-        """Both slides as pieces of constant acceleration that begin and end together."""
+        """Join both axes as phases of constant acceleration that start and end together."""
         joints = np.unique(np.concatenate([x.t, z.t]).round(12))
         joints = joints[np.concatenate([[True], np.diff(joints) > _BRIEF])]
         starts, dt = joints[:-1], np.diff(joints)
@@ -190,7 +198,11 @@ def _joints(phases: Phases) -> Floats:
 
 
 class _Track(NamedTuple):
-    """One slide: moments of n + 1 joints, position and speed there, and n accelerations between them."""
+    """The motion of one axis.
+
+    ``t``, ``p`` and ``v`` are times, positions and speeds at n + 1 joints, and ``a`` are the n accelerations
+    between them.
+    """
 
     t: Floats
     p: Floats
@@ -198,7 +210,7 @@ class _Track(NamedTuple):
     a: Floats
 
     def then(self, p: float, v: float, phases: Phases) -> _Track:
-        """Followed by phases from this position and speed on."""
+        """Return the motion with phases appended from this position and speed."""
         more = _axis(p, v, phases)
         return _Track(
             np.concatenate([self.t[:-1], self.t[-1] + more.t]),
@@ -209,7 +221,7 @@ class _Track(NamedTuple):
 
 
 def _before(track: _Track, end: float) -> _Track:
-    """The track up to a moment."""
+    """Return the motion up to the time ``end``."""
     n = max(min(int(np.searchsorted(track.t, end - 1e-12)), len(track.a)), 0)
     return _Track(
         np.append(track.t[:n], end), np.append(track.p[:n], 0.0), np.append(track.v[:n], 0.0), track.a[:n]
@@ -217,7 +229,7 @@ def _before(track: _Track, end: float) -> _Track:
 
 
 def _mapped(curve: ThreadCurve, s: float, v: float, phases: Phases) -> tuple[_Track, _Track]:
-    """X and Z along a curve, for phases of s."""
+    """Return the motion of X and Z along a curve for phases of s."""
     t, tracks = 0.0, (list[tuple[float, ...]](), list[tuple[float, ...]]())
     for whole, acc in phases:
         for dt in _crossings(curve, s, v, whole, acc):
@@ -236,7 +248,7 @@ def _mapped(curve: ThreadCurve, s: float, v: float, phases: Phases) -> tuple[_Tr
 
 
 def _crossings(curve: ThreadCurve, s: float, v: float, whole: float, acc: float) -> list[float]:
-    """The pieces of a phase between the knots of the curve: seconds (turns)."""
+    """Return the durations of the parts into which the knots of the curve divide a phase."""
     end = s + (v + 0.5 * acc * whole) * whole
     gone = curve.s[(curve.s > s + 1e-9) & (curve.s < end - 1e-9)] - s
     root = np.sqrt(np.maximum(v * v + 2.0 * acc * gone, 0.0))
@@ -245,7 +257,7 @@ def _crossings(curve: ThreadCurve, s: float, v: float, whole: float, acc: float)
 
 
 def _axis(p: float, v: float, phases: Phases) -> _Track:
-    """Position and speed at the joints, acceleration of the phases."""
+    """Return the motion of one axis from a position and a speed with the given phases."""
     positions, speeds = [p], [v]
     for dt, a in phases:
         p, v = p + (v + 0.5 * a * dt) * dt, v + a * dt
@@ -262,7 +274,7 @@ def _after(p: float, v: float, phases: Phases) -> tuple[float, float]:
 
 
 def _moment(phases: Phases, p: float, v: float, goal: float) -> tuple[float, float]:
-    """When ``goal`` is reached, and how fast; the end of the phases when they stop there."""
+    """Return the time and speed at which ``goal`` is reached, or those at the end of the phases."""
     t = 0.0
     for dt, a in phases:
         end = p + (v + 0.5 * a * dt) * dt
@@ -274,7 +286,7 @@ def _moment(phases: Phases, p: float, v: float, goal: float) -> tuple[float, flo
 
 
 def _until(phases: Phases, end: float) -> Phases:
-    """The phases up to a moment."""
+    """Return the phases up to the time ``end``."""
     kept: Phases = []
     t = 0.0
     for dt, a in phases:
@@ -286,7 +298,7 @@ def _until(phases: Phases, end: float) -> Phases:
 
 
 def _trapezoid(length: float, v: float, top: float, a: float) -> Phases:
-    """From speed ``v`` (towards the goal positive) to rest at the goal, no faster than ``top``."""
+    """Return phases from speed ``v`` (positive toward the goal) to rest at the goal, at most at ``top``."""
     if length <= 0.0:
         return []
     peak = min(math.sqrt(a * length + 0.5 * v * v), max(top, v))
@@ -296,10 +308,10 @@ def _trapezoid(length: float, v: float, top: float, a: float) -> Phases:
 
 
 class ThreadRetract(NamedTuple):
-    """Out of a thread whose spindle is lost: stop along the thread, then draw X back as the pass would have.
+    """The retract from a thread that has lost its spindle: a stop along the thread, then a move of X.
 
-    ``x`` is the machine X to which the pass would have pulled out, ``cutting`` whether it was still in the
-    thread itself, ``why`` what became of the spindle, for the operator.
+    ``x`` is the machine X of the programmed pull-out. ``cutting`` is True if the tool was still in the thread
+    itself. ``why`` is the fault of the spindle, for the operator.
     """
 
     block: Block
@@ -309,16 +321,16 @@ class ThreadRetract(NamedTuple):
 
     @classmethod
     def of(cls, block: Block, behind: Sequence[Block], spindle: SpindleControl) -> ThreadRetract:
-        """The way out of ``block``, which is being cut; ``behind`` are those of its pass that follow."""
+        """Return the retract from ``block``; ``behind`` are the blocks of its pass that follow."""
         return cls(block, [block, *behind][-1].mx, bool(behind), _why_lost(spindle))
 
     def demand_left(self, at: Sequence[float]) -> None:
-        """Raises AlarmError("thread-lost") once the slides, at machine X, Z, C, are out of the thread."""
+        """Raise AlarmError("thread-lost") if the axes, at machine X, Z and C, have left the thread."""
         if abs(at[0] - self.x) < _RETRACTED:
             raise AlarmError("thread-lost", self._left(at[1]), self.block.line)
 
     def way_out(self, at: Sequence[float]) -> Block:
-        """A rapid along X alone from where the slides stand (machine X, Z, C)."""
+        """Return a rapid along X alone from the position of the axes (machine X, Z, C)."""
         block = self.block
         return dataclasses.replace(
             block,
@@ -334,7 +346,7 @@ class ThreadRetract(NamedTuple):
         )
 
     def _left(self, z: float) -> str:
-        """Why, and what the thread on the part is now."""
+        """Return the cause and the state of the thread on the part, for the alarm."""
         if not self.cutting:
             return Message(
                 "{why} during the pull-out: the thread is cut, but the thread runout is shorter than "

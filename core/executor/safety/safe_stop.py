@@ -1,6 +1,6 @@
-"""The safe stop: slides braked, spindle off, outputs safe; each on its own, and again until it is done.
+"""The safe stop: axes braked, spindle off, outputs safe. Failed steps are repeated until they succeed.
 
-A driver that refuses one of them, or breaks over it, keeps none of the others from being done.
+A driver that rejects one step, or fails in it, does not prevent the other steps.
 """
 
 from __future__ import annotations
@@ -17,13 +17,16 @@ from core.ports import DriverError, Stop
 
 _log = logging.getLogger(__name__)
 _SLIDES = "the axes"
-_AGAIN = 0.1  # s until a step that could not be done is tried again
+_AGAIN = 0.1  # s until a failed step is repeated
 
 Step = tuple[str, Callable[[], None]]
 
 
 class SafeStop:
-    """``react`` does every step, ``again`` those that failed. Ctrl-C is all that they let through."""
+    """Runs all steps of a safe stop with ``react`` and repeats failed steps with ``again``.
+
+    Only KeyboardInterrupt passes through.
+    """
 
     def __init__(self, context: MachineContext) -> None:
         self._context = context
@@ -33,17 +36,17 @@ class SafeStop:
 
     @property
     def undone(self) -> str:
-        """In words, what was tried more than once and could not be done; empty when all is."""
+        """The steps that failed more than once, as a text; empty if all steps succeeded."""
         return ", ".join(name for name, _ in self._failed) if self._tries > 1 else ""
 
     def react(self, reaction: Reaction) -> None:
-        """Brake all axes, spindle off, outputs safe."""
+        """Brake all axes, stop the spindle and switch the outputs to their safe states."""
         off = reaction is Reaction.OFF
         brake = partial(self._brake, Stop.RAMP_OFF if off else Stop.RAMP_HOLD)
         self._begin([(_SLIDES, brake), *self._functions(coast=off)])
 
     def functions_off(self) -> None:
-        """Spindle off and outputs safe; the slides are somebody else's."""
+        """Stop the spindle and switch the outputs to their safe states, without stopping the axes."""
         self._begin(self._functions(coast=False))
 
     def _functions(self, *, coast: bool) -> list[Step]:
@@ -54,19 +57,19 @@ class SafeStop:
         self._carry_out(steps)
 
     def again(self) -> None:
-        """Once a tick: what could not be done is tried again, ten times a second."""
+        """Repeat failed steps, ten times per second. Called once per tick."""
         if self._failed and self._context.now - self._tried_at >= _AGAIN:
             self._carry_out(self._failed)
 
     def finish(self) -> None:
-        """Before nobody tries again: once more, and slides that cannot be braked lose their power."""
+        """Repeat failed steps a last time, and switch off drives that cannot be braked."""
         if self._failed:
             self._carry_out(self._failed)
         if any(name == _SLIDES for name, _ in self._failed):
             self._done("the drives", partial(self._context.ports.axes.enable, False))
 
     def forget(self) -> None:
-        """The operator has acknowledged it."""
+        """Discard failed steps because the operator has acknowledged the alarm."""
         self._failed = []
 
     def _carry_out(self, steps: list[Step]) -> None:
@@ -74,7 +77,7 @@ class SafeStop:
         self._failed = [step for step in steps if not self._done(*step)]
 
     def _done(self, name: str, step: Callable[[], None]) -> bool:
-        """Whether it could be done. Whatever it raises is no reason to leave the next one out."""
+        """Run one step and return whether it succeeded. An error does not prevent the next step."""
         with Attempt() as trial:
             step()
         error = trial.error
@@ -92,7 +95,7 @@ class SafeStop:
         return error is None
 
     def _brake(self, how: Stop) -> None:
-        """Drives that break over being asked to brake lose their power."""
+        """Brake the axes, or switch the drives off if braking fails unexpectedly."""
         axes = self._context.ports.axes
         with Attempt() as trial:
             axes.stop(how)
@@ -102,7 +105,7 @@ class SafeStop:
             raise trial.error
 
     def _outputs_safe(self) -> None:
-        """All at once; where that fails each by itself."""
+        """Switch all outputs to their safe states together, or one by one if that fails."""
         io = self._context.ports.io
         with Attempt() as trial:
             io.safe()

@@ -1,11 +1,12 @@
-"""What is watched every tick: following error, standstill, drives, collet, outputs, the driver host.
+"""Supervision in every tick: following error, standstill, drives, collet, outputs and driver host.
 
-A driver host that heard nothing stops spindle and outputs; a terminal, a module or a controller may do so by
-itself. What was switched behind the back of the program holds the cycle, and its part is not counted: nothing
-is fed while an output is not what the program commanded, and what a start switches on again is announced.
+A driver host that receives no data stops spindle and outputs. A terminal, a module or a controller may do the
+same. If an output changes without a command of the program, the cycle enters feed hold and its part is not
+counted. No axis feeds while an output differs from its command, and an output that a start turns on again is
+announced.
 
-The following error and the standstill of the axes are watched here too. The drives watch themselves, with one
-window for every speed; this is narrower, and holds at rest. The spindle is watched by ``spindle_control``.
+The drives supervise themselves too, with one window for all speeds. The window here is narrower and also
+applies at rest. ``spindle_control`` supervises the spindle.
 """
 
 from __future__ import annotations
@@ -25,29 +26,29 @@ from core.machine.machine_model import Axis
 from core.message import Message, join_messages
 from core.ports import AxisSample, Unknown
 
-_HOST = 0.03  # s beyond a drive's own time: a drive that trips by itself is to be heard first
-_RECENT = 0.1  # s for which a slide may still trail behind a speed that has gone
-_UNMOVED = 0.05  # s in which an encoder has to have counted while its axis is sent away
-_ARRIVES = 1.0  # s that a slide may take into position, as the cycle waits for it
-_FROZEN, _CLOSE = 3.0, 2.5  # s, counts: a drive that pushes moves its encoder by one or two
-_PART = 0.125  # of the standstill window: pushed that far off, a slide that is free moves
-_COUNTS = 20.0  # by which it must have been sent, where counts are coarse
+_HOST = 0.03  # s in addition to the drive's own time, so that the fault of the drive is reported first
+_RECENT = 0.1  # s for which an axis may still lag after its speed has dropped
+_UNMOVED = 0.05  # s within which the encoder must count while its axis is commanded to move
+_ARRIVES = 1.0  # s that an axis may take to get in position, as in the wait of the cycle
+_FROZEN, _CLOSE = 3.0, 2.5  # s and counts; a drive that pushes moves its encoder by one or two counts
+_PART = 0.125  # fraction of the standstill window; a free axis moves at this error
+_COUNTS = 20.0  # counts that the axis must be commanded to move if the encoder is coarse
 _NOTHING = 1e-9
 _POWERED = CYCLE | {State.IDLE, State.JOG, State.HOME}
-_UNHEARD = 0.25  # s for which a driver may have nothing of the slides before it reports why
+_UNHEARD = 0.25  # s without axis data before a driver must report a fault
 
 
 class FollowingErrorWatch:
-    """Watches all axes, at rest and in motion, powered or not; ``look`` is called once a tick."""
+    """Supervises all axes at rest and in motion, with and without power. ``look`` is called once per tick."""
 
     def __init__(self, axes: Sequence[Axis]) -> None:
         self._axes = [_OneAxis(axis) for axis in axes]
         self._enabled = False
 
     def look(self, sample: AxisSample, *, unpowered: bool) -> None:
-        """Raises AlarmError for the first axis that is not where it ought to be.
+        """Check a sample and raise AlarmError for the first axis that is out of position.
 
-        ``unpowered``: the drives are off and nothing else is the matter, so that nobody ought to move them.
+        ``unpowered`` means that the drives are off without a fault, so that no axis should move.
         """
         if sample.enabled is not self._enabled:
             self._enabled = sample.enabled
@@ -55,7 +56,7 @@ class FollowingErrorWatch:
         each = zip(self._axes, sample.demand, sample.actual, sample.homed, strict=True)
         for one, demand, actual, homed in each:
             if sample.moving:
-                one.sent()  # also where its wire has not yet told of it
+                one.sent()  # even if its axis data has not arrived yet
             if not one.passes(sample.t):
                 continue
             if sample.enabled:
@@ -65,13 +66,13 @@ class FollowingErrorWatch:
                 one.unasked(actual, at_rest=not sample.moving and unpowered and homed)
 
     def forget(self) -> None:
-        """What was seen no longer counts: power has changed, or the operator has acknowledged an alarm."""
+        """Reset the supervision because the power has changed or an alarm was acknowledged."""
         for one in self._axes:
             one.forget()
 
 
 class _OneAxis:
-    """One axis. Times are those of the samples, so that a control that was away takes nothing for long."""
+    """Supervision of one axis. It uses the times of the samples, so that a late tick does not count."""
 
     def __init__(self, axis: Axis) -> None:
         self._axis = axis
@@ -84,17 +85,18 @@ class _OneAxis:
         self._speed = self._speed_at = 0.0
         self._sent_at = self._t
         self._since: dict[str, float] = {}
-        self._counted = (self._t, 0.0, 0.0)  # sent since, from which demand; reading when it last counted
+        # start time and setpoint of the move, and the last position that counted
+        self._counted = (self._t, 0.0, 0.0)
         self._counted_at = self._t
-        self._stood: float | None = None  # where it stood when it came to rest
+        self._stood: float | None = None  # position at which the axis came to rest
 
     def passes(self, t: float) -> bool:
-        """Whether this is a new sample."""
+        """Store the time of a sample and return whether the sample is new."""
         self._dt, self._t = t - self._t, t
         return self._dt > 0.0
 
     def powered(self, demand: float, actual: float) -> None:
-        """A sample of the axis with its drive on. Raises AlarmError."""
+        """Check a sample of the axis with its drive on. Raises AlarmError if the axis is out of position."""
         axis, error = self._axis, abs(demand - actual)
         if self._demand is None:
             self._demand, self._sent_at, self._counted = demand, self._t, (self._t, demand, actual)
@@ -112,7 +114,10 @@ class _OneAxis:
             self._at_standstill(error, rest)
 
     def _at_standstill(self, error: float, rest: float) -> None:
-        """Nothing has sent it away for a while, and it does not arrive: the nearer the longer it may take."""
+        """Raise AlarmError if the axis does not reach its target at rest.
+
+        A smaller error is permitted for a longer time.
+        """
         axis, unmoved = self._axis, self._t - self._counted_at
         pushed = max(_PART * axis.still_window, 4.0 * axis.in_position)
         if self._lasts("pushed", error > pushed) > axis.still_time and unmoved > axis.still_time:
@@ -129,12 +134,12 @@ class _OneAxis:
             )
 
     def sent(self) -> None:
-        """Something moves, by the driver's own word: where it stood no longer counts."""
+        """Forget the position at rest because the driver reports motion."""
         self._stood = None
         self._since.pop("rest", None)
 
     def unasked(self, actual: float, *, at_rest: bool) -> None:
-        """At rest, without a setpoint that holds it there. Raises AlarmError."""
+        """Raise AlarmError if the axis moves at rest without a setpoint that controls it."""
         axis = self._axis
         if not at_rest:
             self.sent()
@@ -156,7 +161,10 @@ class _OneAxis:
             self._speed, self._speed_at = speed, self._t
 
     def _encoder(self, demand: float, actual: float) -> None:
-        """Sent away, and its encoder counts nothing: it is jammed, or nobody knows where it is."""
+        """Raise AlarmError if the axis is commanded to move but its encoder does not count.
+
+        The axis is then jammed, or its position is unknown.
+        """
         axis, (since, sent_from, read) = self._axis, self._counted
         if abs(actual - read) > 1.5 * axis.count:
             self._counted, self._counted_at = (self._t, demand, actual), self._t
@@ -176,7 +184,7 @@ class _OneAxis:
             )
 
     def _lasts(self, what: str, holds: bool) -> float:
-        """How long it has held, s."""
+        """Return the time in seconds for which the condition has been true without a break."""
         if not holds:
             self._since.pop(what, None)
             return 0.0
@@ -191,7 +199,7 @@ class _OneAxis:
 
 
 class Supervisor:
-    """Watches drives, axes and collet."""
+    """Supervises drives, axes and collet."""
 
     def __init__(self, context: MachineContext) -> None:
         self._context = context
@@ -199,16 +207,16 @@ class Supervisor:
         self.max_following_error = 0.0
 
     def acknowledged(self) -> None:
-        """The operator has acknowledged an alarm: an axis that stands elsewhere now may stand there."""
+        """Accept the present positions of the axes after the operator has acknowledged an alarm."""
         self._axes.forget()
 
     def look(self, state: State) -> None:
-        """Raises AlarmError for the first thing that must stop the machine."""
+        """Raise AlarmError for the first condition that must stop the machine."""
         sample, context = self._context.sample, self._context
         if sample.fault:
             raise AlarmError(code_of(sample.fault, "axis"), sample.fault)
         if Unknown.SLIDES in context.unknown:
-            self._axes.forget()  # heard again, they may stand elsewhere
+            self._axes.forget()  # the axes may be at other positions when data arrives again
             self._unheard(powered=state in _POWERED)
             return
         self._unheard_since = None
@@ -225,14 +233,14 @@ class Supervisor:
             self._open_since = None
 
     def _unheard(self, *, powered: bool) -> None:
-        """A driver reports a fault too; where it does not, nothing moves on and nothing is ready."""
+        """Raise AlarmError if the axes send no data and the driver reports no fault."""
         now = self._context.now
         since = self._unheard_since = now if self._unheard_since is None else self._unheard_since
         if powered and now - since > _UNHEARD:
             raise AlarmError("drive-silent", "no data from the axes")
 
     def _numbers(self, sample: AxisSample) -> None:
-        """No comparison ever trips on what is no number."""
+        """Raise AlarmError if a position is not a number, because no comparison would detect that."""
         each = zip(
             self._context.machine.axes, sample.demand, sample.actual, sample.following_error, strict=True
         )
@@ -244,7 +252,7 @@ class Supervisor:
                 )
 
     def _collet_lost(self) -> None:
-        """The switch may bounce while the collet closes; it must be off for its closing time."""
+        """Raise AlarmError if the collet switch is off longer than contact bounce can last."""
         now = self._context.now
         self._open_since = now if self._open_since is None else self._open_since
         if now - self._open_since > 2.0 * self._context.machine.collet.close_time:
@@ -258,28 +266,26 @@ class Supervisor:
 
 
 class OutputsWatch:
-    """Watches outputs and the driver host, once a tick. On the executor's thread alone."""
+    """Supervises the outputs and the driver host in every tick. Used on the executor's thread only."""
 
     def __init__(self, context: MachineContext, program_run: ProgramRun) -> None:
         self._context = context
         self._program_run = program_run
-        self._known_off: frozenset[str] = (
-            frozenset()
-        )  # outputs of which it is known that they are not as commanded
+        self._known_off: frozenset[str] = frozenset()  # outputs known to differ from their commanded states
 
     def look(self) -> None:
-        """Hold the cycle where something was switched by somebody else. Raises DriverError, AlarmError."""
+        """Hold the cycle if an output changed without a command. Raises DriverError or AlarmError."""
         trips = self._context.ports.trips
         trip = trips.tripped() if trips is not None else None
         if trips is not None and trip is not None:
-            trips.acknowledge(trip)  # first: the hold is setpoints too
+            trips.acknowledge(trip)  # acknowledged first, because the hold also needs setpoints
             self._tripped(trip)
         if Unknown.OUTPUTS in self._context.unknown or self._context.sample.fault:
-            return  # what a fault has switched off is the fault's, which is told in this tick
+            return  # The fault that switched outputs off is reported in this tick.
         if self._program_run.status.state not in CYCLE:
             told, self._known_off = self._known_off, frozenset()
             for each in self._context.outputs.accept():
-                if each.name not in told:  # by what has switched it off
+                if each.name not in told:  # already reported by the device that switched the output off
                     self._context.log("disturbed", Message("{item} MOVED WITHOUT A COMMAND", item=each.words))
             return
         differing = self._context.outputs.differing()
@@ -289,7 +295,7 @@ class OutputsWatch:
             self._disturbed("switched-off", " AND ".join(each.words for each in new))
 
     def starts(self) -> Iterator[Starting]:
-        """What the announcement lists: outputs that going on switches as the program has them."""
+        """Yield the outputs that a resume switches back to their commanded states, for the announcement."""
         if self._program_run.status.state in STOPPED:
             for name, wanted in self._context.outputs.differing():
                 words = Message("{output} TURNS ON" if wanted else "{output} TURNS OFF", output=name.upper())
@@ -297,7 +303,10 @@ class OutputsWatch:
                 yield Starting(Message("output {name}", name=name), words, begin)
 
     def _tripped(self, trip: Trip) -> None:
-        """Lamps are no outputs of the program: they are lit again, and nothing is held or told for them."""
+        """Handle outputs that the driver host has switched off.
+
+        Lamps are ignored, because they are not outputs of the program and are turned on again.
+        """
         context = self._context
         outputs = tuple(name for name in trip.outputs if name not in context.machine.lamps)
         off = [*(["SPINDLE"] if trip.spindle else []), *(name.upper() for name in outputs)]

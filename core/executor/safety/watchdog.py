@@ -17,18 +17,18 @@ from core.executor.raised_alarm import Attempt, ReportedAttempt
 from core.ports import Clock
 
 _log = logging.getLogger(__name__)
-LOOK = 0.1  # s between two looks
-OTHERS = 10  # looks at the executor to one at the other threads
-STUCK = 10  # looks without a tick: a second
-PATIENT = 70  # the same while the executor waits for a drive to come on, which may take five seconds
-AGAIN = 5  # looks after which the machine is halted once more: a controller that holds is then reset
+LOOK = 0.1  # s between two checks
+OTHERS = 10  # checks of the executor per check of the other threads
+STUCK = 10  # checks without a tick, 1 s in total
+PATIENT = 70  # the same while the executor waits for a drive to switch on, which may take 5 s
+AGAIN = 5  # checks after which the machine is halted again; a controller in hold is then reset
 HALTS = 10
-OVERDUE = 3.0  # s of ticks without a look of the watchdog
+OVERDUE = 3.0  # s of ticks without a check of the watchdog
 ENDS = 1.0  # s that closing waits for the watchdog's thread
-HALTED_IN = 2.0  # s that closing waits for the drivers' own way to stop
-WATCHDOG = "watchdog"  # the name of its thread, and what ``Tell`` gets when it does not look any more
-_LONGEST_TICK = 0.2  # s; a longer one is a computer that was late, and the watchdog was late as well
-_END = 8.0  # s: the longest wait for a drive; closing waits no longer for the executor's thread
+HALTED_IN = 2.0  # s that closing waits for the drivers to halt
+WATCHDOG = "watchdog"  # name of the watchdog's thread, which ``Tell`` receives if the watchdog stops
+_LONGEST_TICK = 0.2  # s; a longer tick means that the computer was late, and the watchdog as well
+_END = 8.0  # s, the longest wait for a drive and for the end of the executor's thread
 
 Tell = Callable[[str], None]
 Halt = Callable[[], None]
@@ -38,7 +38,7 @@ Halt = Callable[[], None]
 
 
 class ExecutorThread:
-    """The thread in which the executor ticks. A failure that it could not catch itself stops the machine."""
+    """The thread in which the executor ticks. An error that the executor cannot catch stops the machine."""
 
     def __init__(self, executor: Executor, clock: Clock, tick: float = TICK) -> None:
         self.executor = executor
@@ -51,18 +51,18 @@ class ExecutorThread:
 
     @property
     def alive(self) -> bool:
-        """Whether it still ticks."""
+        """True if the thread still ticks."""
         return self._thread.is_alive()
 
     def start(self) -> None:
-        """Begin to tick."""
+        """Start the ticks."""
         self._thread.start()
 
     def close(self, limit: float = _END) -> None:
-        """Stop the machine as E-stop would leave it, and end the thread.
+        """Stop the machine as an E-stop would, and end the thread.
 
-        A thread that does not end within ``limit`` seconds is left running: the drivers then stop the machine
-        in their own way.
+        A thread that does not end within ``limit`` seconds is left running, and the drivers are halted
+        instead.
         """
         self._closing.set()
         self.executor.wake()
@@ -72,7 +72,7 @@ class ExecutorThread:
             _log.error("the executor's thread does not end; the drivers are halted")
             Halting(self.executor.halt).halt(HALTED_IN)
         elif not self._shut:
-            self.executor.shut()  # it has died: no other thread calls the drivers any more
+            self.executor.shut()  # The thread has ended, so no other thread calls the drivers.
 
     def _run(self) -> None:
         while not self._closing.is_set():
@@ -89,19 +89,19 @@ class ExecutorThread:
 
 
 def running(name: str) -> bool:
-    """Whether a thread of this name is alive."""
+    """Return whether a thread with this name is alive."""
     return any(thread.name == name for thread in threading.enumerate())
 
 
 class Halting:
-    """The drivers' own way to stop the machine, on a separate thread: it may block, its caller does not."""
+    """Halts the machine through the drivers on a separate thread, because a driver may block."""
 
     def __init__(self, halt: Halt | None) -> None:
         self._halt = halt
         self._thread: threading.Thread | None = None
 
     def halt(self, wait: float = 0.0) -> None:
-        """Begin to halt unless the last call is still blocked; wait ``wait`` seconds at most for its end."""
+        """Start to halt unless the last call is still blocked, and wait at most ``wait`` seconds."""
         if self._halt is None:
             return
         if self._thread is None or not self._thread.is_alive():
@@ -118,39 +118,39 @@ class Halting:
 
 
 class ThreadWatch:
-    """Supervises threads by their names, whenever these start.
+    """Supervises threads by their names, even if they start later.
 
-    ``tell`` gets the name of a thread that has ended, once. A name is supervised from the first look that
-    finds its thread, or from ``watch``.
+    ``tell`` receives the name of each thread that has ended, once. A thread is supervised from the first
+    check that finds it, or from ``watch``.
     """
 
     def __init__(self, names: Iterable[str], tell: Tell) -> None:
         self._tell = tell
-        self._awaited = list(names)  # threads that have not been seen yet
+        self._awaited = list(names)  # =
         self._running: list[str] = []
         self._closing = threading.Event()
 
     def watch(self, name: str) -> None:
-        """Supervise the thread of this name from now on, also one that ends before the next look."""
+        """Supervise a thread from now on, even if it ends before the next check."""
         self._running.append(name)
 
     def look(self) -> None:
-        """Look once; after ``end`` threads that have ended are not told of."""
+        """Check the threads once. After ``end``, threads that have ended are not reported."""
         for name in [name for name in self._awaited if running(name)]:
             self._awaited.remove(name)
             self._running.append(name)
         for name in [name for name in self._running if not running(name)]:
             self._running.remove(name)
-            self._awaited.append(name)  # it may be started again
+            self._awaited.append(name)  # the thread may be started again
             if not self._closing.is_set():
                 self._tell(name)
 
     def start(self) -> None:
-        """Look once a second, on a thread of its own."""
+        """Check once per second on a separate thread."""
         threading.Thread(target=self._look_again, name="thread-watch", daemon=True).start()
 
     def end(self) -> None:
-        """Tell no more: threads that end from now on end in good order."""
+        """Stop reporting, because threads now end normally."""
         self._closing.set()
 
     def _look_again(self) -> None:
@@ -164,11 +164,11 @@ def _report(error: BaseException) -> None:
 
 
 class Watchdog:
-    """Supervises the executor's thread, and other threads by their names, whenever these start.
+    """Supervises the executor's thread, and other threads by their names.
 
-    ``halt`` is the drivers' own way to stop the machine, None where they have none. ``tell`` gets the name of
-    another thread that has ended, once; the executor's own end is an alarm. A name is supervised from the
-    first look that finds its thread, or from ``watch``.
+    ``halt`` stops the machine through the drivers, or is None if they have no such function. ``tell``
+    receives the name of another thread that has ended, once. The end of the executor is an alarm. A thread is
+    supervised from the first check that finds it, or from ``watch``.
     """
 
     def __init__(
@@ -181,41 +181,41 @@ class Watchdog:
         self._thread = threading.Thread(target=self._watch, name=WATCHDOG, daemon=True)
         self.looks = 0
         self._ticks = -1
-        self._still = 0  # looks without a tick
+        self._still = 0  # checks without a tick
         self._halted = 0
 
     @property
     def alive(self) -> bool:
-        """Whether it still looks."""
+        """True if the watchdog is running."""
         return self._thread.is_alive()
 
     @property
     def closing(self) -> bool:
-        """Whether it was asked to end."""
+        """True if the watchdog was requested to end."""
         return self._closing.is_set()
 
     def start(self) -> None:
-        """Begin to look, and be supervised by the executor's thread."""
+        """Start the watchdog, and let the executor's thread supervise it."""
         self._executor.supervise = WatchdogWatch(self, self._tell).look
         self._thread.start()
 
     def watch(self, name: str) -> None:
-        """Supervise the thread of this name from now on, also one that ends before the next look."""
+        """Supervise a thread from now on, even if it ends before the next check."""
         self._others.watch(name)
 
     def end(self) -> None:
-        """Look no more, without waiting: threads that end from now on end in good order."""
+        """Stop the checks without waiting, because threads now end normally."""
         self._closing.set()
         self._others.end()
 
     def close(self, limit: float = ENDS) -> None:
-        """End the thread; one that hangs is left running after ``limit`` seconds."""
+        """End the thread, or leave it running if it does not end within ``limit`` seconds."""
         self.end()
         if self._thread.is_alive():
             self._thread.join(limit)
 
     def look(self) -> None:
-        """Look once at the executor and the other threads. Raises nothing."""
+        """Check the executor and the other threads once. Raises nothing."""
         with Attempt() as trial:
             self._mind_executor()
             if self.looks % OTHERS == 0:
@@ -251,16 +251,19 @@ class Watchdog:
 
 
 class WatchdogWatch:
-    """What the executor's thread sees of the watchdog; ``tell`` gets its name once when it looks no more."""
+    """The executor's supervision of the watchdog. ``tell`` receives its name once if it stops checking."""
 
     def __init__(self, watchdog: Watchdog, tell: Tell) -> None:
         self._watchdog, self._tell = watchdog, tell
         self._looks = -1
         self._last: float | None = None
-        self._overdue = 0.0  # s of ticks without a look
+        self._overdue = 0.0  # s of ticks without a check
 
     def look(self, now: float) -> None:
-        """Look once after a tick. A gap between two ticks counts as a short one: both threads were late."""
+        """Check the watchdog once after a tick.
+
+        A gap between two ticks counts as a short one, because both threads were late.
+        """
         looks, last = self._watchdog.looks, self._last
         self._last = now
         if looks != self._looks or last is None or self._watchdog.closing:

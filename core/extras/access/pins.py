@@ -1,7 +1,7 @@
-"""PINs: stored only as slow hashes, and slower with every wrong one.
+"""PINs, stored only as slow hashes, with delays after wrong attempts.
 
-TurnDesk stores scrypt (RFC 7914) of the PIN with its own salt. One try takes at least 0.5 s and 64 MiB, so
-that all PINs of four digits take more than an hour, also for a reader of the file.
+TurnDesk stores the scrypt hash (RFC 7914) of a PIN with its own salt. One attempt takes at least 0.5 s and 64
+MiB, so trying all four-digit PINs takes more than an hour even for an attacker with the file.
 """
 
 from __future__ import annotations
@@ -20,30 +20,30 @@ _MOST_MEMORY = 2**28  # bytes
 
 
 class Cost(NamedTuple):
-    """The parameters of scrypt: the base-2 logarithm of N, r and p, each one byte in front of the hash."""
+    """Parameters of scrypt: log2 of N, r and p, each stored as one byte in front of the hash."""
 
     log2_n: int
     r: int
     p: int
 
 
-COST = Cost(16, 8, 8)  # of new hashes
-_FIRST_COST = Cost(14, 8, 1)  # of hashes without these bytes, from older versions
+COST = Cost(16, 8, 8)  # parameters of new hashes
+_FIRST_COST = Cost(14, 8, 1)  # parameters of hashes from older versions, which do not store them
 
 
 class PinError(CodedError):
-    """No such PIN can be; the sentence says why."""
+    """A PIN that is not acceptable; the text has the reason."""
 
 
 class Hashed(NamedTuple):
-    """What is kept of a PIN."""
+    """The stored hash of a PIN and its salt."""
 
     salt: bytes
     hash: bytes
 
 
 def check_pin(pin: str) -> None:
-    """Raises PinError for what is no PIN: 4 to 12 figures, not all the same."""
+    """Raise PinError unless the PIN has 4 to 12 digits that are not all the same."""
     if not (pin.isascii() and pin.isdigit() and SHORTEST <= len(pin) <= LONGEST):
         raise PinError(
             Message("a PIN must have {shortest} to {longest} digits", shortest=SHORTEST, longest=LONGEST),
@@ -54,20 +54,23 @@ def check_pin(pin: str) -> None:
 
 
 def hashed(pin: str, salt: bytes | None = None) -> Hashed:
-    """Hash the PIN at today's cost, with a new salt where none is given. Takes its time: on a worker."""
+    """Hash a PIN with ``salt`` or a new salt. Call it in a worker thread, because it is slow."""
     salt = salt if salt is not None else secrets.token_bytes(_SALT)
     return Hashed(salt, bytes(COST) + _scrypt(pin, salt, COST))
 
 
 def is_pin(pin: str, kept: Hashed) -> bool:
-    """Return whether this is the PIN; an empty hash has none. Takes its time: on a worker."""
+    """Return whether the PIN matches the hash; False for an empty hash.
+
+    The calculation is slow, so call it in a worker thread.
+    """
     cost = _cost_of(kept)
     digest = kept.hash[-_LENGTH:]
     return cost is not None and hmac.compare_digest(_scrypt(pin, kept.salt, cost), digest)
 
 
 def is_outdated(kept: Hashed) -> bool:
-    """Return whether the hash was made at another cost than today's."""
+    """Return whether the hash has other parameters than new hashes."""
     return _cost_of(kept) != COST
 
 
@@ -84,33 +87,33 @@ def _scrypt(pin: str, salt: bytes, cost: Cost) -> bytes:
     )
 
 
-FREE = 2  # wrong ones after which the next is taken at once
+FREE = 2  # wrong PINs that cause no delay
 _FIRST, _MOST = 5.0, 300.0  # s
 
 
 def wait_after(wrong: int) -> float:
-    """Seconds for which no PIN is taken after so many wrong ones in a row: 0, 0, 5, 10, 20 … 300."""
+    """Return the delay in seconds after this many wrong PINs in a row: 0, 0, 5, 10, 20 … 300."""
     return min(_MOST, _FIRST * 2.0 ** (wrong - FREE - 1)) if wrong > FREE else 0.0
 
 
 @dataclass(slots=True)
 class WrongPins:
-    """How many were wrong in a row, whoever typed them; ``since`` is monotonic, seconds.
+    """The number of wrong PINs in a row by all users; ``since`` is the monotonic time of the last in seconds.
 
-    A control that is started anew waits anew: ``count`` is kept, the time is not.
+    After a restart the delay starts again, because ``count`` is stored and the time is not.
     """
 
     count: int = 0
     since: float = 0.0
 
     def left(self, now: float) -> float:
-        """Seconds until a PIN is taken again; 0: now."""
+        """Return the seconds until a PIN is accepted again, or 0."""
         return max(0.0, self.since + wait_after(self.count) - now)
 
     def wrong(self, now: float) -> None:
-        """One more."""
+        """Count a wrong PIN."""
         self.count, self.since = self.count + 1, now
 
     def right(self) -> None:
-        """It was the PIN: all is forgotten."""
+        """Reset the count after a correct PIN."""
         self.count = 0

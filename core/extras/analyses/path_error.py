@@ -1,7 +1,7 @@
-"""Path error along the part with the worst lines, and the ball-bar plot of an arc.
+"""Path error along the part with its worst lines, and the ball-bar plot of an arc.
 
-The measured path lies in the plane (u, v) of the slides. What is told holds for what the encoders see: on a
-motor's encoder the play of the screw behind it is not to be seen, on a scale it is.
+The measured path is in the plane (u, v) of two axes. The results describe the encoder positions: an encoder
+on the motor does not show the backlash of the screw, and a linear scale does.
 """
 
 from __future__ import annotations
@@ -19,17 +19,19 @@ from core.records.record import AnalysisError
 FloatArray = npt.NDArray[np.float64]
 LEAST = 60  # samples
 LEAST_ANGLE = 60.0  # degrees of arc
-_ROUND = 0.002  # mm that setpoints of an arc may be off a circle
-_SPIKE = 3.0  # degrees behind a reversal in which a spike is looked for
-_TELL = 30.0  # a figure is told where it does not mix with the others by more than this (condition number)
+_ROUND = 0.002  # mm, largest deviation of an arc's setpoints from a circle
+_SPIKE = 3.0  # degrees after a reversal that are searched for a spike
+_TELL = 30.0  # largest condition number at which the values can be separated
 
 
 @dataclass(frozen=True, slots=True)
 class BallBar:
-    """``angles`` degrees and ``deviation`` mm (m,): how far each sample lies outside the programmed arc.
+    """Result of a ball-bar analysis of one arc.
 
-    ``backlash`` and ``spike`` (u, v), mm; ``squareness`` mm a metre that v leans towards u, ``scale`` mm a
-    metre by which u is longer than v; ``size`` mm by which the radius is larger. nan: too short to tell.
+    ``angles`` are in degrees, and ``deviation`` (m,) is the distance of each sample outside the programmed
+    arc, in mm. ``backlash`` and ``spike`` are (u, v) in mm. ``squareness`` is the tilt of v toward u in mm
+    per meter, ``scale`` the excess length of u over v in mm per meter, and ``size`` the excess radius in mm.
+    Values are NaN if the arc is too short to determine them.
     """
 
     centre: tuple[float, float]
@@ -44,17 +46,20 @@ class BallBar:
 
     @property
     def roundness(self) -> float:
-        """From the least to the greatest deviation, mm."""
+        """Difference between the largest and the smallest deviation, in mm."""
         return float(np.ptp(self.deviation))
 
     @property
     def covered(self) -> float:
-        """Degrees of arc that were run through, 360 at most."""
+        """Angle of the arc in degrees, at most 360."""
         return float(min(360.0, np.ptp(np.unwrap(np.radians(self.angles))) * 180.0 / math.pi))
 
 
 def circle_of(points: FloatArray) -> tuple[float, float, float]:
-    """Centre and radius of the circle nearest to points (n, 2): least squares of u² + v² = 2au + 2bv + c."""
+    """Return center and radius of the circle nearest to points (n, 2).
+
+    The least-squares equation is u² + v² = 2au + 2bv + c.
+    """
     middle = points.mean(axis=0)
     at = points - middle
     system = np.column_stack([2.0 * at, np.ones(len(at))])
@@ -63,7 +68,7 @@ def circle_of(points: FloatArray) -> tuple[float, float, float]:
 
 
 def ball_bar(demand: FloatArray, actual: FloatArray) -> BallBar:
-    """Setpoints (m, 2) and measured positions (m, 2) of one arc. Raises AnalysisError."""
+    """Analyze setpoints (m, 2) and measured positions (m, 2) of one arc. Raises AnalysisError."""
     if len(demand) < LEAST or len(actual) != len(demand):
         raise AnalysisError(
             Message(
@@ -110,10 +115,10 @@ def ball_bar(demand: FloatArray, actual: FloatArray) -> BallBar:
 
 
 def _fitted(theta: FloatArray, turned: FloatArray, deviation: FloatArray) -> tuple[list[float], FloatArray]:
-    """Size, backlash of u and v, the parts in sin 2θ and cos 2θ; and what none of them explains.
+    """Return size, backlash of u and v and the coefficients of sin 2θ and cos 2θ, and the residual.
 
-    A play b of u leaves its slide b/2 short of where it is sent: −(b/2)·sign(u′)·cos θ of the radius. A lean
-    φ gives φR/2·sin 2θ, a scale e between u and v eR/2·cos 2θ.
+    A backlash b of u leaves the axis b/2 short of its setpoint, which is −(b/2)·sign(u′)·cos θ of the radius.
+    A tilt φ gives φR/2·sin 2θ, and a scale error e between u and v gives eR/2·cos 2θ.
     """
     way = 1.0 if turned[-1] > turned[0] else -1.0
     towards_u, towards_v = -way * np.sign(np.sin(theta)), way * np.sign(np.cos(theta))
@@ -137,7 +142,7 @@ def _fitted(theta: FloatArray, turned: FloatArray, deviation: FloatArray) -> tup
 
 
 def _spike(position: FloatArray, turned: FloatArray, rest: FloatArray) -> float:
-    """What is not explained at most, a few degrees behind a reversal of this axis; nan: it has none."""
+    """Return the largest residual a few degrees after a reversal of this axis; NaN without a reversal."""
     step = np.sign(np.diff(position))
     moving = np.flatnonzero(step)
     if not len(moving):
@@ -153,7 +158,7 @@ def _spike(position: FloatArray, turned: FloatArray, rest: FloatArray) -> float:
 
 
 def arcs_in(demand: FloatArray, lines: FloatArray) -> tuple[tuple[int, slice], ...]:
-    """Lines whose setpoints (m, 2) lie on an arc that is long enough: the line and its samples."""
+    """Return the lines whose setpoints (m, 2) form a sufficiently long arc, each with its samples."""
     if not len(lines):
         return ()
     edges = np.flatnonzero(np.diff(lines)) + 1
@@ -176,19 +181,19 @@ def arcs_in(demand: FloatArray, lines: FloatArray) -> tuple[tuple[int, slice], .
 
 
 IntArray = npt.NDArray[np.int64]
-LEAST_SAMPLES = 10  # samples that a path needs
+LEAST_SAMPLES = 10  # samples that an analysis of a path needs
 UNTOLD = "the driver does not report the axis positions, so no path can be compared"
 STOOD = "no axis moved in this time range; record while a program runs"
-_SAME = 1e-9  # mm: points nearer than that are one
+_SAME = 1e-9  # mm, distance below which points are treated as equal
 
 
 @dataclass(frozen=True, slots=True)
 class PathError:
-    """Of each measured sample (m,): its distance to the path, mm; of two slides positive to the left of the
-    way it goes, of three without a sign.
+    """Deviation of each measured sample (m,) from the path.
 
-    ``foot`` (m, 2 or 3) is the nearest point of the path, ``along`` how far along the path that lies, mm,
-    ``lines`` the source line there.
+    ``distance`` is in mm; with two axes it is positive to the left of the path direction, and with three axes
+    it has no sign. ``foot`` (m, 2 or 3) is the nearest point of the path, ``along`` the path length up to
+    that point in mm, and ``lines`` the source line there.
     """
 
     distance: FloatArray
@@ -199,17 +204,17 @@ class PathError:
 
     @property
     def greatest(self) -> float:
-        """The greatest distance on either side, mm."""
+        """Largest distance on either side, in mm."""
         return float(np.abs(self.distance).max())
 
     def magnified(self, factor: float) -> FloatArray:
-        """The measured path (m, 2 or 3) with its distance from the programmed one so many times as large."""
+        """Return the measured path (m, 2 or 3) with its deviation from the path multiplied by ``factor``."""
         return self.foot + factor * (self.measured - self.foot)
 
 
 @dataclass(frozen=True, slots=True)
 class WorstPlace:
-    """Where a line is farthest off: its distance, mm, and where on the path."""
+    """Location of the largest deviation of a program line, with the distance in mm."""
 
     line: int
     distance: float
@@ -220,13 +225,11 @@ class WorstPlace:
 def path_error(
     programmed: FloatArray, lines: IntArray, measured: FloatArray, due: IntArray, reach: int
 ) -> PathError:
-    """Distances of ``measured`` (m, k) from the polyline ``programmed`` (n, k) of k = 2 or 3 slides.
+    """Return the deviations of measured positions (m, k) from a polyline (n, k) of 2 or 3 axes.
 
-    ``lines`` (n,) are the source lines of its points.
-
-    ``due`` (m,) is the point of the polyline at which each sample was to be; its foot is sought ``reach``
-    points to both sides of it, so that a path that crosses itself is not taken for its own neighbour.
-    Raises AnalysisError.
+    ``lines`` (n,) are the source lines of the points of ``programmed``. ``due`` (m,) is the index of the
+    point that each sample should have reached. The nearest point is searched within ``reach`` points of it,
+    so that a path that crosses itself is not assigned to the wrong branch. Raises AnalysisError.
     """
     _check(programmed, lines, measured, due)
     n = len(programmed)
@@ -275,9 +278,10 @@ def _check(programmed: FloatArray, lines: IntArray, measured: FloatArray, due: I
 def of_samples(
     demand: FloatArray, actual: FloatArray, lines: FloatArray, rate: float, late: float = 0.1
 ) -> PathError:
-    """Of a record: the setpoints (m, 2 or 3) are the programmed path, ``actual`` what was measured.
+    """Return the deviations in a record, with the setpoints ``demand`` (m, 2 or 3) as the programmed path.
 
-    A sample's foot is sought within ``late`` s of the path before and behind. Raises AnalysisError.
+    ``actual`` are the measured positions. The nearest point is searched within ``late`` s of each sample.
+    Raises AnalysisError.
     """
     if len(demand) < LEAST_SAMPLES:
         raise AnalysisError(
@@ -300,7 +304,7 @@ def of_samples(
 
 
 def worst_places(error: PathError, most: int = 10) -> tuple[WorstPlace, ...]:
-    """The lines that are farthest off, the worst first; samples of no line (0) are left out."""
+    """Return the places of the lines with the largest deviations, worst first, without samples of line 0."""
     found = []
     for line in np.unique(error.lines[error.lines > 0]):
         of_line = np.flatnonzero(error.lines == line)

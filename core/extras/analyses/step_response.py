@@ -1,7 +1,7 @@
-"""Response of an axis to a step, ramp or sine: rise, overshoot, settling, lag; and what a window would do.
+"""Response of an axis to a step, ramp or sine, and the effect of another window or speed.
 
-Everything is read off the samples; nothing is assumed of the drive but, of ``at_other_speed``, that its lag
-grows with its speed.
+All values are measured from the samples. Only ``at_other_speed`` assumes that the lag of the drive is
+proportional to its speed.
 """
 
 from __future__ import annotations
@@ -22,10 +22,11 @@ LEAST = 20  # samples
 
 @dataclass(frozen=True, slots=True)
 class StepResponse:
-    """Seconds and shares of the step. ``rise`` from 10 to 90 %, ``overshoot`` beyond the end, 0: none.
+    """Response to a step, with times in seconds and lengths in mm.
 
-    ``settling`` from the request's end until it stays within ``band`` mm; nan: it did not in the record.
-    ``delay`` until half of the way is done, less that of the request; ``rest`` mm that it is off at last.
+    ``rise`` is the time from 10 to 90 %. ``overshoot`` is the fraction of the step beyond its end, or 0.
+    ``settling`` is the time from the end of the request until the axis remains within ``band``; NaN if it
+    does not settle in the record. ``delay`` is the delay at half of the step. ``rest`` is the final error.
     """
 
     way: float
@@ -38,9 +39,9 @@ class StepResponse:
 
 
 def step_response(times: FloatArray, request: FloatArray, response: FloatArray, band: float) -> StepResponse:
-    """Samples (n,) from before the step until after it. ``band`` mm is the window of in position.
+    """Analyze the samples (n,) from before a step until after it. Raises AnalysisError.
 
-    Raises AnalysisError.
+    ``band`` is the in-position window in mm.
     """
     _check(times, request, response)
     way = float(request[-1] - request[0])
@@ -73,23 +74,26 @@ def step_response(times: FloatArray, request: FloatArray, response: FloatArray, 
 
 @dataclass(frozen=True, slots=True)
 class SineResponse:
-    """``gain``: amplitude of the response over that of the request; ``lag`` degrees behind it."""
+    """Response to a sine: ``gain`` is the ratio of the amplitudes, and ``lag`` the phase lag in degrees."""
 
     frequency: float
     gain: float
     lag: float
-    error: float  # amplitude of request less response
+    error: float  # amplitude of the difference between request and response
 
     @property
     def late(self) -> float:
-        """The lag in seconds."""
+        """Phase lag as a time in seconds."""
         return self.lag / 360.0 / self.frequency
 
 
 def sine_response(
     times: FloatArray, request: FloatArray, response: FloatArray, frequency: float
 ) -> SineResponse:
-    """By the sine of ``frequency`` Hz that fits each best, over whole waves. Raises AnalysisError."""
+    """Analyze the response to a sine of ``frequency`` Hz over whole periods. Raises AnalysisError.
+
+    A sine is fitted to the request and to the response.
+    """
     _check(times, request, response)
     waves = math.floor((times[-1] - times[0]) * frequency + 1e-6)
     if waves < 1:
@@ -108,7 +112,7 @@ def sine_response(
 
 
 def _wave(times: FloatArray, values: FloatArray, frequency: float) -> complex:
-    """Amplitude and phase of the sine in these samples, with an offset and a slope beside it."""
+    """Return amplitude and phase of the sine in the samples, fitted together with an offset and a slope."""
     t = times - times[0]
     turn = 2.0 * math.pi * frequency * t
     system = np.column_stack([np.cos(turn), np.sin(turn), np.ones_like(t), t])
@@ -118,7 +122,7 @@ def _wave(times: FloatArray, values: FloatArray, frequency: float) -> complex:
 
 @dataclass(frozen=True, slots=True)
 class RampResponse:
-    """``speed`` mm/s of the ramp, ``error`` mm that the axis lags in its even part."""
+    """Response to a ramp: ``speed`` in mm/s, and ``error`` is the lag in mm at constant speed."""
 
     speed: float
     error: float
@@ -126,12 +130,15 @@ class RampResponse:
 
     @property
     def lag(self) -> float:
-        """Seconds behind the request."""
+        """Lag as a time in seconds."""
         return self.error / self.speed
 
 
 def ramp_response(times: FloatArray, request: FloatArray, response: FloatArray) -> RampResponse:
-    """Of the later half of the ramp's even part: the lag has settled then. Raises AnalysisError."""
+    """Analyze the response to a ramp in the second half of its constant speed. Raises AnalysisError.
+
+    The lag has settled in the second half.
+    """
     _check(times, request, response)
     speeds = np.gradient(request, times)
     top = float(speeds[np.argmax(np.abs(speeds))])
@@ -162,7 +169,7 @@ def _check(times: FloatArray, request: FloatArray, response: FloatArray) -> None
 
 
 def _crossing(times: FloatArray, share: FloatArray, level: float) -> float:
-    """When it first reaches this share, between samples by a straight line; nan: never."""
+    """Return the interpolated time at which the share first reaches ``level``; NaN if it never does."""
     above = np.flatnonzero(share >= level)
     if not len(above) or above[0] == 0:
         return float(times[0]) if len(above) else math.nan
@@ -173,14 +180,14 @@ def _crossing(times: FloatArray, share: FloatArray, level: float) -> float:
 
 @dataclass(frozen=True, slots=True)
 class Bandwidth:
-    """Hz at which the response is down by 3 dB, and at which it is 90 degrees late; None: not seen."""
+    """Frequencies in Hz at which the response is down by 3 dB and lags by 90 degrees; None if not reached."""
 
     down: float | None
     quarter: float | None
 
 
 def bandwidth(sines: Sequence[SineResponse]) -> Bandwidth:
-    """Between two frequencies by a straight line over the logarithm of the frequency."""
+    """Return the bandwidth from sine responses, interpolated over the logarithm of the frequency."""
 
     def reached(values: list[float]) -> float | None:
         for i in range(1, len(values)):
@@ -195,11 +202,11 @@ def bandwidth(sines: Sequence[SineResponse]) -> Bandwidth:
     )
 
 
-# --- what another window or another speed would do ------------------------------------------------------
+# --- Effect of another window or another speed ----------------------------------------------------------
 
 
 def would_trip(times: FloatArray, error: FloatArray, window: float, lasts: float) -> float | None:
-    """When an error (mm) beyond ``window`` for longer than ``lasts`` s would have tripped; None: never."""
+    """Return the time at which an error above ``window`` for ``lasts`` s would trip; None if it would not."""
     off = np.abs(error) > window
     edges = np.flatnonzero(np.diff(np.concatenate([[False], off, [False]]).astype(int)))
     for first, last in zip(edges[0::2], edges[1::2], strict=True):
@@ -209,9 +216,9 @@ def would_trip(times: FloatArray, error: FloatArray, window: float, lasts: float
 
 
 def narrowest_window(times: FloatArray, error: FloatArray, lasts: float) -> float:
-    """The window (mm) that this error just does not trip: its greatest that held for longer than ``lasts`` s.
+    """Return the narrowest window in mm that this error would not trip within ``lasts`` s.
 
-    By halving between no window and the greatest error, to a thousandth of it.
+    The window is found by bisection to a thousandth of the largest error.
     """
     low, high = 0.0, float(np.abs(error).max(initial=0.0))
     for _ in range(10):
@@ -221,10 +228,10 @@ def narrowest_window(times: FloatArray, error: FloatArray, lasts: float) -> floa
 
 
 def speed_of_window(lag: float, still: float, window: float, vmax: float) -> float | None:
-    """The speed at which an axis that trails by ``lag`` s reaches a window that grows with its speed.
+    """Return the speed at which an axis with a lag of ``lag`` s reaches a window that grows with speed.
 
-    ``still`` mm at rest, ``window`` at ``vmax``: lag · v = still + (window - still) · v / vmax. None: at no
-    speed of the axis.
+    The window is ``still`` mm at rest and ``window`` mm at ``vmax``: lag · v = still + (window - still) · v /
+    vmax. The result is None if the axis does not reach the window at any speed.
     """
     steeper = lag - (window - still) / vmax
     speed = still / steeper if steeper > 0.0 else math.inf
@@ -232,16 +239,17 @@ def speed_of_window(lag: float, still: float, window: float, vmax: float) -> flo
 
 
 def lag_of(velocity: FloatArray, error: FloatArray) -> float:
-    """Seconds by which an axis trails: the best line error = lag · velocity; nan for one that stands."""
+    """Return the lag in seconds from the best line error = lag · velocity; NaN if the axis does not move."""
     known = np.isfinite(velocity) & np.isfinite(error)
     square = float((velocity[known] ** 2).sum())
     return float((velocity[known] * error[known]).sum()) / square if square > 0.0 else math.nan
 
 
 def at_other_speed(velocity: FloatArray, error: FloatArray, factor: float) -> FloatArray:
-    """The following error (n,), mm, at ``factor`` times the speed: its part that goes with speed grows so.
+    """Return the following error (n,) in mm that is expected at ``factor`` times the speed.
 
-    That part is the best line error = k · velocity; the rest (friction, weight, cut) stays as it is.
+    The part on the best line error = k · velocity grows with speed. The rest, such as friction, weight and
+    cutting force, remains unchanged.
     """
     lag = np.nan_to_num(lag_of(velocity, error))
     return np.asarray(error + (factor - 1.0) * lag * np.where(np.isfinite(velocity), velocity, 0.0))

@@ -1,7 +1,7 @@
-"""Passes of a thread laid over each other by the spindle's angle: entry angle, lead error, speed under load.
+"""Comparison of thread passes by spindle angle: entry angle, lead error and speed under load.
 
-A pass is a stretch in which the slide goes the same way a turn, for two turns at least. Each is told by the
-line that fits it best: way = lead · turns + entry.
+A pass is a period of at least two revolutions in which the axis moves by the same distance per revolution. It
+is described by its best line: distance = lead · revolutions + entry.
 """
 
 from __future__ import annotations
@@ -16,20 +16,22 @@ from core.records.record import AnalysisError
 
 FloatArray = npt.NDArray[np.float64]
 LEAST_TURNS = 2.0
-_EVEN = 0.04  # by which the way of a turn may differ within a pass
-_ALIKE = 0.02  # by which leads of passes of one thread may differ
-_ON_LINE = 0.1  # of a lead that two pieces of a pass may lie apart
-_LEAST_LEAD = 0.05  # mm a turn
-_EDGE = 0.5  # turns at both ends, in which the slide still speeds up
-_POINTS = 24  # of a turn, at which the way is compared
+_EVEN = 0.04  # largest relative difference in travel per revolution within a pass
+_ALIKE = 0.02  # largest relative difference between the leads of the passes of one thread
+_ON_LINE = 0.1  # largest distance between two pieces of a pass, as a fraction of the lead
+_LEAST_LEAD = 0.05  # mm per revolution
+_EDGE = 0.5  # revolutions at both ends in which the axis still accelerates
+_POINTS = 24  # points per revolution at which the travel is compared
 
 
 @dataclass(frozen=True, slots=True)
 class ThreadPass:
-    """One pass. ``first`` and ``last`` sample; ``turns`` (k,) from the thread's beginning, ``off`` mm (k,).
+    """One pass of a thread.
 
-    ``entry`` degrees of the spindle where the slide crosses that beginning, against the first pass;
-    ``lead`` mm a turn by the best line. Speeds in rpm; ``depth`` where the other slide stood, mm.
+    ``first`` and ``last`` are sample numbers. ``turns`` (k,) are revolutions from the start of the thread,
+    and ``off`` (k,) the deviations in mm. ``entry`` is the spindle angle at the start of the thread in
+    degrees, relative to the first pass. ``lead`` is in mm per revolution. Speeds are in rpm. ``depth`` is the
+    position of the other axis in mm.
     """
 
     first: int
@@ -45,40 +47,45 @@ class ThreadPass:
 
     @property
     def drop(self) -> float:
-        """By how many rpm the spindle was slower in the cut than just before it, at its fastest."""
+        """Drop of the spindle speed in the cut, from the highest speed just before it, in rpm."""
         return self.speed_before - self.speed_least
 
 
 @dataclass(frozen=True, slots=True)
 class Thread:
-    """The passes of one thread; the lead they were compared with, mm a turn, signed as the slide goes."""
+    """The passes of one thread, and the signed reference lead in mm per revolution."""
 
     lead: float
     passes: tuple[ThreadPass, ...]
 
     @property
     def entry_spread(self) -> float:
-        """From the least to the greatest entry angle, degrees."""
+        """Difference between the largest and the smallest entry angle, in degrees."""
         entries = [each.entry for each in self.passes]
         return max(entries) - min(entries)
 
     @property
     def lead_error(self) -> float:
-        """The worst lead less the one it should be, mm a turn."""
+        """Largest deviation of a lead from the reference lead, in mm per revolution."""
         return max((each.lead - self.lead for each in self.passes), key=abs)
 
 
 def fastest(lead: float, vmax: float) -> float:
-    """Spindle speed, rpm, at which the slide of ``vmax`` mm/s can just follow this lead, mm a turn."""
+    """Return the highest spindle speed in rpm at which an axis can follow the lead.
+
+    ``lead`` is in mm per revolution, and ``vmax`` is the limit of the axis in mm/s.
+    """
     return 60.0 * vmax / abs(lead) if lead else math.inf
 
 
 def find_thread(
     turns: FloatArray, along: FloatArray, depth: FloatArray, speed: FloatArray, lead: float | None = None
 ) -> Thread:
-    """Of samples (n,): spindle turns, the slide along the thread and the other (mm), speed (rpm).
+    """Find the passes of a thread in samples (n,). Raises AnalysisError.
 
-    ``lead`` mm a turn where it is known; else that of the passes that were alike. Raises AnalysisError.
+    ``turns`` are spindle revolutions, ``along`` and ``depth`` the positions of the axis along the thread and
+    of the other axis in mm, and ``speed`` is in rpm. ``lead`` is in mm per revolution; None takes it from the
+    similar passes.
     """
     if len(turns) < 100:
         raise AnalysisError(
@@ -110,11 +117,12 @@ def find_thread(
     return Thread(lead, _passes(runs, lead, turns, along, depth, speed))
 
 
-Run = tuple[int, int, float, int]  # first sample, last, way a turn; sample at which the slide set out
+# first sample, last sample, travel per revolution, sample at which the axis started
+Run = tuple[int, int, float, int]
 
 
 def _runs(turns: FloatArray, along: FloatArray) -> list[Run]:
-    """Stretches in which the way of each turn is the same."""
+    """Return the periods with a constant travel per revolution."""
     direction = 1.0 if turns[-1] >= turns[0] else -1.0
     t = np.maximum.accumulate(direction * turns)
     grid = np.arange(t[0], t[-1], 1.0 / _POINTS)
@@ -139,7 +147,7 @@ def _runs(turns: FloatArray, along: FloatArray) -> list[Run]:
 
 
 def _joined(runs: list[Run], turns: FloatArray, along: FloatArray, direction: float) -> list[Run]:
-    """Pieces of one pass are one: where the next begins on the line on which the last ended."""
+    """Join pieces of one pass: a piece that starts on the line on which the previous piece ended."""
     found: list[Run] = []
     for run in runs:
         if found:
@@ -154,7 +162,7 @@ def _joined(runs: list[Run], turns: FloatArray, along: FloatArray, direction: fl
 
 
 def _alike(runs: list[Run]) -> list[Run]:
-    """The passes of the coarsest lead that occurs more than once, else of the coarsest."""
+    """Return the passes with the coarsest lead that occurs more than once, or else with the coarsest lead."""
     if not runs:
         return []
     groups = [[each for each in runs if abs(each[2] - one[2]) <= _ALIKE * abs(one[2])] for one in runs]
@@ -170,7 +178,7 @@ def _passes(
     depth: FloatArray,
     speed: FloatArray,
 ) -> tuple[ThreadPass, ...]:
-    """Each by its best line; entry angles against the first, within half a turn of it."""
+    """Return each pass with its best line, and entry angles within half a revolution of the first pass."""
     begin = float(np.median([along[first] for first, *_ in runs]))
     found: list[ThreadPass] = []
     base = 0.0

@@ -1,6 +1,6 @@
-"""A contour picked out of a drawing: ends joined, its outer or inner side walked, a wrong unit told.
+"""Extraction of a contour from a drawing: joining of ends, and tracing of the outer or inner side.
 
-All points are (r, z) from the axis and the zero of Z, mm, as a lathe has them.
+All points are (r, z) in mm, from the spindle axis and Z zero of the lathe.
 """
 
 from __future__ import annotations
@@ -18,14 +18,15 @@ from core.message import Message
 GAP = 0.02
 """mm: ends nearer than this are joined."""
 _AXIS = 1e-6  # mm
-_CELLS, _IN_A_CELL = 64, 8  # along Z, in which ends and elements are looked for; elements in one
+_CELLS, _IN_A_CELL = 64, 8  # number of cells along Z for the search of ends; elements in one cell
 _SQUARE = 0.02  # cosine
 _NO_BORE = "the contour has no bore at its face. Choose the outside, or another contour."
-_AHEAD = 0.05  # mm along an element, where its direction is taken: of tangent ones the sharper arc is told
+# mm along an element at which its direction is measured, which distinguishes tangent arcs of different radius
+_AHEAD = 0.05
 
 
 def above_axis(elements: Iterable[Element], gap: float = GAP) -> Iterator[Element]:
-    """What lies on the side r > 0 of the axis, cut where it crosses; what lies on the axis is left out."""
+    """Yield the parts of elements at r > 0, cut at the axis; lines on the axis are omitted."""
     for each in elements:
         if isinstance(each, Line) and abs(each.start[0]) <= gap and abs(each.end[0]) <= gap:
             continue
@@ -43,7 +44,7 @@ def _cut_at_axis(each: Element) -> list[Element]:
 
 
 def _crossings(elements: Iterable[Element]) -> Iterator[float]:
-    """Where elements go through the axis; a face that is drawn from edge to edge does it square."""
+    """Yield the Z positions at which elements cross the axis, except faces that cross it at a right angle."""
     for each in elements:
         for part in _cut_at_axis(each)[:-1]:
             if abs(part.end_direction[1]) > _SQUARE:
@@ -51,7 +52,7 @@ def _crossings(elements: Iterable[Element]) -> Iterator[float]:
 
 
 def split(each: Element, points: Iterable[Point]) -> list[Element]:
-    """The element in parts between these of its points."""
+    """Return the parts of an element between these points on it."""
     within = (p for p in points if _AXIS < each.along(p) < each.length - _AXIS)
     places = [each.start, *sorted(within, key=each.along), each.end]
     return [each.part(a, b) for a, b in pairwise(places)]
@@ -59,14 +60,14 @@ def split(each: Element, points: Iterable[Point]) -> list[Element]:
 
 @dataclass(slots=True)
 class _Nodes:
-    """Points where ends meet: the nearest within a gap is the same one."""
+    """Points at which ends meet. Points within the gap share one node."""
 
     gap: float
     points: list[Point] = field(default_factory=list)
     _cells: dict[tuple[int, int], list[int]] = field(default_factory=dict)
 
     def at(self, point: Point) -> int:
-        """The node of a point, a new one where none is near."""
+        """Return the node of a point; create a node if none is near."""
         size = self.gap or 1e-6
         i, k = math.floor(point[0] / size), math.floor(point[1] / size)
         near = [n for a in (i - 1, i, i + 1) for b in (k - 1, k, k + 1) for n in self._cells.get((a, b), ())]
@@ -80,23 +81,30 @@ class _Nodes:
 
 @dataclass(frozen=True, slots=True)
 class Net:
-    """Elements that hang together: ``ends`` are the nodes of each element, ``nodes`` their points."""
+    """Connected elements.
+
+    ``ends`` are the node numbers of each element, and ``nodes`` the points of the nodes.
+    """
 
     elements: tuple[Element, ...]
     ends: tuple[tuple[int, int], ...]
     nodes: tuple[Point, ...]
-    closed: float = 0.0  # mm: the widest gap that was closed
-    crossings: tuple[float, ...] = ()  # Z at which something goes through the axis, not square to it
+    closed: float = 0.0  # mm, the widest gap that was closed
+    # Z positions at which an element crosses the axis at an angle other than 90 degrees
+    crossings: tuple[float, ...] = ()
 
     @property
     def reach(self) -> tuple[float, float, float]:
-        """Least and greatest Z, and the greatest r."""
+        """Smallest and largest Z, and largest r, in mm."""
         boxes = [each.box for each in self.elements]
         return min(b[2] for b in boxes), max(b[3] for b in boxes), max(b[1] for b in boxes)
 
 
 def nets(elements: Iterable[Element], gap: float = GAP) -> list[Net]:
-    """What hangs together, those on the axis with the most elements first; double lines count once."""
+    """Return the groups of connected elements: those that touch the axis first, then the largest first.
+
+    Duplicate lines count once.
+    """
     drawn = tuple(elements)
     parts = _at_touching_ends(list(above_axis(drawn, gap)), gap)
     nodes, found, widest = _Nodes(gap), dict[tuple[int, int, int, int], tuple[Element, float]](), 0.0
@@ -129,14 +137,14 @@ def _on_axis(net: Net, gap: float) -> bool:
 
 
 def _moved(each: Element, a: Point, b: Point) -> Element:
-    """With its ends at the nodes."""
+    """Return the element with its ends moved to the nodes."""
     if isinstance(each, Line):
         return Line(a, b)
     return arc_between(a, b, each.centre, clockwise=each.clockwise)
 
 
 def _hanging(count: int, pairs: Sequence[tuple[int, int]]) -> list[int]:
-    """Of each node the first of those that it hangs together with."""
+    """Return for each node the representative of its connected group."""
     owner = list(range(count))
 
     def root(n: int) -> int:
@@ -151,7 +159,7 @@ def _hanging(count: int, pairs: Sequence[tuple[int, int]]) -> list[int]:
 
 
 def _at_touching_ends(elements: list[Element], gap: float) -> list[Element]:
-    """Cut where the end of another touches them, as the edge of a shoulder touches the contour."""
+    """Split elements where the end of another element touches them, such as the edge of a shoulder."""
     if not elements:
         return []
     boxes = [each.box for each in elements]
@@ -164,10 +172,11 @@ def _at_touching_ends(elements: list[Element], gap: float) -> list[Element]:
     found: list[Element] = []
     for each, box in zip(elements, boxes, strict=True):
         check_work()
-        if each.length <= 2.0 * gap:  # no place of it is more than a gap from both ends
+        if each.length <= 2.0 * gap:  # every point is within the gap of one of its ends
             found.append(each)
             continue
-        reach = gap + _AXIS  # quicker than the distance from an arc, and more than its rounding
+        # faster than calculating the distance from an arc, and larger than the rounding error
+        reach = gap + _AXIS
         r0, r1, z0, z1 = box[0] - reach, box[1] + reach, box[2] - reach, box[3] + reach
         cell = range(math.floor((z0 - low) / size), math.floor((z1 - low) / size) + 1)
         near = (p for k in cell for p in cells.get(k, ()) if r0 <= p[0] <= r1 and z0 <= p[1] <= z1)
@@ -177,7 +186,7 @@ def _at_touching_ends(elements: list[Element], gap: float) -> list[Element]:
 
 
 def _touch(each: Element, point: Point, gap: float) -> Point | None:
-    """Where a point touches an element between its ends."""
+    """Return the position at which a point touches an element between its ends, or None."""
     along = each.along(point)
     if not gap < along < each.length - gap:
         return None
@@ -185,25 +194,29 @@ def _touch(each: Element, point: Point, gap: float) -> Point | None:
     return at if math.dist(at, point) <= gap else None
 
 
-# --- along one side
+# --- Tracing one side
 
 
 def outer_side(net: Net, gap: float = GAP) -> list[Element]:
-    """From the foremost point outwards and along the outside to the end at the chuck.
+    """Return the elements from the foremost point along the outside to the chuck end.
 
-    Raises DrawingError for a contour that crosses itself, or the axis before its end, or has no end in front.
+    Raises DrawingError if the contour crosses itself or the axis, or has no end at its front.
     """
     walked = _walk(net, _foremost(net, gap), math.radians(270.0), 1.0, gap)
     return _checked(net, walked, gap)
 
 
 def inner_side(net: Net, gap: float = GAP) -> list[Element]:
-    """From the mouth of a bore along its wall to its end. Raises DrawingError, also where there is none."""
+    """Return the elements of a bore from its mouth along its wall to its end.
+
+    Raises DrawingError if the contour has no bore, or crosses itself or the axis.
+    """
     inside = [n for n in _at_front(net, gap) if net.nodes[n][0] > gap and _goes_in(net, n, gap)]
     if not inside:
         raise DrawingError(_NO_BORE, "no-bore")
     start = min(inside, key=lambda n: net.nodes[n][0])
-    front = _at_front(net, gap)  # the edge of the mouth, seen behind a section, is no wall
+    # the edge of the mouth, visible beyond the section plane, is not part of the wall
+    front = _at_front(net, gap)
     mouth = {number for number, (a, b) in enumerate(net.ends) if a in front and b in front}
     walked = _walk(net, start, math.radians(90.0), -1.0, gap, mouth)
     outer = _walk(net, _foremost(net, gap), math.radians(270.0), 1.0, gap)
@@ -213,7 +226,7 @@ def inner_side(net: Net, gap: float = GAP) -> list[Element]:
 
 
 def _foremost(net: Net, gap: float) -> int:
-    """The end of an element that is furthest in front, nearest to the axis. Raises DrawingError."""
+    """Return the frontmost end of an element that is nearest to the axis. Raises DrawingError."""
     front = _at_front(net, gap)
     if not front:
         raise DrawingError(
@@ -229,7 +242,7 @@ def _at_front(net: Net, gap: float) -> set[int]:
 
 
 def _goes_in(net: Net, node: int, gap: float) -> bool:
-    """Whether an element leads from a node towards the chuck."""
+    """Return whether an element leads from a node toward the chuck."""
     out = (_from(each, ends, node) for each, ends in zip(net.elements, net.ends, strict=True) if node in ends)
     return any(each.end[1] < each.start[1] - gap for each in out)
 
@@ -239,7 +252,7 @@ def _from(each: Element, ends: tuple[int, int], node: int) -> Element:
 
 
 def _angle(each: Element) -> float:
-    """Of the direction in which an element begins: from Z+ towards r+."""
+    """Return the angle of an element's direction at its start, from Z+ toward r+."""
     ahead = each.point(min(_AHEAD, each.length / 2.0))
     return math.atan2(ahead[0] - each.start[0], ahead[1] - each.start[1])
 
@@ -247,14 +260,17 @@ def _angle(each: Element) -> float:
 def _walk(
     net: Net, start: int, back: float, hand: float, gap: float, without: Iterable[int] = ()
 ) -> list[Element]:
-    """With the void always on one side: at a node the first element from there. Blind ends are left again."""
+    """Return the elements along one side of the contour.
+
+    At each node the path takes the first element next to the empty side, and leaves dead ends again.
+    """
     at_node: dict[int, list[int]] = {}
     for number, ends in enumerate(net.ends):
         for n in ends:
             at_node.setdefault(n, []).append(number)
     low = net.reach[0]
     shut = set(without)
-    way: list[tuple[int, int]] = []  # elements, and the node that each leads to
+    way: list[tuple[int, int]] = []  # elements, with the node to which each leads
     best: list[tuple[int, int]] = []
     node, seen = start, {start}
     while True:
@@ -288,7 +304,7 @@ def _next(
     back: float,
     hand: float,
 ) -> int | None:
-    """The next element at a node: the first one from the way back, turning to ``hand``."""
+    """Return the next element at a node, the first from the incoming direction when turning to ``hand``."""
     if way:
         last = way[-1][0]
         back = _angle(_from(net.elements[last], net.ends[last], node))
@@ -344,7 +360,7 @@ def _no_crossing(walked: Sequence[Element]) -> None:
 
 
 def _overlapping(walked: Sequence[Element]) -> Iterator[tuple[int, int]]:
-    """Yield the numbers of two elements whose boxes overlap, the lesser first; swept along Z."""
+    """Yield the numbers of two elements whose bounding boxes overlap, the smaller first; swept along Z."""
     boxes = [each.box for each in walked]
     order = sorted(range(len(walked)), key=lambda n: boxes[n][2])
     lows = [boxes[n][2] for n in order]
@@ -357,7 +373,7 @@ def _overlapping(walked: Sequence[Element]) -> Iterator[tuple[int, int]]:
 
 
 def _crossing(walked: Sequence[Element], i: int, k: int) -> Iterator[Point]:
-    """Yield where two elements cross, but for their ends."""
+    """Yield the points at which two elements cross, except at their ends."""
     shared = (walked[i].start, walked[i].end, walked[k].start, walked[k].end)
     for point in intersections(walked[i], walked[k]):
         if min(math.dist(point, end) for end in shared) > 1e-3:
@@ -365,7 +381,7 @@ def _crossing(walked: Sequence[Element], i: int, k: int) -> Iterator[Point]:
 
 
 def turned_about(elements: Iterable[Element]) -> Iterator[Element]:
-    """The same on the other side of the axis."""
+    """Yield the elements mirrored about the axis."""
     for each in elements:
         if isinstance(each, Arc):
             a, b, c = ((-p[0], p[1]) for p in (each.start, each.end, each.centre))

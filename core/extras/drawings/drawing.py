@@ -1,4 +1,4 @@
-"""A drawing: lines and arcs by layer, why one cannot be used, the limit of work on it, and it as bytes."""
+"""A drawing as lines and arcs by layer, its errors and work limit, and its encoding as bytes."""
 
 from __future__ import annotations
 
@@ -17,19 +17,23 @@ from core.message import CodedError, Message
 
 MOST_BYTES = 16 * 1024 * 1024
 MOST_ELEMENTS = 50_000
-_NEAREST = 0.002  # mm between a curve and the arcs that are taken for it
-_OF_UNKNOWN = 0.0002  # the same in units of a drawing that does not say its unit: .005 mm if it is the inch
-_FARTHEST = 1e8  # units: beyond it what is a thousandth of a unit is no longer told apart
+_NEAREST = 0.002  # mm, largest distance between a curve and the arcs that replace it
+# the same in drawing units if the unit is not specified; 0.005 mm if the unit is the inch
+_OF_UNKNOWN = 0.0002
+_FARTHEST = 1e8  # units; for larger coordinates a thousandth of a unit cannot be resolved
 _NONE = 1e-9
 
 
 class DrawingError(CodedError, ValueError):
-    """A drawing that no contour can be taken from: one sentence with the cause and what to do."""
+    """A drawing from which no contour can be extracted. The text has the cause and a remedy."""
 
 
 @dataclass(frozen=True, slots=True)
 class Drawn:
-    """An element with its layer; points are (y, x), so x goes along Z. ``centre``: it is a centre line."""
+    """An element of a drawing with its layer; points are (y, x), with x along Z.
+
+    ``centre`` means that the element is a center line.
+    """
 
     element: Element
     layer: str = ""
@@ -38,9 +42,10 @@ class Drawn:
 
 @dataclass(frozen=True, slots=True)
 class Drawing:
-    """``unit`` is mm of one unit of the drawing, 0 where its file does not say.
+    """A drawing as lines and arcs.
 
-    ``left_out`` counts by kind what is no line, such as texts and dimensions.
+    ``unit`` is the size of one drawing unit in mm, or 0 if the file does not specify it. ``left_out`` counts
+    the omitted objects by kind, such as texts and dimensions.
     """
 
     name: str
@@ -50,33 +55,36 @@ class Drawing:
 
     @property
     def layers(self) -> tuple[str, ...]:
-        """Those that something is drawn on, the fullest first."""
+        """Layers with elements, those with the most elements first."""
         count: dict[str, int] = {}
         for each in self.drawn:
             count[each.layer] = count.get(each.layer, 0) + 1
         return tuple(sorted(count, key=lambda layer: (-count[layer], layer)))
 
     def on(self, layer: str) -> tuple[Drawn, ...]:
-        """What is drawn on a layer; empty: on all."""
+        """Return the elements on a layer; an empty name selects all layers."""
         return tuple(each for each in self.drawn if not layer or each.layer == layer)
 
 
 def nearest(unit: float) -> float:
-    """How near arcs come to a curve, in units of the drawing."""
+    """Return the largest distance between a curve and its arcs, in drawing units."""
     return _NEAREST / unit if unit else _OF_UNKNOWN
 
 
 def line(a: Point, b: Point) -> Iterator[Element]:
-    """A line from (x, y) to (x, y) of the drawing; one of no length is none.
+    """Yield the line from (x, y) to (x, y) of the drawing, unless its length is zero.
 
-    A point that is not a number gives a line as well, which ``within_limits`` refuses.
+    A line with a coordinate that is not a number is also yielded; ``within_limits`` rejects it.
     """
     if not math.dist(a, b) <= _NONE:
         yield Line((a[1], a[0]), (b[1], b[0]))
 
 
 def arc(centre: Point, radius: float, start: float, sweep: float) -> Iterator[Element]:
-    """An arc about (x, y), radians counter-clockwise from x, in pieces of less than half a turn."""
+    """Yield an arc around (x, y) in pieces of less than half a revolution.
+
+    Angles are in radians, counterclockwise from x.
+    """
     if radius <= _NONE or abs(sweep) < 1e-9:
         return
     count = math.ceil(abs(sweep) / (0.95 * math.pi))
@@ -87,7 +95,7 @@ def arc(centre: Point, radius: float, start: float, sweep: float) -> Iterator[El
 
 
 def bulged(a: Point, b: Point, bulge: float) -> Iterator[Element]:
-    """A line, or the arc of a polyline: ``bulge`` is the tangent of a quarter of its angle."""
+    """Yield a line or arc of a polyline; ``bulge`` is the tangent of a quarter of the arc's angle."""
     if abs(bulge) < 1e-9:
         yield from line(a, b)
         return
@@ -102,7 +110,7 @@ def bulged(a: Point, b: Point, bulge: float) -> Iterator[Element]:
 
 
 def within_limits(found: Iterable[Drawn], name: str) -> Iterator[Drawn]:
-    """The same, until there are too many. Raises DrawingError."""
+    """Yield the elements. Raises DrawingError if there are too many, or if a coordinate is invalid."""
     for count, each in enumerate(found):
         if count >= MOST_ELEMENTS:
             raise DrawingError(
@@ -132,14 +140,14 @@ def within_limits(found: Iterable[Drawn], name: str) -> Iterator[Drawn]:
         yield each
 
 
-_HEAD = struct.Struct("<I")  # bytes of the JSON that follows
-_ROW = struct.Struct("<2I6d")  # layer, kind, start, end, center
+_HEAD = struct.Struct("<I")  # length in bytes of the JSON that follows
+_ROW = struct.Struct("<2I6d")  # =
 _LINE, _CLOCKWISE, _COUNTER = range(3)
 _CENTER_LINE = 4  # added to the kind
 
 
 def drawing_data(drawing: Drawing) -> bytes:
-    """Return the bytes of a drawing."""
+    """Return a drawing encoded as bytes."""
     layers = list(dict.fromkeys(each.layer for each in drawing.drawn))
     number = {layer: at for at, layer in enumerate(layers)}
     rows = b"".join(_row(each, number[each.layer]) for each in drawing.drawn)
@@ -148,7 +156,7 @@ def drawing_data(drawing: Drawing) -> bytes:
 
 
 def error_data(error: DrawingError) -> bytes:
-    """Return the bytes of an error, in the place of a drawing."""
+    """Return an error encoded as bytes, in place of a drawing."""
     return _with_head({"error": str(error), "code": error.code})
 
 
@@ -166,10 +174,10 @@ def _row(each: Drawn, layer: int) -> bytes:
 
 
 def drawing_of(data: bytes) -> Drawing:
-    """Return the drawing of these bytes.
+    """Return the drawing that is encoded in these bytes.
 
-    Raises DrawingError if they hold one, and ValueError, LookupError, TypeError or struct.error for bytes
-    that are cut off.
+    Raises DrawingError if they contain an error, and ValueError, LookupError, TypeError or struct.error if
+    they are incomplete.
     """
     (length,) = _HEAD.unpack_from(data)
     head = json.loads(data[_HEAD.size : _HEAD.size + length])
@@ -188,7 +196,7 @@ def _drawn(rows: memoryview, layers: list[str]) -> Iterator[Drawn]:
         yield Drawn(element, layers[layer], bool(kind & _CENTER_LINE))
 
 
-MOST_SECONDS = 30.0  # of the processor, for one program out of a drawing
+MOST_SECONDS = 30.0  # s of processor time for one program from a drawing
 
 
 @dataclass(frozen=True, slots=True)
@@ -203,7 +211,7 @@ _limit: ContextVar[_Limit | None] = ContextVar("drawing_work", default=None)
 
 @contextmanager
 def limited_work(watch: Callable[[float], None], seconds: float = MOST_SECONDS) -> Iterator[None]:
-    """Limit the processor time that this thread spends in the block; ``watch`` gets the seconds spent."""
+    """Limit the processor time of this thread in the block; ``watch`` is called with the seconds spent."""
     token = _limit.set(_Limit(time.thread_time(), seconds, watch))
     try:
         yield
@@ -212,7 +220,10 @@ def limited_work(watch: Callable[[float], None], seconds: float = MOST_SECONDS) 
 
 
 def check_work() -> None:
-    """Raise DrawingError at the limit, or what the watch raises; called in each loop over lines."""
+    """Check the work limit inside a loop over elements.
+
+    Raises DrawingError at the limit, or the exception that ``watch`` raises.
+    """
     limit = _limit.get()
     if limit is None:
         return

@@ -1,7 +1,8 @@
-"""The process that reads one drawing: ``python -m core.extras.drawings.drawing_child FILE MEMORY SECONDS``.
+"""Child process that reads one drawing.
 
-It writes the drawing to stdout as ``drawing_data`` does, or the error. What the libraries of drawings print,
-log or warn of goes nowhere. ``drawing_process`` starts it.
+The command is ``python -m core.extras.drawings.drawing_child FILE MEMORY SECONDS``. ``drawing_process``
+starts it. The process writes the drawing to stdout in the format of ``drawing_data``, or the error. Output,
+logs and warnings of the drawing libraries are discarded.
 """
 
 from __future__ import annotations
@@ -27,11 +28,12 @@ def limit_process(memory: int, seconds: int) -> None:
     for kind, most in limits.items():
         _, hard = resource.getrlimit(kind)
         soft = most if hard == resource.RLIM_INFINITY else min(most, hard)
-        resource.setrlimit(kind, (soft, hard))  # behind the hard one there is no signal that tells why
+        # beyond the hard limit the process would be killed without a signal that shows the reason
+        resource.setrlimit(kind, (soft, hard))
 
 
 def answer(path: Path) -> bytes:
-    """Return the data of the drawing, or of the error that it ends in."""
+    """Return the encoded drawing, or the encoded error."""
     try:
         return drawing_data(read_drawing(path))
     except DrawingError as error:
@@ -39,7 +41,7 @@ def answer(path: Path) -> bytes:
 
 
 def main() -> None:
-    """Read the drawing that the arguments name."""
+    """Read the drawing that the command-line arguments specify."""
     path, memory, seconds = Path(sys.argv[1]), int(sys.argv[2]), int(sys.argv[3])
     out = os.fdopen(os.dup(1), "wb")
     nowhere = os.open(os.devnull, os.O_WRONLY)

@@ -1,4 +1,4 @@
-"""A drawing file, DXF or SVG by its ending; one that is empty or far too large is not even opened."""
+"""Reading of a drawing file, DXF or SVG by its suffix; empty and oversized files are rejected unread."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ ENDINGS = (".dxf", ".svg")
 
 
 def is_drawing(name: str) -> bool:
-    """Whether a file is one by its ending."""
+    """Return whether a file name has the suffix of a drawing."""
     return name.lower().endswith(ENDINGS)
 
 
 def read_drawing(path: Path) -> Drawing:
-    """Return the lines and arcs of a drawing. Raises DrawingError alone, without words of a library."""
+    """Return the lines and arcs of a drawing. Raises only DrawingError, never with a library's message."""
     if not is_drawing(path.name):
         raise DrawingError(
             Message("{path} is not a supported drawing: use a DXF or SVG file.", path=path.name),

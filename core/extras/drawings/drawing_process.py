@@ -1,4 +1,4 @@
-"""A process of its own reads a drawing, with limits of time and memory: a hostile one takes no more."""
+"""Reading of a drawing in a separate process with limited time and memory, for safety."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from core.message import Message
 
 _CHILD = "core.extras.drawings.drawing_child"
 _ROOT = Path(__file__).parents[3]
-_LOOK = 0.1  # s between two looks whether the drawing is still wanted
+_LOOK = 0.1  # s between two checks whether the drawing is still needed
 
 GoOn = Callable[[float], None]
 """Called with the seconds that reading has taken; what it raises ends the process."""
@@ -25,10 +25,10 @@ GoOn = Callable[[float], None]
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """What reading one drawing may take. The largest, a DXF of 16 MB, takes 4 s and 240 MB.
+    """Limits for reading one drawing.
 
-    ``memory``: bytes of address space; ``processor``, ``clock``: seconds. Only Linux limits memory and
-    processor.
+    ``memory`` is in bytes of address space; ``processor`` and ``clock`` are in seconds. Only Linux limits
+    memory and processor time. The largest DXF of 16 MB takes 4 s and 240 MB.
     """
 
     memory: int = 1024**3
@@ -40,7 +40,7 @@ LIMITS = Limits()
 
 
 def read_in_process(path: Path, go_on: GoOn = lambda _seconds: None, limits: Limits = LIMITS) -> Drawing:
-    """Return the lines and arcs of a drawing. Raises DrawingError, or what ``go_on`` raises."""
+    """Return the lines and arcs of a drawing. Raises DrawingError, or the exception that ``go_on`` raises."""
     begun = time.monotonic()
     words = [str(path.absolute()), str(limits.memory), str(limits.processor)]
     try:
@@ -51,7 +51,7 @@ def read_in_process(path: Path, go_on: GoOn = lambda _seconds: None, limits: Lim
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
         )
-    except (OSError, ValueError) as error:  # ValueError: a zero byte in the name
+    except (OSError, ValueError) as error:  # ValueError: the name contains a zero byte
         raise DrawingError(
             Message(
                 "{path} cannot be read because the process that reads drawings cannot be started.",
@@ -76,13 +76,16 @@ def read_in_process(path: Path, go_on: GoOn = lambda _seconds: None, limits: Lim
 
 
 def _environment() -> dict[str, str]:
-    """Ours, with the folder of this very TurnDesk: the current folder may hold anything (``-P``)."""
+    """Return the environment with this TurnDesk's folder in the module path.
+
+    The current folder is not trusted (``-P``).
+    """
     paths = [str(_ROOT), *filter(None, [os.environ.get("PYTHONPATH")])]
     return {**os.environ, "PYTHONPATH": os.pathsep.join(paths), "OPENBLAS_NUM_THREADS": "1"}
 
 
 def _all_of(process: subprocess.Popen[bytes]) -> bytes | None:
-    """What the process has written, once it has ended; None while it is at work."""
+    """Return the output of the process when it has ended; None while it is running."""
     try:
         return process.communicate(timeout=_LOOK)[0]
     except subprocess.TimeoutExpired:
@@ -90,7 +93,7 @@ def _all_of(process: subprocess.Popen[bytes]) -> bytes | None:
 
 
 def _ended(path: Path, status: int, limits: Limits) -> DrawingError:
-    """Return the error for a process that ended without an answer."""
+    """Return the error for a process that ended without a result."""
     if -status == getattr(signal, "SIGXCPU", 0):
         return _too_long(path, limits.processor)
     most = limits.memory // 1024**2

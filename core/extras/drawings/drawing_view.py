@@ -1,4 +1,4 @@
-"""How a drawing lies on the lathe: which line is the axis, which end the face, where Z zero is."""
+"""Placement of a drawing on the lathe: axis, face end and Z zero."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ from core.extras.drawings.drawing import Drawing, DrawingError, Drawn
 from core.geometry.lines_and_arcs import Arc, Element, Line, Point
 from core.message import Message
 
-_SAME = 0.01  # units: centre lines nearer than this are one
+_SAME = 0.01  # units; center lines nearer than this are treated as one
 _SQUARE = 1e-3  # rad
-_MEETS = 1e-3  # of the drawing's width: ends nearer than this meet
+_MEETS = 1e-3  # fraction of the drawing's width within which ends meet
 
 
 class Front(StrEnum):
-    """Which end of the axis, as drawn, is the face."""
+    """End of the drawn axis at which the face is."""
 
     RIGHT = "RIGHT"
     LEFT = "LEFT"
 
 
 class Zero(StrEnum):
-    """Where Z zero is."""
+    """Position of Z zero."""
 
     FACE = "FACE"
     BACK = "BACK"
@@ -34,14 +34,14 @@ class Zero(StrEnum):
 
 
 class Side(StrEnum):
-    """Which side of the metal is the contour."""
+    """Side of the material that is the contour."""
 
     OUTSIDE = "OUTSIDE"
     INSIDE = "BORE"
 
 
 class Axis(NamedTuple):
-    """A point of the axis and its direction in the drawing, (y, x), and what it is called."""
+    """An axis in the drawing: its name, one point and the direction, as (y, x)."""
 
     name: str
     at: Point
@@ -50,7 +50,11 @@ class Axis(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """``unit``: mm of one unit of the drawing; ``shift``: Z of what ``zero`` names, mm."""
+    """Placement of a drawing on the lathe.
+
+    ``unit`` is mm per drawing unit, ``shift`` the Z of the point named by ``zero`` in mm, and ``gap`` the
+    widest gap between ends that are joined, in mm.
+    """
 
     axis: Axis
     unit: float
@@ -60,11 +64,11 @@ class View:
     gap: float = GAP
 
 
-# --- the axis
+# --- Axis
 
 
 def axes(drawing: Drawing, layer: str = "") -> list[Axis]:
-    """Lines that may be the axis, the likeliest first."""
+    """Return the lines that may be the axis, the most likely first."""
     there = [each for each in drawing.on(layer) if not each.centre] or list(drawing.on(layer))
     if not there:
         return []
@@ -88,7 +92,7 @@ def axes(drawing: Drawing, layer: str = "") -> list[Axis]:
 
 
 def _centre_lines(drawing: Drawing) -> list[Axis]:
-    """Those that their line type or layer calls so, the longest first, lying before upright."""
+    """Return the center lines by line type or layer, the longest first and horizontal before vertical."""
     lines = [each.element for each in drawing.drawn if each.centre and isinstance(each.element, Line)]
     lines.sort(key=lambda line: (abs(line.start_direction[0]) > 0.5, -line.length))
     found: list[Axis] = []
@@ -100,7 +104,7 @@ def _centre_lines(drawing: Drawing) -> list[Axis]:
 
 
 def _axis(name: str, line: Line) -> Axis:
-    """A line as an axis: to the right, or upwards."""
+    """Return a line as an axis, pointing to the right or upward."""
     dy, dx = line.start_direction
     turn = -1.0 if dx < -_SQUARE or (abs(dx) <= _SQUARE and dy < 0.0) else 1.0
     return Axis(name, line.start, (turn * dy, turn * dx))
@@ -113,7 +117,7 @@ def _same(a: Axis, b: Axis) -> bool:
 
 
 def _lowest(there: Sequence[Drawn], low: float, wide: float) -> float | None:
-    """Y of the lowest line, where one runs along most of the drawing and closes it: others meet both ends."""
+    """Return y of the lowest line if it closes most of the drawing and other lines meet both its ends."""
     for each in there:
         e = each.element
         if isinstance(e, Line) and max(e.start[0], e.end[0]) <= low and abs(e.end[1] - e.start[1]) > wide / 2:
@@ -128,7 +132,7 @@ def _met(end: Point, others: Iterable[Element], wide: float) -> bool:
 
 
 def line_axis(drawing: Drawing, number: int) -> Axis:
-    """The line of this number, from 1, as the axis. Raises DrawingError where there is no such line."""
+    """Return the line with this number, counted from 1, as an axis. Raises DrawingError."""
     if not 1 <= number <= len(drawing.drawn):
         raise DrawingError(
             Message(
@@ -154,7 +158,10 @@ def line_axis(drawing: Drawing, number: int) -> Axis:
 
 
 def axis_named(drawing: Drawing, name: str, layer: str = "") -> Axis:
-    """The axis of this name, or the likeliest for none. Raises DrawingError with those that there are."""
+    """Return the axis of this name, or the most likely axis if the name is empty.
+
+    Raises DrawingError with the available axes if the name is unknown.
+    """
     known = axes(drawing, layer)
     if not name and known:
         return known[0]
@@ -175,11 +182,14 @@ def axis_named(drawing: Drawing, name: str, layer: str = "") -> Axis:
     return found
 
 
-# --- on the lathe
+# --- Placement on the lathe
 
 
 def on_lathe(elements: Iterable[Element], view: View) -> Iterator[Element]:
-    """Elements of the drawing as (r, z) from its axis, mm; Z from the foot of the drawing's origin."""
+    """Yield the elements of the drawing as (r, z) in mm.
+
+    Z is measured from the drawing origin, projected onto the axis.
+    """
     turn = 1.0 if view.front is Front.RIGHT else -1.0
 
     def placed(p: Point) -> Point:
@@ -196,9 +206,9 @@ def on_lathe(elements: Iterable[Element], view: View) -> Iterator[Element]:
 
 
 def contours(drawing: Drawing, view: View, layer: str = "") -> list[Net]:
-    """What hangs together on the side of the axis where the part is drawn; Z as ``on_lathe`` has it.
+    """Return the groups of connected elements on the side of the axis where the part is drawn.
 
-    Raises DrawingError for more lines than the limit of work allows.
+    Z is as in ``on_lathe``. Raises DrawingError if the work limit is exceeded.
     """
     there = [each for each in drawing.on(layer) if not each.centre] or list(drawing.on(layer))
     placed = list(on_lathe((each.element for each in there), view))
@@ -218,9 +228,9 @@ def _touches(net: Net, gap: float) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class Profile:
-    """A side of the contour from the face to the chuck, (r, z), mm; ``closed``: the widest gap in it.
+    """One side of the contour from the face to the chuck, as (r, z) in mm.
 
-    ``front`` and ``back``: the ends of the part along Z.
+    ``closed`` is the widest gap that was closed. ``front`` and ``back`` are the ends of the part along Z.
     """
 
     elements: tuple[Element, ...]
@@ -231,7 +241,7 @@ class Profile:
 
 
 def profile(drawing: Drawing, view: View, net: Net, side: Side = Side.OUTSIDE) -> Profile:
-    """The chosen side of a contour, with Z zero where the view has it. Raises DrawingError."""
+    """Return the chosen side of a contour with Z zero as in the view. Raises DrawingError."""
     try:
         walked = inner_side(net, view.gap) if side is Side.INSIDE else outer_side(net, view.gap)
     except DrawingError as error:
@@ -245,7 +255,7 @@ def profile(drawing: Drawing, view: View, net: Net, side: Side = Side.OUTSIDE) -
 
 
 def _along(each: Element, far: float) -> Element:
-    """The element moved along Z."""
+    """Return the element moved along Z by ``far`` mm."""
     points = [(p[0], p[1] + far) for p in (each.start, each.end)]
     if isinstance(each, Arc):
         return Arc(points[0], points[1], (each.centre[0], each.centre[1] + far), each.clockwise)

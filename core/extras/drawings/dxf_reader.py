@@ -1,4 +1,4 @@
-"""DXF drawings: lines, arcs, polylines, splines and ellipses of the model space, blocks taken apart."""
+"""Reader of DXF drawings: lines, arcs, polylines, splines and ellipses of model space and of blocks."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ _UNITS = {1: 25.4, 2: 304.8, 4: 1.0, 5: 10.0, 6: 1000.0, 8: 25.4e-6, 9: 0.0254, 
 """mm, by $INSUNITS."""
 _CENTRE = ("CENT", "CENTRE", "AXIS", "MITTE", "MITTEL", "ACHS", "EJE", "AXE", "CHAIN", "DASHDOT", "ISO04")
 _SOLID = {"3DFACE", "3DSOLID", "MESH", "BODY", "SURFACE", "REVOLVEDSURFACE", "EXTRUDEDSURFACE", "POLYMESH"}
-_FLAT = 1e-6  # units: what lies off the plane by less lies in it
-_DEEPEST = 16  # blocks within blocks
+_FLAT = 1e-6  # units; largest distance from the drawing plane
+_DEEPEST = 16  # largest nesting depth of blocks
 
 Reader = Callable[[Any, float], Iterator[Element]]
 """Of an entity, and how near arcs shall come to a curve."""
@@ -55,12 +55,12 @@ def _document(path: Path, data: bytes) -> Document:
 
     if data.startswith(b"AC10"):
         raise DrawingError(Message("{path} is a DWG drawing: save it as DXF.", path=path.name), "dwg")
-    logging.getLogger("ezdxf").setLevel(logging.CRITICAL + 1)  # its words mean nothing to an operator
+    logging.getLogger("ezdxf").setLevel(logging.CRITICAL + 1)  # its messages mean nothing to an operator
     return readfile(path)
 
 
 class _NotFlatError(ValueError):
-    """An entity is not in the plane of the drawing."""
+    """An entity that is not in the plane of the drawing."""
 
 
 def _three_dimensional(name: str) -> DrawingError:
@@ -83,7 +83,7 @@ def _nothing(name: str, left_out: Counter[str]) -> DrawingError:
 
 
 def _content(document: Document, block: str) -> Content:
-    """Return what a block inserts, "" for the model space; its own entities count within blocks alone."""
+    """Return the content of a block, or of model space for ""; own entities count only for blocks."""
     entities: list[Any] = list(document.blocks.get(block) or ()) if block else list(document.modelspace())
     own = 1 + len(entities) if block else 0
     inserts = [each for each in entities if each.dxftype() == "INSERT"]
@@ -97,7 +97,7 @@ def _drawn(document: Document, near: float, left_out: Counter[str], name: str) -
     }
     for entity in _taken_apart(document.modelspace(), name, 0):
         read = _READERS.get(entity.dxftype())
-        if read is None and not entity.dxf.is_supported("layer"):  # a kind that no drawing program knows
+        if read is None and not entity.dxf.is_supported("layer"):  # an unknown kind of entity
             left_out[entity.dxftype()] += 1
             continue
         layer = entity.dxf.get("layer", "0")
@@ -128,12 +128,15 @@ def _read(read: Reader, entity: Any, near: float, name: str) -> Iterator[Element
 
 
 def _centre(layer: str, linetype: str) -> bool:
-    """Whether the name of a layer or of a line type says: a centre line."""
+    """Return whether the name of a layer or line type means a center line."""
     return any(word in linetype.upper() or word in layer.upper() for word in _CENTRE)
 
 
 def _taken_apart(entities: Iterable[Any], name: str, depth: int) -> Iterator[Any]:
-    """Entities, those of blocks where these are inserted; what has dimensions or texts stays whole."""
+    """Yield the entities, with block references replaced by their entities.
+
+    Dimensions and texts remain whole. Raises DrawingError if blocks are nested too deeply.
+    """
     if depth > _DEEPEST:
         raise DrawingError(
             Message(
@@ -152,11 +155,14 @@ def _taken_apart(entities: Iterable[Any], name: str, depth: int) -> Iterator[Any
             yield from _taken_apart(entity.virtual_entities(), name, depth + 1)
 
 
-# --- one kind of entity after the other; points are (x, y)
+# --- Readers for the kinds of entities; points are (x, y)
 
 
 def _facing(entity: Any) -> float:
-    """1: drawn as it is seen, -1: mirrored; else it does not lie in the plane of the drawing."""
+    """Return 1 if an entity is drawn as seen, or -1 if it is mirrored.
+
+    Raises _NotFlatError if the entity is not in the plane of the drawing.
+    """
     x, y, z = entity.dxf.get("extrusion", (0.0, 0.0, 1.0))
     if abs(x) > _FLAT or abs(y) > _FLAT:
         raise _NotFlatError

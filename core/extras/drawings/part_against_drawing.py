@@ -1,4 +1,4 @@
-"""The proved part held against its drawing: where metal stays, and where it is cut too deep."""
+"""Comparison of the proved part with its drawing: material that remains and cuts that are too deep."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from core.geometry.lines_and_arcs import Arc, Element
 TOLERANCE = 0.02
 """mm of a radius; less is what the steps of the control and of the drawing come to."""
 _STEP = 0.01  # mm along Z
-_WALL = 0.02  # mm by which a shoulder may stand elsewhere
+_WALL = 0.02  # mm, permitted shift of a shoulder
 _CHORD = 0.0005  # mm
 
 FloatArray = npt.NDArray[np.float64]
@@ -23,7 +23,10 @@ FloatArray = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Deviation:
-    """From Z to Z, mm; ``most``: the greatest difference of the radius, more than 0 where metal stays."""
+    """A deviation between two Z positions in mm.
+
+    ``most`` is the largest difference of the radius in mm, positive if material remains.
+    """
 
     back: float
     front: float
@@ -32,7 +35,11 @@ class Deviation:
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """``worst``: the greatest difference in mm beside the deviations; ``found`` from the face on."""
+    """Result of a comparison.
+
+    ``worst`` is the largest difference within the tolerance in mm. ``found`` has the deviations from the face
+    on.
+    """
 
     worst: float
     found: tuple[Deviation, ...]
@@ -41,7 +48,7 @@ class Comparison:
 def compared(
     profile: Profile, part: Sequence[tuple[float, float]], tolerance: float = TOLERANCE
 ) -> Comparison:
-    """A side of the part, points (z, r) from the face on, held against the drawing's."""
+    """Compare one side of the part, points (z, r) from the face on, with the profile of the drawing."""
     count = max(2, math.ceil((profile.front - profile.back) / _STEP))
     z = np.linspace(profile.back + _WALL, profile.front - _WALL, count)
     side = -1.0 if profile.side is Side.INSIDE else 1.0
@@ -55,7 +62,10 @@ def compared(
 
 
 def _drawn(elements: Iterable[Element], z: FloatArray, side: float) -> tuple[FloatArray, FloatArray]:
-    """Least and greatest radius of the outermost line about each Z: a shoulder has both."""
+    """Return the smallest and largest radius of the outermost line around each Z.
+
+    At a shoulder these two radii differ.
+    """
     fine = np.arange(z[0] - _WALL, z[-1] + _WALL + _STEP / 2.0, _STEP / 2.0)
     outer = np.full(fine.shape, np.nan)
     for each in elements:
@@ -74,7 +84,7 @@ def _drawn(elements: Iterable[Element], z: FloatArray, side: float) -> tuple[Flo
 
 
 def points_of(each: Element) -> list[tuple[float, float]]:
-    """The element as a polyline of (r, z), a chord nowhere further off than half a thousandth."""
+    """Return an element as a polyline of (r, z) with a chord error of at most 0.0005 mm."""
     if not isinstance(each, Arc):
         return [each.start, each.end]
     most = 2.0 * math.acos(max(0.0, 1.0 - _CHORD / each.radius)) if each.radius > _CHORD else math.pi / 2.0
@@ -83,13 +93,13 @@ def points_of(each: Element) -> list[tuple[float, float]]:
 
 
 def _made(part: Sequence[tuple[float, float]], z: FloatArray, side: float) -> FloatArray:
-    """The outermost radius of the part's polyline at each Z."""
+    """Return the outermost radius of the part's polyline at each Z."""
     points = np.array(part, dtype=np.float64)[::-1]
     return np.interp(z, points[:, 0], side * points[:, 1], left=np.nan, right=np.nan)
 
 
 def _spans(z: FloatArray, off: FloatArray, tolerance: float) -> Iterable[Deviation]:
-    """Neighbouring places that are off to the same side as one, from the face on."""
+    """Yield the adjacent deviations of the same sign, joined, from the face on."""
     kind = np.where(off > tolerance, 1, np.where(off < -tolerance, -1, 0))
     edges = np.flatnonzero(np.diff(kind)) + 1
     for part in reversed(np.split(np.arange(len(z)), edges)):

@@ -1,4 +1,4 @@
-"""A program from a drawing: what is proposed for it, what it leaves of the drawing, and what it needs."""
+"""A program made from a drawing: proposed fields, remaining material and required offsets."""
 
 from __future__ import annotations
 
@@ -15,13 +15,16 @@ from core.language.source import Dialect
 from core.message import Message
 from core.part.tool_shape import ToolKind, ToolShape
 
-_CLOSED = 1e-4  # mm: a narrower gap was none
+_CLOSED = 1e-4  # mm; narrower gaps are not reported
 
 
 def in_words(
     made: ProfileProgram, comparison: Comparison | None, profile: Profile, *, metric: bool
 ) -> Iterator[str]:
-    """One sentence for each, lengths in the unit of the program."""
+    """Yield sentences that describe the program and its differences from the drawing.
+
+    Lengths are in the unit of the program.
+    """
     mm, unit = (1.0, "mm") if metric else (25.4, "in")
     places = 3 if metric else 4
     if made.nose is not None:
@@ -97,12 +100,12 @@ def _deviation(found: Deviation, nose: float, mm: float, unit: str, places: int)
 
 
 def is_corner(found: Deviation, nose: float) -> bool:
-    """Whether no more stays than a nose leaves in a square corner."""
+    """Return whether a deviation is only the material that the tool nose leaves in a square corner."""
     return 0.0 < found.most <= nose and found.front - found.back <= nose
 
 
 def in_json(made: ProfileProgram, comparison: Comparison | None, profile: Profile) -> dict[str, Any]:
-    """The same in mm."""
+    """Return the description of the program and its deviations for JSON, in mm."""
     return {
         "side": str(profile.side),
         "closed_gap_mm": round(profile.closed, 5),
@@ -119,7 +122,7 @@ def in_json(made: ProfileProgram, comparison: Comparison | None, profile: Profil
 
 
 def _nose_in_json(made: ProfileProgram) -> dict[str, Any]:
-    """What G41 needs, where the language keeps it."""
+    """Return the offset that G41 requires, as a secondary offset or a cutting edge."""
     nose = made.nose
     if nose is not None and nose.quadrant:
         edge = {"tool": int(made.tool), "edge": nose.number, "r": nose.r, "quadrant": nose.quadrant}
@@ -129,10 +132,10 @@ def _nose_in_json(made: ProfileProgram) -> dict[str, Any]:
     return {"secondary_offset": {"number": nose.number, "x": round(nose.x, 6), "z": nose.z, "r": nose.r}}
 
 
-_BAR = {True: 1.0, False: 0.0625}  # by metric: bars come in these steps
+_BAR = {True: 1.0, False: 0.0625}  # bar diameters come in these steps, by metric
 _FACE = {True: 0.5, False: 0.02}
-_SKIN = 0.2  # mm of a diameter that is taken off a bar at least
-_EDGE = 1.0  # the cutting edge that a tool of SINUMERIK has first
+_SKIN = 0.2  # mm of diameter, smallest amount to be cut from a bar
+_EDGE = 1.0  # first cutting edge of a tool in SINUMERIK
 
 
 def proposed_fields(
@@ -143,7 +146,7 @@ def proposed_fields(
     metric: bool,
     dialect: Dialect = Dialect.OMNITURN,
 ) -> dict[str, Value]:
-    """The fields of ``profile_program``: what is given, and what is proposed for the rest."""
+    """Return the fields for ``profile_program``: the given values, with proposals for the others."""
     inside = profile.side is Side.INSIDE
     fields: dict[str, Value] = {"UNIT": "METRIC" if metric else "INCH", **given}
     bar = fields.setdefault("BAR", proposed_bar(profile, metric=metric))
@@ -163,13 +166,13 @@ def proposed_fields(
 
 
 def proposed_bar(profile: Profile, *, metric: bool) -> float:
-    """The next bar, in the unit of the program, that the contour lies in."""
+    """Return the smallest standard bar diameter that contains the contour, in the program's unit."""
     across = greatest_diameter(profile) * (1.5 if profile.side is Side.INSIDE else 1.0) + _SKIN
     step = _BAR[metric]
     return round(step * math.ceil(across / (1.0 if metric else 25.4) / step - 1e-6), 4)
 
 
 def first_tool(shapes: Mapping[int, ToolShape], kind: ToolKind, *, inside: bool) -> int:
-    """The first tool of a kind by the sheets; 0: none."""
+    """Return the first tool of a kind according to the tool data, or 0."""
     fits = (n for n, each in sorted(shapes.items()) if each.kind is kind and each.internal is inside)
     return next((n for n in fits if not shapes[n].behind), 0)

@@ -1,4 +1,4 @@
-"""The program of a profile: head, face, turning by G75 and along the contour, grooves; each piece a shape."""
+"""Program for a profile, as a sequence of shapes: head, face, turning with G75, and grooves."""
 
 from __future__ import annotations
 
@@ -30,12 +30,12 @@ from core.part.tool_shape import ToolShape
 from core.tool_edges import TIP_DIRECTIONS
 
 _SAME = 1e-3  # mm
-_ROOM = 0.05  # mm that stays for the finish where a nose cuts deepest in a fall
+_ROOM = 0.05  # mm, least finishing allowance at the deepest point of a falling contour
 
 
 @dataclass(frozen=True, slots=True)
 class Left:
-    """What no tool of the program cuts: from Z to Z, mm, and why."""
+    """A range that no tool of the program cuts: from Z to Z in mm, and the reason."""
 
     back: float
     front: float
@@ -43,9 +43,9 @@ class Left:
 
 
 class NoseOffset(NamedTuple):
-    """What G41 and G42 of the program reckon with: mm, X a radius.
+    """Offset that G41 and G42 of the program use, in mm, X as a radius.
 
-    ``number`` is that of a secondary offset, where the tool has a ``quadrant`` that of its cutting edge.
+    ``number`` is a secondary offset, or a cutting edge if ``quadrant`` is set.
     """
 
     number: int
@@ -57,7 +57,7 @@ class NoseOffset(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class ProfileProgram:
-    """The shapes, each with what is in force before it, their lines, and what they leave."""
+    """The shapes of a program with the settings in force before each, its lines, and the uncut ranges."""
 
     shapes: tuple[tuple[Filled, Setting], ...]
     lines: tuple[str, ...]
@@ -65,17 +65,17 @@ class ProfileProgram:
     contour: TurningContour
     refusals: tuple[Refusal, ...] = ()
     nose: NoseOffset | None = None
-    nose_radius: float = 0.0  # mm, of the turning tool
+    nose_radius: float = 0.0  # mm, nose radius of the turning tool
     tool: float = 0.0
 
 
 def profile_program(
     profile: Profile, typed: Values, lines: Sequence[str], setting: Setting
 ) -> ProfileProgram:
-    """The shapes for a profile behind these ``lines``; without any it begins with a head.
+    """Make the shapes for a profile, to follow ``lines``; without lines the program begins with a head.
 
-    ``typed`` are fields of HEAD, FACE, TURN and GROOVE by their words: T and BLADE (the tools), STOCK, FROM,
-    HOLE, ROUGH, LEAVE, FEED, RFEED, RPM, SURF, COMP, WIDE, MATERIAL. The language is that of ``setting``.
+    ``typed`` has fields of HEAD, FACE, TURN and GROOVE by name: T and BLADE (the tools), STOCK, FROM, HOLE,
+    ROUGH, LEAVE, FEED, RFEED, RPM, SURF, COMP, WIDE, MATERIAL. ``setting`` specifies the program language.
     Raises DrawingError.
     """
     writer = _Writer(list(lines), setting)
@@ -113,7 +113,7 @@ def profile_program(
 
 
 class _Writer:
-    """Shapes one behind the other, each in what the text before it leaves in force."""
+    """Writer of consecutive shapes, each with the settings in force after the previous lines."""
 
     def __init__(self, lines: list[str], setting: Setting) -> None:
         self.lines, self.shapes = lines, list[tuple[Filled, Setting]]()
@@ -122,14 +122,14 @@ class _Writer:
 
     @property
     def now(self) -> Setting:
-        """What is in force behind the lines so far."""
+        """Settings in force after the lines written so far."""
         return setting_at(self.lines, len(self.lines), self._new.shop, self._new)
 
     def _shape(self, key: str) -> Shape:
         return SHAPES_OF[self._new.dialect][key]
 
     def add(self, key: str, typed: Values, rows: tuple[Row, ...] = ()) -> None:
-        """One more shape, by the key of its form; of one that refuses something nothing is written."""
+        """Add a shape by the key of its form. A shape with errors is not written."""
         now = self.now
         one = filled(self._shape(key), typed, now, rows)
         refused = one.refusals(now)
@@ -142,7 +142,7 @@ class _Writer:
         self.lines += one.lines(now)
 
     def groove(self, typed: Values | str, groove: Groove) -> Iterator[Left]:
-        """A groove, or why it stays."""
+        """Add a groove, or yield the range with the reason why it cannot be cut."""
         span = groove.back[1], groove.front[1]
         if isinstance(typed, str):
             yield Left(*span, typed)
@@ -180,9 +180,12 @@ def _turn(profile: Profile, contour: TurningContour, typed: Values, setting: Set
 
 
 def _left_for_finish(contour: TurningContour, typed: Values, setting: Setting) -> dict[str, Value]:
-    """G75 is not compensated: in a fall of angle a the nose R cuts R (1 + sin a - cos a) too deep."""
+    """Return the finishing allowance that the nose radius requires, if it is more than the usual one.
+
+    G75 has no nose compensation. In a fall of angle a, the nose R cuts R (1 + sin a - cos a) too deep.
+    """
     if setting.dialect is Dialect.SINUMERIK:
-        return {}  # CYCLE95 reckons with the nose
+        return {}  # CYCLE95 compensates the nose radius
     tool, a = setting.tool(_number(typed, "T")), contour.steepest
     deep = nose_of(tool) * (1.0 + math.sin(a) - math.cos(a)) if a > 0.0 else 0.0
     usual = 0.25 if setting.metric else 0.01
@@ -194,9 +197,10 @@ def _left_for_finish(contour: TurningContour, typed: Values, setting: Setting) -
 
 
 def _check_tip(tool: ToolShape | None, number: float, setting: Setting) -> None:
-    """Refuse a nose without a tip quadrant: it would be taken to be centred on the control point.
+    """Raise DrawingError if the tool has a nose radius but no tip quadrant.
 
-    The part would come out too small by the nose radius. Raises DrawingError.
+    The nose would be assumed to be centered on the control point, and the part would be too small by its
+    radius.
     """
     if tool is not None and not tool.tip and (nose := nose_of(tool)):
         raise DrawingError(
@@ -211,16 +215,16 @@ def _check_tip(tool: ToolShape | None, number: float, setting: Setting) -> None:
 
 
 def nose_of(tool: ToolShape | None) -> float:
-    """The nose radius, mm, that the sheet of a tool states, itself or by the code of its insert."""
+    """Return the nose radius in mm from the tool data, stated directly or by the insert code."""
     if tool is None or tool.nose_radius or not tool.insert:
         return tool.nose_radius if tool is not None else 0.0
     return decoded(tool.insert).nose_radius
 
 
 def nose_offset(tool: ToolShape | None, number: int, dialect: Dialect) -> NoseOffset | None:
-    """What the secondary offset holds, so that the tip that was touched off cuts on size; None: not asked.
+    """Return the offset with which a touched-off tip cuts to size; None if no compensation is used.
 
-    In SINUMERIK the cutting edge holds R and the tip quadrant beside the tip.
+    In SINUMERIK the cutting edge also contains the nose radius and the tip quadrant.
     """
     if not number or tool is None:
         return None
@@ -232,14 +236,14 @@ def nose_offset(tool: ToolShape | None, number: int, dialect: Dialect) -> NoseOf
 
 
 def past_end(tool: ToolShape | None) -> float:
-    """How far a contour goes on behind the part, mm: its nose would leave a fillet at the end."""
+    """Return how far the contour must extend past the part in mm, because the nose leaves a fillet there."""
     return math.ceil(10.0 * (nose_of(tool) + _ROOM)) / 10.0
 
 
 def _before_fall(elements: Sequence[Element], *, outside: bool) -> Iterator[Element]:
-    """A contour that falls from the face, begun by a way up the face from its lowest point.
+    """Yield the contour, starting with a move up the face if the contour falls from the face.
 
-    Roughing refuses one that falls at once, as its way back crosses it.
+    Roughing rejects a contour that falls at once, because its return path would cross the contour.
     """
     side = 1.0 if outside else -1.0
     r, z = elements[0].start
@@ -250,9 +254,10 @@ def _before_fall(elements: Sequence[Element], *, outside: bool) -> Iterator[Elem
 
 
 def _past(elements: Sequence[Element], far: float, nose: float) -> Iterator[Element]:
-    """With a line along Z behind the end; a wall ends where it stands.
+    """Yield the contour, extended along Z by ``far`` unless it ends in a wall.
 
-    Behind a fall of angle a the nose R leaves it R tan (a / 2) later, on which compensation needs a way.
+    After a fall of angle a, the nose R leaves it later by R tan (a / 2), and the compensation needs this
+    travel.
     """
     yield from elements
     (r, z), (dr, dz) = elements[-1].end, elements[-1].end_direction
@@ -263,7 +268,7 @@ def _past(elements: Sequence[Element], far: float, nose: float) -> Iterator[Elem
 
 
 def _down_to(elements: Iterable[Element], r: float) -> Iterator[Element]:
-    """The wall of a bore as far as it is wider than the hole that was drilled."""
+    """Yield the wall of a bore as far as it is wider than the drilled hole."""
     for each in elements:
         if each.end[0] >= r - _SAME:
             yield each
@@ -275,11 +280,11 @@ def _down_to(elements: Iterable[Element], r: float) -> Iterator[Element]:
         return
 
 
-# --- rows of a contour
+# --- Rows of a contour
 
 
 def rows_of(elements: Iterable[Element], mm: float) -> Iterator[Row]:
-    """The table of points of a contour, in a unit of so many mm."""
+    """Yield the rows of a contour's point table; ``mm`` is the size of the program's unit."""
     first = True
     for each in elements:
         if first:
@@ -295,11 +300,11 @@ def _row(point: tuple[float, float], mm: float, arc: float) -> Row:
     return Row(round(2.0 * point[0] / mm, 5) + 0.0, round(point[1] / mm, 5) + 0.0, arc=round(arc, 5))
 
 
-# --- grooves
+# --- Grooves
 
 
 def _way_in(elements: Iterable[Element], groove: Groove, side: float) -> float:
-    """The radius that a blade has to pass on its way from the face, mm; 0 where nothing is in the way."""
+    """Return the radius that the blade must clear on its path from the face, in mm, or 0."""
     before = [p[0] for each in elements for p in (each.start, each.end) if p[1] > groove.front[1] - _SAME]
     widest = side * max((side * r for r in before), default=0.0)
     return widest if before and side * (widest - groove.front[0]) > _SAME else 0.0
@@ -308,7 +313,10 @@ def _way_in(elements: Iterable[Element], groove: Groove, side: float) -> float:
 def _groove(
     groove: Groove, typed: Values, setting: Setting, over: float, *, outside: bool
 ) -> dict[str, Value] | str:
-    """The fields of a groove shape; of walls that are curved the widest square groove within."""
+    """Return the fields of a groove shape, or the reason why the groove cannot be cut.
+
+    For curved walls, the groove is the widest square groove inside them.
+    """
     mm, blade = setting.mm, _blade(typed, setting)
     if blade is None:
         number = _number(typed, "BLADE")
@@ -343,7 +351,10 @@ def _groove(
 
 
 class _Leaning(NamedTuple):
-    """A groove of two straight walls and a bottom: Z of both edges and r of the bottom, mm; degrees."""
+    """A groove with two straight sloped walls.
+
+    Z of both edges and r of the bottom are in mm, and the slopes in degrees.
+    """
 
     front: float
     back: float
@@ -354,7 +365,10 @@ class _Leaning(NamedTuple):
 
 
 def _leaning(groove: Groove, wide: float) -> _Leaning | None:
-    """None where the walls are square or no lines, or the bottom is narrower than the blade."""
+    """Return a groove with sloped walls, or None.
+
+    The result is None if the walls are square or curved, or if the bottom is narrower than the blade.
+    """
     if len(groove.elements) != 3 or not all(isinstance(each, Line) for each in groove.elements):
         return None
     down, bottom, up = groove.elements
@@ -368,7 +382,7 @@ def _leaning(groove: Groove, wide: float) -> _Leaning | None:
 
 
 def _blade(typed: Values, setting: Setting) -> float | None:
-    """Its width in the unit of the program."""
+    """Return the width of the blade in the program's unit, or None."""
     if not _number(typed, "BLADE"):
         return None
     shape = setting.tool(_number(typed, "BLADE"))
@@ -377,7 +391,7 @@ def _blade(typed: Values, setting: Setting) -> float | None:
 
 
 def _square(groove: Groove, wide: float, side: float) -> tuple[float, float, float, float] | None:
-    """Z of both walls, r of the bottom and the chamfer at both edges; None where no blade goes in."""
+    """Return Z of both walls, r of the bottom and the edge chamfer; None if the blade does not fit."""
     inner = list(groove.elements)
     edge = _chamfer(inner, side)
     if edge:
@@ -393,7 +407,7 @@ def _square(groove: Groove, wide: float, side: float) -> tuple[float, float, flo
 
 
 def _chamfer(inner: Sequence[Element], side: float) -> float:
-    """The chamfer at 45 degrees that both edges have; 0 where they have none, or different ones."""
+    """Return the size of equal 45-degree chamfers on both edges, or 0."""
     sizes = []
     for each in (inner[0], inner[-1]):
         dr, dz = abs(each.end[0] - each.start[0]), abs(each.end[1] - each.start[1])
@@ -411,7 +425,7 @@ def _flat(each: Element) -> bool:
 
 
 def _one_plunge(groove: Groove, wide: float, side: float) -> tuple[float, float, float, float] | None:
-    """A blade's width about the deepest place, as deep as its corners allow."""
+    """Return one plunge at the deepest point, as deep as the corners of the blade allow; or None."""
     front, back = groove.front[1], groove.back[1]
     if front - back < wide - _SAME:
         return None
@@ -425,7 +439,7 @@ def _one_plunge(groove: Groove, wide: float, side: float) -> tuple[float, float,
 
 
 def _radii(elements: Iterable[Element], low: float, high: float) -> Iterator[float]:
-    """Radii of a contour at the ends of a span and at its own points within."""
+    """Yield the radii of a contour at the ends of a range and at its points inside."""
     for each in elements:
         walls = (Line((-1e5, z), (1e5, z)) for z in (low, high))
         for point in (p for wall in walls for p in intersections(wall, each)):
@@ -436,5 +450,5 @@ def _radii(elements: Iterable[Element], low: float, high: float) -> Iterator[flo
 
 
 def greatest_diameter(profile: Profile) -> float:
-    """mm."""
+    """Return the largest diameter of a profile in mm."""
     return 2.0 * max(each.box[1] for each in profile.elements)

@@ -1,4 +1,4 @@
-"""What the readers of drawings share: how many entities blocks come to, and curves as arcs to a tolerance."""
+"""Functions shared by the drawing readers: expansion limits, and conversion of curves to arcs."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from core.extras.drawings.drawing import MOST_ELEMENTS, DrawingError, bulged, li
 from core.geometry.lines_and_arcs import Element, Point
 from core.message import Message
 
-SAMPLES = 7  # places of a piece at which it is held against the curve
-_DEEPEST = 14  # halvings
+SAMPLES = 7  # points of a piece at which it is compared with the curve
+_DEEPEST = 14  # largest number of successive halvings
 STRAIGHT = 1e-6
 
 
 class Place(NamedTuple):
-    """A point of a curve and the direction in which it goes on, of any length."""
+    """A point of a curve and the tangent direction there, of any length."""
 
     at: Point
     way: Point
@@ -27,10 +27,14 @@ Curve = Callable[[float], Place]
 
 
 def arcs_of(curve: Curve, tolerance: float, pieces: int = 1) -> Iterator[Element]:
-    """Arcs that leave a curve without corners by no more than ``tolerance``; so many ``pieces`` at least."""
+    """Yield tangent arcs that deviate from a curve by at most ``tolerance``.
+
+    The curve is divided into at least ``pieces`` pieces.
+    """
     ends = curve(0.0).at, curve(0.5).at, curve(1.0).at
     if not all(math.isfinite(value) for point in ends for value in point):
-        yield from line(ends[0], (math.nan, math.nan))  # no halving makes a number of it
+        # halving cannot help, so the limits check rejects this line
+        yield from line(ends[0], (math.nan, math.nan))
         return
     for k in range(pieces):
         yield from _fitted(curve, k / pieces, (k + 1) / pieces, tolerance, 0)
@@ -58,7 +62,7 @@ def _between(begin: float, end: float) -> Iterator[float]:
 
 
 def _is_point(curve: Curve, begin: float, end: float, at: Point, tolerance: float) -> bool:
-    """Return whether a piece stays within the tolerance of its start: halving it would add nothing.
+    """Return whether a piece remains within the tolerance of its start, so that halving is useless.
 
     CAD programs write splines with coincident control points, whose spans have no length and no direction.
     """
@@ -71,7 +75,7 @@ def _unit(v: Point) -> Point | None:
 
 
 def _joint(a: Place, b: Place) -> Point | None:
-    """Where both arcs of a biarc meet, with equal distances along the tangents at its ends."""
+    """Return the meeting point of a biarc's arcs, with equal tangent lengths at both ends; or None."""
     one, other = _unit(a.way), _unit(b.way)
     if one is None or other is None:
         return None
@@ -98,14 +102,14 @@ def _joint(a: Place, b: Place) -> Point | None:
 
 
 def _bulge(at: Point, way: Point, to: Point) -> float:
-    """Of the arc that leaves ``at`` along ``way`` and ends in ``to``."""
+    """Return the bulge of an arc from its start, its direction there and its end."""
     dx, dy = to[0] - at[0], to[1] - at[1]
     half = math.atan2(way[0] * dy - way[1] * dx, way[0] * dx + way[1] * dy)
     return 0.0 if abs(half) < STRAIGHT else math.tan(half / 2.0)
 
 
 def _off(curve: Curve, begin: float, end: float, a: Place, joint: Point, b: Place) -> float:
-    """How far places of the curve lie from the nearer of both arcs."""
+    """Return the largest distance of points on the curve from the nearer of the two arcs."""
     first = a.at, joint, _bulge(a.at, a.way, joint)
     last = joint, b.at, -_bulge(b.at, (-b.way[0], -b.way[1]), joint)
     if max(abs(first[2]), abs(last[2])) > 1.0:
@@ -115,7 +119,7 @@ def _off(curve: Curve, begin: float, end: float, a: Place, joint: Point, b: Plac
 
 
 def _apart(p: Point, a: Point, b: Point, bulge: float) -> float:
-    """Distance of a point from an arc, or from a line, where its foot lies on it; else from its ends."""
+    """Return the distance of a point from an arc or line, or from its ends if the foot is outside."""
     chord = math.dist(a, b)
     if chord < 1e-12:
         return math.dist(p, a)
@@ -138,16 +142,16 @@ Key = TypeVar("Key", bound=Hashable)
 
 
 class Content(NamedTuple):
-    """A block or group: ``own`` entities, and ``inserted`` others, each so many times."""
+    """Content of a block or group: its own entities, and references to others with their counts."""
 
     own: int
     inserted: Sequence[tuple[int, Hashable]]
 
 
 def check_expansion(name: str, root: Key, content: Callable[[Key], Content], spare: int = 0) -> None:
-    """Refuse a file whose blocks would come to more than ``MOST_ELEMENTS`` entities, or contain themselves.
+    """Reject a file whose blocks expand to more than ``MOST_ELEMENTS`` entities or contain themselves.
 
-    ``spare`` entities are allowed besides: those that the file itself has. Raises DrawingError.
+    ``spare`` is an additional allowance for entities in the file itself. Raises DrawingError.
     """
     if _count(name, root, content) > MOST_ELEMENTS + spare:
         raise DrawingError(
@@ -162,7 +166,7 @@ def check_expansion(name: str, root: Key, content: Callable[[Key], Content], spa
 
 
 def _count(name: str, root: Key, content: Callable[[Key], Content]) -> int:
-    """Count depth first without recursion: a file may nest deeper than Python calls."""
+    """Count entities depth first without recursion, because a file may nest deeper than Python's stack."""
     known: dict[Hashable, int] = {}
     waiting: dict[Hashable, Content] = {}
     stack: list[Hashable] = [root]

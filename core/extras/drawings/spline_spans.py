@@ -1,7 +1,7 @@
-"""The spans of a spline between its knots, and those that two arcs follow, found for all spans at once.
+"""Spans of a spline between its knots, and the fit of two arcs to all spans at once.
 
-A spline in a drawing of 2 MB has tens of thousands of spans. Nearly all of them are so short that two arcs
-follow them. The fit is that of ``reader_parts.arcs_of``, which halves the other spans.
+A spline in a drawing of 2 MB has tens of thousands of spans. Nearly all are so short that two arcs fit them.
+The fit is that of ``reader_parts.arcs_of``, which halves the other spans.
 """
 
 from __future__ import annotations
@@ -19,21 +19,27 @@ from core.geometry.lines_and_arcs import Point
 Floats = npt.NDArray[np.float64]
 Bools = npt.NDArray[np.bool_]
 
-_SHORTEST = 1e-12  # of the parameter: equal knots
-_INSIDE = 1e-6  # of a span: directions are taken this far within, since a knot may be a corner
+_SHORTEST = 1e-12  # parameter difference below which knots are equal
+_INSIDE = 1e-6  # fraction of a span; directions are measured this far inside, because a knot may be a corner
 _TINY = 1e-12
-_AT_ONCE = 4096  # spans: bounds the memory
+_AT_ONCE = 4096  # spans calculated together, which limits the memory
 
 
 class Spans(NamedTuple):
-    """n spans: Bézier points ``control`` (n, degree+1, 3) as x·w, y·w, w, and parameter lengths (n,)."""
+    """The spans of a spline as homogeneous Bézier points and parameter lengths.
+
+    ``control`` (n, degree+1, 3) contains x·w, y·w and w. ``length`` has the shape (n,).
+    """
 
     control: Floats
     length: Floats
 
 
 class Biarc(NamedTuple):
-    """Two arcs from ``start`` by ``joint`` to ``end``, with the tangents of a quarter of their angles."""
+    """Two arcs from ``start`` through ``joint`` to ``end``.
+
+    ``bulges`` are the tangents of a quarter of their angles.
+    """
 
     start: Point
     joint: Point
@@ -44,10 +50,10 @@ class Biarc(NamedTuple):
 def spans_of(
     points: Iterable[Sequence[float]], weights: Iterable[float], knots: Iterable[float], degree: int
 ) -> Spans:
-    """Return the spans of a spline with these control points; without weights all of them are 1.
+    """Return the spans of a spline with these control points; empty ``weights`` means that all are 1.
 
     Each Bézier point is the polar form of the spline at the knots at both ends of its span. Raises ValueError
-    for knots at which the spline would be interrupted.
+    if the knots interrupt the spline.
     """
     control, knot = _homogeneous(points, weights), np.sort(np.array(list(knots), dtype=np.float64))
     at = np.arange(degree, len(control))
@@ -75,13 +81,13 @@ def _homogeneous(points: Iterable[Sequence[float]], weights: Iterable[float]) ->
 
 
 def curve_of(spans: Spans, number: int) -> Curve:
-    """Return one of the spans as a curve by a parameter from 0 to 1."""
+    """Return one span as a curve with a parameter from 0 to 1."""
     points: list[list[float]] = spans.control[number].tolist()
     length = float(spans.length[number])
     scale = (len(points) - 1) / length
 
     def pair(u: float) -> list[list[float]]:
-        """Return the last two weighted points of De Casteljau's construction at ``u``."""
+        """Return the last two weighted points of De Casteljau's algorithm at ``u``."""
         found = points
         while len(found) > 2:
             found = [[a + (b - a) * u for a, b in zip(p, q, strict=True)] for p, q in pairwise(found)]
@@ -101,11 +107,11 @@ def curve_of(spans: Spans, number: int) -> Curve:
     return place
 
 
-# --- two arcs for each span; points and directions are (n, 2)
+# --- Two arcs for each span. Points and directions are (n, 2).
 
 
 def biarcs(spans: Spans, tolerance: float) -> Iterator[Biarc | None]:
-    """Yield for each span the two arcs that leave it by no more than ``tolerance``, or None."""
+    """Yield for each span the two arcs that deviate from it by at most ``tolerance``, or None."""
     for first in range(0, len(spans.length), _AT_ONCE):
         part = slice(first, first + _AT_ONCE)
         with np.errstate(all="ignore"):
@@ -140,7 +146,7 @@ def _points(control: Floats, u: float) -> Floats:
 
 
 def _ends(spans: Spans, u: float) -> tuple[Floats, Floats]:
-    """Points at ``u`` and directions just within."""
+    """Return the points at ``u`` and the directions just inside the span."""
     held = min(max(u, _INSIDE), 1.0 - _INSIDE)
     pair = _levels(spans.control, held, 2)
     p, q = pair[:, 0], pair[:, 1]
@@ -150,7 +156,7 @@ def _ends(spans: Spans, u: float) -> tuple[Floats, Floats]:
 
 
 def _joints(a: Floats, way: Floats, b: Floats, end_way: Floats) -> tuple[Floats, Bools]:
-    """Where both arcs meet, as in ``reader_parts``, and whether there is such a place."""
+    """Return the points at which both arcs meet, and whether such a point exists (see ``reader_parts``)."""
     sizes = np.array([np.hypot(*way.T), np.hypot(*end_way.T)])
     one, other, v = way / sizes[0][:, None], end_way / sizes[1][:, None], b - a
     vt, vv = (v * (one + other)).sum(axis=1), (v * v).sum(axis=1)
@@ -164,14 +170,17 @@ def _joints(a: Floats, way: Floats, b: Floats, end_way: Floats) -> tuple[Floats,
 
 
 def _bulges(at: Floats, way: Floats, to: Floats) -> Floats:
-    """Of the arcs that leave ``at`` along ``way`` and end in ``to``."""
+    """Return the bulges of arcs from their starts, their directions there and their ends."""
     d = to - at
     half = np.arctan2(way[:, 0] * d[:, 1] - way[:, 1] * d[:, 0], (way * d).sum(axis=1))
     return np.where(np.abs(half) < STRAIGHT, 0.0, np.tan(0.5 * half))
 
 
 def _apart(p: Floats, a: Floats, b: Floats, bulge: Floats) -> Floats:
-    """Distance (n,) of each point from its arc or line, where its foot lies on it; else from its ends."""
+    """Return the distance (n,) of each point from its arc or line, or from its ends.
+
+    The distance from the ends is used if the foot of the point is outside the arc or line.
+    """
     d = b - a
     chord = np.hypot(*d.T)
     from_ends = np.minimum(np.hypot(*(p - a).T), np.hypot(*(p - b).T))

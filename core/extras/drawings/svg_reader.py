@@ -1,4 +1,4 @@
-"""SVG drawings: paths, lines, polylines, rectangles and circles, with their transforms; Y turned upwards."""
+"""Reader of SVG drawings: paths, lines, polylines, rectangles and circles, with transforms and Y upward."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from core.extras.drawings.reader_parts import Content, Place, arcs_of, check_exp
 from core.geometry.lines_and_arcs import Element, Point
 from core.message import Message
 
-_PIXELS = 96.0  # an inch, by CSS
+_PIXELS = 96.0  # pixels per inch in CSS
 _ROOT = re.compile(rb"<svg\b[^>]*>", re.IGNORECASE | re.DOTALL)
 _SIZE = re.compile(rb"\swidth\s*=\s*[\"']\s*[\d.]+(?:[eE][-+]?\d+)?\s*(mm|cm|in|pt|pc|Q)\s*[\"']")
 _DIMENSIONS = frozenset(
@@ -46,9 +46,9 @@ _INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}label"
 
 
 def read_svg(name: str, data: bytes) -> Drawing:
-    """Return the drawing of SVG text; its unit is known where its width has one.
+    """Return the drawing of an SVG text. Its unit is known if the width has a unit.
 
-    Raises DrawingError, and whatever svgelements raises.
+    Raises DrawingError and errors of svgelements.
     """
     left_out: Counter[str] = Counter()
     shapes = _shapes(name, data)
@@ -93,9 +93,9 @@ def _shapes(name: str, data: bytes) -> Any:
 
 
 def _check_elements(name: str, text: bytes) -> None:
-    """Refuse dimensions that are not numbers, and reused groups (``<use>``) of too many elements.
+    """Reject dimensions that are not numbers, and reused groups (``<use>``) with too many elements.
 
-    Raises DrawingError, ParseError.
+    Raises DrawingError or ParseError.
     """
     root = ElementTree.fromstring(text)
     by_id: dict[str, list[Element_]] = {}
@@ -114,7 +114,7 @@ def _check_elements(name: str, text: bytes) -> None:
 
 
 def _check_numbers(name: str, element: Element_) -> None:
-    """Refuse a dimension that is not a number: svgelements would leave out the element."""
+    """Raise DrawingError for a dimension that is not a number; svgelements would omit the element."""
     for dimension in _DIMENSIONS.intersection(element.keys()):
         if _NO_NUMBER.search(element.get(dimension, "")):
             kind = str(element.tag).rpartition("}")[2]
@@ -135,7 +135,7 @@ def _drawn(root: Any, near: float, left_out: Counter[str], name: str) -> Iterato
         if not isinstance(each, Shape):
             if not isinstance(each, Group) and type(each) is not SVGElement:
                 left_out[type(each).__name__.lower()] += 1
-            continue  # a bare element draws nothing: it is what an editor notes of its window
+            continue  # an editor's window settings, which draw nothing
         values = each.values
         if values.get("visibility") == "hidden" or values.get("display") == "none":
             continue
@@ -174,7 +174,10 @@ def _up(point: Any) -> Point:
 
 
 def _of_ellipse(each: Any) -> Any:
-    """By the parameter of the ellipse; directions by differences, which are exact enough for a joint."""
+    """Return an elliptic arc as a curve, with directions from differences.
+
+    The differences are exact enough for the joint of two arcs.
+    """
     begin, step = each.get_start_t(), 1e-6
 
     def at(u: float) -> Point:
@@ -204,5 +207,5 @@ def _bezier(points: list[Point], u: float) -> Point:
 
 
 def _slope(points: list[Point], u: float) -> Point:
-    """The direction of a Bezier curve: the curve of the differences of its points."""
+    """Return the direction of a Bézier curve, which is the curve of its point differences."""
     return _bezier([(b[0] - a[0], b[1] - a[1]) for a, b in itertools.pairwise(points)], u)

@@ -1,6 +1,6 @@
-"""The contour that a turning tool follows, as far as its nose reaches: grooves bridged, faces left off.
+"""The contour that a turning tool can follow with its nose: grooves bridged, faces omitted.
 
-Worked out for the outside; the wall of a bore is its mirror image, so both are one.
+The calculation is for the outside. The wall of a bore is mirrored about the axis before and after it.
 """
 
 from __future__ import annotations
@@ -21,50 +21,59 @@ from core.part.tool_outline import outline
 from core.part.tool_shape import ToolShape
 
 _SAME = 1e-4  # mm
-_SPARE = math.radians(2.0)  # by which a tool's edge stays off the metal behind it
-_LEVEL = math.radians(3.0)  # a tool that can fall by less falls nowhere
+_SPARE = math.radians(2.0)  # clearance between the trailing edge of a tool and the part
+_LEVEL = math.radians(3.0)  # a tool that can fall by less is not used for falling contours
 _STEEP = math.radians(89.5)
-_CHORD = 0.3  # mm: a longer piece of an edge is straight
-_MOST = math.radians(179.0)  # of an arc that R can say
+_CHORD = 0.3  # mm; a longer piece of an edge is straight
+_MOST = math.radians(179.0)  # largest angle of an arc that R can specify
 
 
 @dataclass(frozen=True, slots=True)
 class Groove:
-    """What a turning tool leaves out: elements from the edge at the face to that at the chuck."""
+    """A range that a turning tool omits: its elements from the edge at the face to the edge at the chuck."""
 
     elements: tuple[Element, ...]
 
     @property
     def front(self) -> Point:
-        """The edge at the face."""
+        """The edge at the face, as (r, z)."""
         return self.elements[0].start
 
     @property
     def back(self) -> Point:
-        """The edge at the chuck."""
+        """The edge at the chuck, as (r, z)."""
         return self.elements[-1].end
 
 
 @dataclass(frozen=True, slots=True)
 class TurningContour:
-    """``elements`` for the turning tool, ``grooves`` for a blade; ``left``: spans (z, z, why) of nobody."""
+    """Result for a turning tool: its contour, the grooves for a blade, and ranges that neither can reach.
+
+    ``left`` has (z, z, reason) for each of these ranges.
+    """
 
     elements: tuple[Element, ...]
     grooves: tuple[Groove, ...] = ()
     left: tuple[tuple[float, float, str], ...] = ()
-    steepest: float = 0.0  # rad: how steeply the turned contour falls towards the chuck
+    steepest: float = 0.0  # rad, steepest fall of the turned contour toward the chuck
 
 
 @dataclass(frozen=True, slots=True)
 class Reach:
-    """What the edges of a tool allow: ``fall`` towards the chuck behind its nose, ``rise`` before it; rad."""
+    """Contour angles that the edges of a tool allow, in radians.
+
+    ``fall`` is the steepest fall toward the chuck, and ``rise`` the steepest rise.
+    """
 
     fall: float = 0.0
     rise: float = math.pi / 2.0
 
 
 def reach_of(shape: ToolShape | None, side: Side) -> Reach:
-    """By the tool's outline; of a tool without a sheet nothing but cylinders, faces and shoulders."""
+    """Return the reach of a tool from its outline.
+
+    A tool without tool data can turn only cylinders, faces and shoulders.
+    """
     cutting = outline(shape).cutting if shape is not None else ()
     if not cutting:
         return Reach()
@@ -76,7 +85,7 @@ def reach_of(shape: ToolShape | None, side: Side) -> Reach:
 
 
 def _straight(points: Sequence[Point]) -> float | None:
-    """The angle, from the axis, of the first piece of an edge that is no chord of the nose; None: none is."""
+    """Return the angle to the axis of an edge's first straight piece after the nose; or None."""
     for (z0, r0), (z1, r1) in pairwise(points):
         if math.hypot(z1 - z0, r1 - r0) > _CHORD:
             return math.atan2(abs(r1 - r0), abs(z1 - z0))
@@ -84,7 +93,10 @@ def _straight(points: Sequence[Point]) -> float | None:
 
 
 def turning_contour(profile: Profile, reach: Reach) -> TurningContour:
-    """What of a profile a tool of this reach turns. Raises DrawingError where nothing is left to turn."""
+    """Return the part of a profile that a tool with this reach turns.
+
+    Raises DrawingError if nothing remains to be turned.
+    """
     inside = profile.side is Side.INSIDE
     elements = list(turned_about(profile.elements)) if inside else list(profile.elements)
     left: list[tuple[float, float, str]] = []
@@ -107,11 +119,11 @@ def _turned_back(made: TurningContour) -> TurningContour:
     return replace(made, elements=tuple(turned_about(made.elements)), grooves=grooves)
 
 
-# --- pieces that neither turn back along Z nor along r
+# --- Pieces that are monotone in Z and in r
 
 
 def _monotone(elements: Iterable[Element]) -> list[Element]:
-    """Arcs cut where they stand upright or lie level."""
+    """Return the elements with arcs split at their extreme points in Z and r."""
     found: list[Element] = []
     for each in elements:
         if isinstance(each, Arc):
@@ -124,7 +136,7 @@ def _monotone(elements: Iterable[Element]) -> list[Element]:
 
 
 def _seen_from_outside(elements: list[Element], left: list[tuple[float, float, str]]) -> list[Element]:
-    """Without what lies under itself, which no tool from outside gets to: a wall stands there instead."""
+    """Return the contour with each undercut, which no tool can reach from outside, replaced by a wall."""
     found: list[Element] = []
     at = 0
     while at < len(elements):
@@ -147,7 +159,7 @@ def _seen_from_outside(elements: list[Element], left: list[tuple[float, float, s
 
 
 def _cut_behind(found: list[Element], lip: Point) -> None:
-    """A wall under a lip, in the place of what lies behind it."""
+    """Replace the elements under a lip by a wall."""
     while found and found[-1].start[1] < lip[1]:
         found.pop()
     if found and found[-1].end[1] < lip[1]:
@@ -160,7 +172,7 @@ def _cut_behind(found: list[Element], lip: Point) -> None:
 
 
 def _go_on_behind(found: list[Element], elements: Sequence[Element], at: int, edge: Point) -> int:
-    """A wall down from an edge to where the contour comes out behind it."""
+    """Add a wall from an edge to the point where the contour reappears; return the next element's number."""
     while at < len(elements) and elements[at].end[1] >= edge[1] - _SAME:
         at += 1
     if at < len(elements):
@@ -176,17 +188,17 @@ def _wall(a: Point, b: Point) -> list[Element]:
 
 
 def _at_z(each: Element, z: float) -> Point:
-    """Where an element has this Z."""
+    """Return the point of an element at this Z."""
     return _crossing(each, Line((-1e5, z), (1e5, z))) or each.start
 
 
 def _crossing(each: Element, line: Line) -> Point | None:
-    """The first place, along an element, at which it meets a line."""
+    """Return the first point along an element at which it meets a line, or None."""
     return min(intersections(line, each), key=each.along, default=None)
 
 
 def _without_face(elements: list[Element]) -> list[Element]:
-    """Without the face in front, and without a wall down at the end."""
+    """Return the contour without the face at its front and without a wall at its end."""
     begin = 0
     while begin < len(elements) and abs(elements[begin].end[1] - elements[0].start[1]) <= _SAME:
         begin += 1
@@ -196,11 +208,11 @@ def _without_face(elements: list[Element]) -> list[Element]:
     return elements[begin:end]
 
 
-# --- grooves and falls
+# --- Grooves and falls
 
 
 def _fall(each: Element) -> float:
-    """How steeply an element without extremes falls on its way to the chuck, rad; rising ones less than 0."""
+    """Return how steeply an element falls toward the chuck, in radians; negative if it rises."""
     ways = (each.start_direction, each.end_direction)
     found = (math.atan2(-way[0], max(-way[1], 0.0)) for way in ways)
     return max(found) if each.end[0] < each.start[0] - _SAME else -max(-f for f in found)
@@ -212,7 +224,7 @@ def _rise(each: Element) -> float:
 
 
 def _not_too_steep(kept: Iterable[Element], reach: Reach) -> None:
-    """A tool that enters at less than 90 degrees would lean into a shoulder."""
+    """Raise DrawingError if the tool's leading edge would cut into a shoulder."""
     if reach.rise >= math.pi / 2.0 - 1e-3:
         return
     for each in kept:
@@ -232,7 +244,7 @@ def _not_too_steep(kept: Iterable[Element], reach: Reach) -> None:
 def _bridged(
     elements: list[Element], fall: float, left: list[tuple[float, float, str]]
 ) -> tuple[list[Element], list[Groove]]:
-    """The contour without what falls more steeply than the tool's edge behind its nose."""
+    """Return the contour without ranges that fall more steeply than the tool's edge, and the grooves."""
     most = fall - _SPARE if fall > _LEVEL else 0.0
     kept: list[Element] = []
     grooves: list[Groove] = []
@@ -261,7 +273,7 @@ def _bridged(
             already = len(kept)
             at = _gently(elements, at, most, kept)
             if len(kept) > already:
-                continue  # what comes now may be a groove of its own
+                continue  # the following elements may be a separate groove
             edge = elements[at].start[1]
             at = _sloped(elements, at, most, kept)
             left.append((kept[-1].end[1], edge, "the contour slopes too steeply for the tool"))
@@ -273,7 +285,10 @@ def _level(a: Point, b: Point) -> list[Element]:
 
 
 def _recess(elements: Sequence[Element], at: int) -> tuple[int, Point | None]:
-    """From a fall on: the element that comes back to the height of its edge, and where; else the end."""
+    """Return where a fall ends: the element that returns to the height of its edge, and the point.
+
+    If the contour does not return, the result is the number of elements and None.
+    """
     edge = elements[at].start
     for number in range(at, len(elements)):
         each = elements[number]
@@ -286,7 +301,7 @@ def _recess(elements: Sequence[Element], at: int) -> tuple[int, Point | None]:
 
 
 def _gently(elements: list[Element], at: int, most: float, kept: list[Element]) -> int:
-    """From a fall on, what the tool still follows: up to where the contour falls more steeply than it can."""
+    """Add the elements that the tool can follow after a fall begins; return the next element's number."""
     while _fall(elements[at]) <= most:
         kept.append(elements[at])
         at += 1
@@ -301,11 +316,11 @@ def _gently(elements: list[Element], at: int, most: float, kept: list[Element]) 
 
 
 def _sloped(elements: list[Element], at: int, most: float, kept: list[Element]) -> int:
-    """From an edge along the slope that the tool can follow to where that meets the contour again."""
+    """Add a line from an edge along the steepest slope of the tool to the contour; return the next number."""
     edge = elements[at].start
     far = max(edge[1] - elements[-1].end[1], _SAME)
     drop = far * math.tan(most)
-    if drop > edge[0] > 0.0:  # it would cross the axis
+    if drop > edge[0] > 0.0:  # the slope would cross the axis
         far, drop = far * edge[0] / drop, edge[0]
     slope = Line(edge, (edge[0] - drop, edge[1] - far))
     for number in range(at, len(elements)):
@@ -319,11 +334,11 @@ def _sloped(elements: list[Element], at: int, most: float, kept: list[Element]) 
     return len(elements)
 
 
-# --- tidied
+# --- Clean-up
 
 
 def joined(elements: Iterable[Element]) -> list[Element]:
-    """Neighbours on one line or about one centre as one; what is too short for the control is left out."""
+    """Return the elements with collinear lines and concentric arcs joined and very short elements omitted."""
     found: list[Element] = []
     for each in elements:
         one = _one(found[-1], each) if found else None
@@ -347,18 +362,17 @@ def _one(a: Element, b: Element) -> Element | None:
     return None
 
 
-_NOSE_SPARE = (
-    0.02  # mm: a fillet of just the nose radius leaves its centre no way, least of all in rounded words
-)
-_BACK = 0.001  # mm: moved back by less than off, so that a corner outwards keeps a length
+_NOSE_SPARE = 0.02  # mm; in a fillet of exactly the nose radius, the nose center could not move
+_BACK = 0.001  # mm; the return offset is smaller, so that an outer corner retains some length
 _SLIVER = 0.03  # mm
-_STRAIGHT = 0.1  # rad: what is left out lies within .0015 mm
+_STRAIGHT = 0.1  # rad; the error of omitting such an arc is at most 0.0015 mm
 
 
 def reached_by_nose(elements: Sequence[Element], nose: float, *, inside: bool) -> tuple[Element, ...]:
-    """The contour as it is where a nose of this radius (mm) follows it, else with fillets that it fits into.
+    """Return the contour, with fillets where a nose of this radius in mm would not fit.
 
-    Where no unbroken way along it is left the contour stays, and the proof of the program tells the place.
+    If no continuous path remains, the contour is returned unchanged, and the proof of the program reports the
+    location.
     """
     contour = tuple(turned_about(elements)) if inside else tuple(elements)
     if not nose or _follows(contour, nose):
@@ -373,7 +387,7 @@ def reached_by_nose(elements: Sequence[Element], nose: float, *, inside: bool) -
 
 
 def _without_slivers(contour: Sequence[Element]) -> Iterator[Element]:
-    """Without arcs so short that rounded words say nothing of them; the next begins where the last ended."""
+    """Yield the contour without arcs that are too short for rounded words."""
     for number, each in enumerate(contour):
         short = isinstance(each, Arc) and each.length < _SLIVER and abs(each.sweep) < _STRAIGHT
         if not short or number in {0, len(contour) - 1}:
@@ -385,7 +399,7 @@ def _reversed(elements: Sequence[Element]) -> list[Element]:
 
 
 def _follows(contour: Sequence[Element], nose: float) -> bool:
-    """Whether nose compensation takes the contour, by the same offset that the control makes."""
+    """Return whether nose compensation can follow the contour, with the control's own offset calculation."""
     try:
         pieces_beside(contour, nose)
     except GougeError:

@@ -1,4 +1,4 @@
-"""Find drawings saved in the wrong unit: larger than the travel, although they fit in another unit."""
+"""Detection of drawings in a wrong unit: larger than the travel, but small enough in another unit."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ UNITS = {"MM": 1.0, "INCH": 25.4}
 def wrong_unit(net: Net, unit: float, travel: tuple[float, float]) -> tuple[str, str] | None:
     """Return the size that is too large, and the name of the unit in which the contour would fit.
 
-    ``unit`` is that of the drawing, mm; ``travel`` that of X (as a radius) and Z, mm, 0 if it is not known.
-    None if the contour fits, or does not fit in a smaller unit either.
+    ``unit`` is the size of the drawing's unit in mm. ``travel`` is the travel of X (as a radius) and Z in mm,
+    or 0 if unknown. The result is None if the contour fits, or does not fit in a smaller unit either.
     """
     low, high, radius = net.reach
     if not all(travel) or _fits(high - low, radius, travel):

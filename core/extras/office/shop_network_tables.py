@@ -1,4 +1,4 @@
-"""[status_page] and [announce] of the machine file: what the office sees, who is told of ends and stops."""
+"""Tables [status_page] and [announce] of the machine file: office page, MQTT broker and web hook."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ _WEB = ("http://", "https://")
 
 @key_table
 class StatusPageTable:
-    """Where browsers find the page of this desk, and what is shown beside it: the pages of other desks, and
-    machines that an MTConnect agent tells of (the agent's address with the name of the device).
+    """Settings of the office page, including other machines that it shows.
 
-    ``token`` is the word that a browser must bring; empty only where no other computer can ask.
+    These are the office pages of other TurnDesks and the devices of MTConnect agents. ``token`` is the
+    password for browsers. It may be empty only if no other computer can connect.
     """
 
     enabled: bool = file_key(default=False, meaning="true: TurnDesk serves the office page.")
@@ -50,20 +50,20 @@ class StatusPageTable:
 
     @property
     def others(self) -> tuple[str, ...]:
-        """Addresses of the other desks' pages."""
+        """Addresses of the office pages of other machines."""
         return tuple(self.desks.split())
 
     @property
     def told_by_agents(self) -> tuple[str, ...]:
-        """Addresses of devices at their agents."""
+        """Addresses of devices at their MTConnect agents."""
         return tuple(self.agents.split())
 
 
 @key_table
 class AnnounceTable:
-    """The MQTT broker (``host:port``) and the web address that are told; empty: that one is not.
+    """Settings of the MQTT broker (``host:port``) and the web hook; an empty address disables one.
 
-    ``again`` is the seconds after which a broker or host that was away is tried once more.
+    ``again`` is the time in seconds after which a broker or host that did not respond is tried again.
     """
 
     mqtt: str = file_key(
@@ -82,7 +82,7 @@ class AnnounceTable:
 
 
 def loopback(address: str) -> bool:
-    """Whether only this computer can ask there."""
+    """Return whether only this computer can connect to the address."""
     try:
         return ip_address(address).is_loopback
     except ValueError:
@@ -90,16 +90,16 @@ def loopback(address: str) -> bool:
 
 
 def is_web_address(text: str) -> bool:
-    """Whether a host can be asked there."""
+    """Return whether a text is a valid web address."""
     try:
         parts = urlsplit(text)
         return text.startswith(_WEB) and bool(parts.hostname) and parts.port != 0
-    except ValueError:  # of a port or an IPv6 address that is none
+    except ValueError:  # an invalid port or IPv6 address
         return False
 
 
 def broker_of(text: str) -> tuple[str, int]:
-    """Host and port of ``host`` or ``host:port``. Raises ValueError for anything else."""
+    """Return host and port of ``host`` or ``host:port``. Raises ValueError if the text is invalid."""
     host, colon, port = text.rpartition(":")
     if not colon:
         host, port = text, "1883"

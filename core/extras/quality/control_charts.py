@@ -1,8 +1,8 @@
-"""Control charts of Shewhart (X-bar/R, I-MR), and the capability of a process (ISO 22514-2).
+"""Shewhart control charts (X-bar/R, I-MR) and process capability (ISO 22514-2).
 
-Limits are three standard deviations of the process within its samples, by the constants of ISO 7870-2 and
-ASTM E2587 for normally distributed values. Lengths are whatever unit the values have. The rules that tell
-drift on a chart are those of Western Electric (1956) and Nelson (1984), in Nelson's numbers.
+The limits are three standard deviations within the samples, with the constants of ISO 7870-2 and ASTM E2587
+for normally distributed values. Lengths may have any unit. The rules that detect drift are those of Western
+Electric (1956) and Nelson (1984), with Nelson's numbers.
 """
 
 from __future__ import annotations
@@ -17,17 +17,20 @@ import numpy.typing as npt
 
 from core.message import CodedError, Message
 
-LEAST = 10  # readings below which no capability is told: it would be luck
-_ONE_SIDED_95 = 1.645  # of the normal distribution
+LEAST = 10  # least number of readings for a capability; fewer would make it random
+_ONE_SIDED_95 = 1.645  # quantile of the normal distribution
 
 
 @dataclass(frozen=True, slots=True)
 class Capability:
-    """None where there is no limit on one side (Cp, Pp), or nothing scatters."""
+    """Process capability of a feature.
+
+    ``cp`` and ``pp`` are None if one limit is missing. All indices are None if the values do not vary.
+    """
 
     count: int
     mean: float
-    within: float  # standard deviation within samples
+    within: float  # =
     cp: float | None
     cpk: float | None
     pp: float | None
@@ -35,7 +38,7 @@ class Capability:
 
     @property
     def at_least(self) -> float | None:
-        """What Cpk is with 95 % confidence at least, after Bissell (1990): few readings promise little."""
+        """Lower 95 % confidence limit of Cpk (Bissell 1990), which is low for few readings."""
         if self.cpk is None:
             return None
         n = self.count
@@ -45,9 +48,9 @@ class Capability:
 def capability(
     values: Sequence[float], lower: float | None, upper: float | None, size: int = 1
 ) -> Capability:
-    """Of values in the order of the parts against limits of size, in samples of ``size``.
+    """Calculate the capability of values in the order of the parts, in samples of ``size``.
 
-    Raises QualityError for fewer than 10 values, no limit at all, or limits the wrong way round.
+    Raises QualityError for fewer than 10 values, no limits, or limits in the wrong order.
     """
     if lower is None and upper is None:
         raise QualityError(
@@ -67,7 +70,8 @@ def capability(
             "too-few-readings",
         )
     within = charts_of(values, size).within
-    mean, overall = float(np.mean(values)), float(np.std(values, ddof=1))  # of all values, n − 1
+    # standard deviation of all values with n − 1
+    mean, overall = float(np.mean(values)), float(np.std(values, ddof=1))
     cp, cpk = _indices(mean, within, lower, upper)
     pp, ppk = _indices(mean, overall, lower, upper)
     return Capability(len(values), mean, within, cp, cpk, pp, ppk)
@@ -76,9 +80,13 @@ def capability(
 def _indices(
     mean: float, sigma: float, lower: float | None, upper: float | None
 ) -> tuple[float | None, float | None]:
-    """Width of the tolerance by six standard deviations; distance of the nearer limit by three."""
+    """Return the capability indices without and with the position of the mean.
+
+    The first is the tolerance divided by six standard deviations. The second is the distance of the nearer
+    limit divided by three standard deviations.
+    """
     if sigma <= 1e-12:
-        return None, None  # a gauge that reads too coarsely to see the scatter
+        return None, None  # the resolution of the gauge is too coarse to show the variation
     near = [
         (upper - mean) if upper is not None else math.inf,
         (mean - lower) if lower is not None else math.inf,
@@ -88,11 +96,12 @@ def _indices(
 
 
 FloatArray = npt.NDArray[np.float64]
-SETTLED = 20  # samples from which on limits are called settled; below it they still move with every sample
+# number of samples from which the limits are settled; before, each sample changes them noticeably
+SETTLED = 20
 
 
 class Constants(NamedTuple):
-    """Factors of a sample of n values: limits of averages, of ranges, and range in standard deviations."""
+    """Factors for a sample of n values: limits of averages and ranges, and ratio of range to deviation."""
 
     a2: float
     d3: float
@@ -100,7 +109,7 @@ class Constants(NamedTuple):
     d2: float
 
 
-# ISO 7870-2, table of factors for X-bar and R; n from 2 to 10.
+# =
 CONSTANTS: dict[int, Constants] = {
     2: Constants(1.880, 0.0, 3.267, 1.128),
     3: Constants(1.023, 0.0, 2.575, 1.693),
@@ -117,7 +126,7 @@ SAMPLE_SIZES = range(2, 11)
 
 @dataclass(frozen=True, slots=True)
 class Chart:
-    """One chart: its points in order, the centre line and the two limits."""
+    """One chart: its points in order, the center line and the two limits."""
 
     points: FloatArray
     centre: float
@@ -126,29 +135,30 @@ class Chart:
 
     @property
     def sigma(self) -> float:
-        """Standard deviation of its points that the limits stand for; 0: they do not scatter."""
+        """Standard deviation of the points that corresponds to the limits; 0 if the points do not vary."""
         return (self.upper - self.centre) / 3.0
 
     @property
     def settled(self) -> bool:
-        """Whether there are enough points for the limits to stay where they are."""
+        """Whether there are enough points for stable limits."""
         return len(self.points) >= SETTLED
 
 
 @dataclass(frozen=True, slots=True)
 class ChartPair:
-    """Where the process lies and how far it scatters; ``within`` is its standard deviation within samples."""
+    """Charts of location and spread; ``within`` is the standard deviation within samples."""
 
     location: Chart
     spread: Chart
     within: float
-    size: int  # values in a sample, 1: individuals
+    size: int  # values in a sample; 1 means individuals
 
 
 def charts_of(values: Sequence[float], size: int) -> ChartPair:
-    """Charts of values in the order of the parts: individuals where ``size`` is 1, else X-bar/R.
+    """Return the charts of values in the order of the parts.
 
-    An incomplete last sample is left out. Raises QualityError.
+    The chart is for individuals if ``size`` is 1, otherwise X-bar/R. An incomplete last sample is omitted.
+    Raises QualityError.
     """
     if size == 1:
         return individuals(values)
@@ -167,7 +177,7 @@ def charts_of(values: Sequence[float], size: int) -> ChartPair:
 
 
 def average_and_range(samples: npt.ArrayLike) -> ChartPair:
-    """X-bar/R of samples, one a row. Raises QualityError."""
+    """Return X-bar/R charts of samples, one in each row. Raises QualityError."""
     table = np.asarray(samples, dtype=np.float64)
     if table.ndim != 2 or table.shape[1] not in SAMPLE_SIZES:
         raise QualityError(
@@ -194,7 +204,10 @@ def average_and_range(samples: npt.ArrayLike) -> ChartPair:
 
 
 def individuals(values: Sequence[float]) -> ChartPair:
-    """Individuals and moving ranges of two; limits at 3/d2 = 2.660 mean ranges. Raises QualityError."""
+    """Return charts of individuals and moving ranges of two. Raises QualityError.
+
+    The limits are at 3/d2 = 2.660 mean ranges.
+    """
     points = np.asarray(values, dtype=np.float64)
     _demand_finite(points)
     if len(points) < 2:
@@ -222,7 +235,7 @@ Zones = npt.NDArray[np.float64]
 
 
 class Finding(NamedTuple):
-    """A rule that is broken: at which point (from 0, the last of its run), which rule, and in words."""
+    """A violated rule: the last point of the run, counted from 0, the rule's number, and its text."""
 
     point: int
     rule: int
@@ -230,7 +243,7 @@ class Finding(NamedTuple):
 
 
 def findings(chart: Chart) -> tuple[Finding, ...]:
-    """What the rules find, point by point; nothing where the points do not scatter."""
+    """Return the violations of all rules, sorted by point; () if the points do not vary."""
     if chart.sigma <= 0.0 or not len(chart.points):
         return ()
     zones = (chart.points - chart.centre) / chart.sigma
@@ -245,7 +258,7 @@ def _beyond(zones: Zones) -> Iterator[int]:
 
 
 def _runs(zones: Zones, length: int, whole: Callable[[Zones], bool]) -> Iterator[int]:
-    """The last point of each stretch of ``length`` points of which ``whole`` is true."""
+    """Yield the last point of each run of ``length`` points for which ``whole`` is true."""
     for end in range(length, len(zones) + 1):
         if whole(zones[end - length : end]):
             yield end - 1
@@ -266,7 +279,10 @@ def _alternating(zones: Zones) -> bool:
 
 
 def _so_many(zones: Zones, count: int, beyond: float) -> bool:
-    """The last point and others, ``count`` together, lie beyond so many sigmas on its side."""
+    """Return whether the last point and others are beyond a limit on the same side.
+
+    ``count`` is the least number of such points, and ``beyond`` the limit in sigma.
+    """
     side = 1.0 if zones[-1] > 0.0 else -1.0
     far = zones * side > beyond
     return bool(far[-1] and far.sum() >= count)
@@ -298,4 +314,4 @@ RULES: dict[int, tuple[str, Callable[[Zones], Iterator[int]]]] = {
 
 
 class QualityError(CodedError, ValueError):
-    """Figures from which nothing can be told; the text says which and what to do."""
+    """Values that cannot be evaluated. The text has the reason and a remedy."""

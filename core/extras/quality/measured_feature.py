@@ -1,8 +1,9 @@
-"""A feature of a part that is measured: nominal, limits, what corrects it, and the proposed correction.
+"""A measured feature of a part: nominal size, limits, correcting offset and proposed correction.
 
-Lengths mm; a diameter is a diameter. ``grows`` says what the feature does when the correction grows: +1 it
-grows with it, -1 it shrinks. A diameter, outside or inside, grows with X of a tool at X positive, and shrinks
-with that of a tool at X negative; a length grows or shrinks with Z by the end at which the tool cuts.
+Lengths are in mm, and a diameter is a diameter. ``grows`` is +1 if the feature becomes larger with a larger
+correction, or -1 if it becomes smaller. A diameter, outside or inside, becomes larger with X of a tool at
+positive X, and smaller with X of a tool at negative X. For a length, the sign depends on the end that the
+tool cuts.
 """
 
 from __future__ import annotations
@@ -19,19 +20,19 @@ from core.message import Message
 
 NUMBERS = range(1, 33)
 NAME_LONGEST = 24
-SIZE_MOST = 2540.0  # mm: 100 in
+SIZE_MOST = 2540.0  # mm, 100 in
 EVERY_MOST = 10_000
 
 
 class FeatureKind(StrEnum):
-    """What is measured."""
+    """Kind of the measured size."""
 
     DIAMETER = "diameter"
     LENGTH = "length"
 
 
 class CorrectedBy(StrEnum):
-    """What makes the feature and is corrected: wear of a tool, or a secondary offset."""
+    """Kind of offset that corrects the feature: wear of a tool, or a secondary offset."""
 
     TOOL = "tool"
     SECONDARY = "secondary"
@@ -39,7 +40,10 @@ class CorrectedBy(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Feature:
-    """``low`` and ``high`` are deviations from the nominal; ``every``: so many parts apart, 0: no plan."""
+    """A measured feature; ``low`` and ``high`` are deviations from the nominal size.
+
+    ``every`` is the number of parts between two measurements, or 0 without a sampling plan.
+    """
 
     name: str
     kind: FeatureKind
@@ -54,37 +58,37 @@ class Feature:
 
     @property
     def axis(self) -> str:
-        """The axis whose correction changes it."""
+        """Axis whose correction changes the feature."""
         return "x" if self.kind is FeatureKind.DIAMETER else "z"
 
     @property
     def limits(self) -> tuple[float, float]:
-        """Smallest and largest good size."""
+        """Smallest and largest permitted size, in mm."""
         return self.nominal + self.low, self.nominal + self.high
 
     @property
     def middle(self) -> float:
-        """What is aimed at: the middle of the tolerance."""
+        """Target size, which is the middle of the tolerance, in mm."""
         return self.nominal + (self.low + self.high) / 2.0
 
     @property
     def width(self) -> float:
-        """The tolerance from limit to limit."""
+        """Width of the tolerance, in mm."""
         return self.high - self.low
 
     @property
     def corrected_by(self) -> str:
-        """``T3 X`` or ``D4 Z``."""
+        """Name of the correcting offset and axis, such as ``T3 X`` or ``D4 Z``."""
         return f"{'T' if self.by is CorrectedBy.TOOL else 'D'}{self.number} {self.axis.upper()}"
 
     def good(self, size: float) -> bool:
-        """Whether a part of this size is within its tolerance; a reading on the limit is."""
+        """Return whether a size is within the tolerance, including its limits."""
         low, high = self.limits
         return low - 1e-9 <= size <= high + 1e-9
 
 
 def check_feature(feature: Feature) -> None:
-    """Raises QualityError, with what to enter, for a feature that nobody could measure or correct."""
+    """Raise QualityError with a remedy if the feature cannot be measured or corrected."""
     if not feature.name.strip() or len(feature.name) > NAME_LONGEST or not feature.name.isprintable():
         raise QualityError(
             Message("a feature name must have 1 to {name_longest} characters", name_longest=NAME_LONGEST),
@@ -157,15 +161,18 @@ def check_feature(feature: Feature) -> None:
         )
 
 
-WEAR_MOST = 2.54  # mm at the offset (X at the radius): what the tables take; more has to be touched off
-_FAR = 3.0  # widths of the tolerance: a reading so far off is no wear
+# mm at the offset (X as a radius), the limit of the offset tables; a larger change requires a touch-off
+WEAR_MOST = 2.54
+_FAR = 3.0  # tolerance widths; a larger deviation cannot be wear
 
 
 @dataclass(frozen=True, slots=True)
 class CorrectionRule:
-    """``dead``: share of the tolerance within which nothing is corrected; ``step``: share that is corrected.
+    """Rule for corrections: dead band and step as fractions of the tolerance and of the deviation.
 
-    ``last``: so many newest readings count. Half a step follows the scatter of single parts half as much.
+    ``dead`` is the fraction of the tolerance within which nothing is corrected. ``step`` is the fraction of
+    the deviation that is corrected. ``last`` is the number of newest readings that are averaged. A step of
+    one half follows the variation of single parts only half as much.
     """
 
     dead: float = 0.1
@@ -175,23 +182,24 @@ class CorrectionRule:
 
 @dataclass(frozen=True, slots=True)
 class Proposal:
-    """``change`` is what to add to the correction, mm, of a diameter as a diameter; 0: nothing."""
+    """A proposed correction; ``change`` is in mm, as a diameter for a diameter, and 0 for no correction."""
 
     feature: Feature
-    count: int  # readings behind it
+    count: int  # number of readings used
     mean: float
     change: float
-    offset_change: float  # the same at the offset: X as a radius
-    expected: float  # what parts will measure with it
-    why: str  # in words, where nothing is to be changed
+    offset_change: float  # the change of the offset, X as a radius
+    expected: float  # expected size of parts with the correction
+    why: str  # reason why no correction is needed
 
 
 def propose(
     feature: Feature, readings: Sequence[float], resolution: float, rule: CorrectionRule | None = None
 ) -> Proposal:
-    """What the newest readings since the last correction ask for, whole steps of ``resolution`` (mm).
+    """Propose a correction from the newest readings since the last correction.
 
-    Raises QualityError without readings, and for readings or a change that no wear explains.
+    The change is a multiple of ``resolution`` in mm. Raises QualityError if there are no readings, or if wear
+    cannot explain a reading or the change.
     """
     rule = rule or CorrectionRule()
     if not readings:
@@ -247,6 +255,6 @@ def _nothing(feature: Feature, count: int, mean: float, why: str) -> Proposal:
 
 
 def _whole_steps(length: float, resolution: float) -> float:
-    """Rounded to the resolution, halves toward nought: never more than was asked for."""
+    """Return a length rounded to the resolution, with halves toward zero so that it is never too large."""
     steps = math.ceil(abs(length) / resolution - 0.5 - 1e-9)
     return math.copysign(max(0, steps) * resolution, length) if steps > 0 else 0.0

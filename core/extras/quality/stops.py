@@ -1,6 +1,6 @@
-"""Stops of the machine: the Pareto of their reasons, the time between them, and availability.
+"""Stops of the machine: Pareto analysis of their reasons, times between stops, and availability.
 
-Availability of the shift is the share of its time in which parts were made (ISO 22400-2).
+The availability of a shift is the fraction of its time in which parts were made (ISO 22400-2).
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from core.message import Message
 
 
 class Stop(NamedTuple):
-    """Production stood from ``start`` for ``seconds``; times in seconds of one clock."""
+    """A stop of production, with its start and duration in seconds of one clock."""
 
     reason: str
     start: float
@@ -21,7 +21,11 @@ class Stop(NamedTuple):
 
 
 class ReasonShare(NamedTuple):
-    """All stops of one reason; ``share`` of the time of all, ``together`` with all greater ones."""
+    """All stops with one reason.
+
+    ``share`` is the fraction of the total stop time. ``together`` is the cumulative fraction with all more
+    frequent reasons.
+    """
 
     reason: str
     times: int
@@ -31,7 +35,10 @@ class ReasonShare(NamedTuple):
 
 
 def pareto(stops: Iterable[Stop]) -> tuple[ReasonShare, ...]:
-    """Reasons by the time they cost, the dearest first. Raises QualityError for a stop of negative length."""
+    """Return the reasons by total duration, longest first.
+
+    Raises QualityError if a stop has a negative duration.
+    """
     counts: dict[str, tuple[int, float]] = {}
     for stop in stops:
         if stop.seconds < 0.0:
@@ -54,9 +61,9 @@ def pareto(stops: Iterable[Stop]) -> tuple[ReasonShare, ...]:
 
 
 def times_between(stops: Sequence[Stop]) -> tuple[float, ...]:
-    """Seconds from the end of each stop to the beginning of the next, in the order of time.
+    """Return the seconds from the end of each stop to the start of the next, in order of time.
 
-    Stops that overlap leave no time between them.
+    Stops that overlap have 0 s between them.
     """
     ordered = sorted(stops, key=lambda stop: stop.start)
     between, end = [], None
@@ -68,28 +75,29 @@ def times_between(stops: Sequence[Stop]) -> tuple[float, ...]:
 
 
 class Span(NamedTuple):
-    """From ``start`` to ``end``, seconds of one clock."""
+    """A period from ``start`` to ``end``, in seconds of one clock."""
 
     start: float
     end: float
 
 
 class Availability(NamedTuple):
-    """Seconds of a shift, those in which a cycle ran, and their share."""
+    """Duration of a shift and of its running cycles, in seconds."""
 
     planned: float
     producing: float
 
     @property
     def share(self) -> float:
-        """0…1."""
+        """Fraction of the shift in which a cycle ran, 0…1."""
         return self.producing / self.planned
 
 
 def availability(shift: Span, running: Iterable[Span]) -> Availability:
-    """Of a shift, from the spans in which a cycle ran; what overlaps counts once, what is outside not at all.
+    """Return the availability of a shift from the periods in which a cycle ran.
 
-    Raises QualityError for a shift without length and for a span that ends before it begins.
+    Overlapping periods count once, and time outside the shift does not count. Raises QualityError for a shift
+    without duration, and for a period that ends before it begins.
     """
     if shift.end <= shift.start:
         raise QualityError(

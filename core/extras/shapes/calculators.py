@@ -1,4 +1,4 @@
-"""Calculators of the editor: triangle and taper, thread passes, feed and speed; lines for the text."""
+"""Calculators of the editor: taper triangle, thread passes, and feed and speed."""
 
 from __future__ import annotations
 
@@ -30,11 +30,11 @@ from core.sketch import Dim, Sketch, cut, part, sketch
 _INCHES, _MILLIMETRES = 12.0, 1000.0
 
 
-# --- triangle: diameters, length and angle of a taper, any three
+# --- Triangle: a taper from any three of diameters, length and angle
 
 
 def triangle(known: Mapping[str, Value]) -> dict[str, float]:
-    """SMALL, LARGE, LONG and ANGLE (degrees, to the axis), as far as three of them are known."""
+    """Return SMALL, LARGE, LONG and ANGLE (degrees to the axis), calculated if three of them are known."""
     at = {word: number(known, word) for word in ("SMALL", "LARGE", "LONG", "ANGLE") if word in known}
     if {"SMALL", "LARGE", "LONG"} <= at.keys() and at["LONG"]:
         at["ANGLE"] = math.degrees(math.atan((at["LARGE"] - at["SMALL"]) / 2.0 / at["LONG"]))
@@ -114,11 +114,11 @@ TRIANGLE = Shape(
 )
 
 
-# --- feed and speed
+# --- Feed and speed
 
 
 def _around(values: Values, setting: Setting) -> float:
-    """rpm of one unit of surface speed."""
+    """Return the rpm for one unit of surface speed; 0 if the diameter is unknown."""
     across = number(values, "DIA")
     return (_MILLIMETRES if setting.metric else _INCHES) / (math.pi * across) if across else 0.0
 
@@ -192,7 +192,7 @@ def _speed_says(filled: Filled, setting: Setting) -> tuple[str, ...]:
 
 
 def _depth_says(filled: Filled, setting: Setting) -> Iterator[str]:
-    """Yield the depth of a rough pass, for turning and boring."""
+    """Yield the depth of a roughing pass, for turning and boring."""
     work = _work(filled.values)
     if work in {Work.TURN, Work.BORE}:
         now = _of_material(filled.values, setting)
@@ -227,7 +227,7 @@ SPEED = Shape(
 )
 
 
-# --- thread
+# --- Thread
 
 
 def _own(word: str) -> Field:
@@ -263,7 +263,7 @@ def _thread_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
 
 
 def _passes(values: Values, setting: Setting) -> Value | None:
-    """So many that the first is no deeper than it was said; else as makers of inserts have it."""
+    """Return the number of passes for the specified first depth, or else the insert makers' proposal."""
     first, deep = number(values, "FIRST"), abs(number(values, "CREST") - number(values, "ROOT")) / 2.0
     if first and deep:
         return (deep / first) ** 2

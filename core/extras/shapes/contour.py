@@ -1,4 +1,4 @@
-"""A contour as a table of points: X, Z, chamfer or radius, arc; its lines, and read back from them."""
+"""A contour as a table of points with X, Z, chamfer or radius, and arc, and its conversion to lines."""
 
 from __future__ import annotations
 
@@ -15,17 +15,18 @@ _WORD = re.compile(r"(G02|G03|[XZCR])(-?\d*\.?\d*)")
 _LINE = re.compile(r"(?:G02|G03)?(?:[XZCR]-?(?:\d+\.?\d*|\.\d+))+")
 _S_LINE = re.compile(r"(?:G[123](?!\d))?(?:(?:[XZF]|CHR=|RND=|CR=)-?(?:\d+\.?\d*|\.\d+))+")
 _S_WORD = re.compile(r"(X|Z|CHR=|RND=|CR=)(-?\d+\.?\d*|-?\.\d+)")
-_OFF = 0.0005  # inch or less: what the control takes between a chord and two radii
+_OFF = 0.0005  # in; difference between a chord and two radii that the control accepts
 SAME = 1e-9
 
-Point = tuple[float, float]  # Z and radius
+Point = tuple[float, float]  # (Z, radius)
 
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """A point. ``x`` is a diameter, None as the point before; ``arc`` > 0 leads there by G02, < 0 by G03.
+    """A point of a contour; ``x`` is a diameter, or None if it is unchanged.
 
-    ``chamfer`` or ``radius`` at the point is that between the lines that meet there.
+    ``arc`` is the radius of the arc to the point, positive for G02 and negative for G03. ``chamfer`` or
+    ``radius`` is the corner between the lines that meet at the point.
     """
 
     x: float | None = None
@@ -36,17 +37,17 @@ class Row:
 
     @property
     def empty(self) -> bool:
-        """Nothing is said of it."""
+        """Whether the row has no values."""
         return self == Row()
 
 
 def row_word(number: int) -> str:
-    """By which a refusal names a row, from 1."""
+    """Return the name of a row in error messages; rows are counted from 1."""
     return f"#{number}"
 
 
 def points(rows: Iterable[Row]) -> list[Point]:
-    """Where the rows lie; what a row does not say is as before."""
+    """Return the points of the rows, with missing values replaced by those of the previous row."""
     x = z = 0.0
     found = []
     for row in rows:
@@ -57,7 +58,7 @@ def points(rows: Iterable[Row]) -> list[Point]:
 
 
 def read_contour(lines: Iterable[str], setting: Setting) -> tuple[Row, ...] | None:
-    """The rows that such lines came from; None where a line holds something else."""
+    """Return the rows from which these lines were made; None if a line has other contents."""
     if setting.dialect is Dialect.SINUMERIK:
         return _read_sinumerik(lines, setting)
     rows = []
@@ -74,7 +75,7 @@ def read_contour(lines: Iterable[str], setting: Setting) -> tuple[Row, ...] | No
 
 
 def _read_sinumerik(lines: Iterable[str], setting: Setting) -> tuple[Row, ...] | None:
-    """As they are written there: G3 leads about a convex arc, X behind the axis being drawn upwards."""
+    """Return the rows from SINUMERIK lines, in which G3 is a convex arc with X drawn upward."""
     rows = []
     scale = 1.0 if setting.diameter else 2.0
     for line in lines:
@@ -88,11 +89,11 @@ def _read_sinumerik(lines: Iterable[str], setting: Setting) -> tuple[Row, ...] |
     return tuple(rows)
 
 
-# --- what no contour can be
+# --- Errors of a contour
 
 
 def contour_refusals(rows: Sequence[Row]) -> Iterator[Refusal]:
-    """What is wrong with a table of points, row by row."""
+    """Yield the errors in a table of points, row by row."""
     if len(rows) < 2:
         yield Refusal(row_word(len(rows) + 1), "A contour needs at least two points: enter the next point.")
         return
@@ -180,7 +181,7 @@ def _corner(rows: Sequence[Row], there: Sequence[Point], number: int, row: Row) 
 
 
 def _set_back(row: Row, before: Point, here: Point, behind: Point) -> float:
-    """How much of both lines a corner takes."""
+    """Return the length that a corner removes from each of its lines."""
     if row.chamfer:
         return row.chamfer
     a, b = _direction(before, here), _direction(here, behind)
@@ -192,11 +193,11 @@ def _direction(a: Point, b: Point) -> float:
     return math.atan2(b[1] - a[1], b[0] - a[0])
 
 
-# --- for a drawing
+# --- Contour as a drawing
 
 
 def outline(rows: Sequence[Row]) -> list[Point]:
-    """The contour as a polyline, corners cut and arcs in pieces."""
+    """Return the contour as a polyline, with corners cut and arcs divided into chords."""
     there = points(rows)
     if not there:
         return []
@@ -227,7 +228,7 @@ def _cut_corner(row: Row, before: Point, here: Point, behind: Point) -> list[Poi
 
 
 def _quadratic(a: Point, corner: Point, b: Point, t: float) -> Point:
-    """Near enough to an arc for a sketch."""
+    """Return a point on a quadratic curve, which is close enough to an arc for a sketch."""
     u = 1.0 - t
     return (
         u * u * a[0] + 2 * u * t * corner[0] + t * t * b[0],
@@ -236,7 +237,7 @@ def _quadratic(a: Point, corner: Point, b: Point, t: float) -> Point:
 
 
 def _arc(a: Point, b: Point, radius: float) -> list[Point]:
-    """From ``a`` to ``b`` with X down the page of the control: G02 there is counter-clockwise with X up."""
+    """Return the chords of an arc from ``a`` to ``b``; G02 is counterclockwise when X is drawn upward."""
     chord = math.dist(a, b)
     r = max(abs(radius), chord / 2.0)
     if chord < SAME:

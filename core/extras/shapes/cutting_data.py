@@ -1,19 +1,19 @@
-"""Feeds, speeds and depths of cut to begin with: by material, what is cut, the tool and the machine.
+"""Proposed feeds, speeds and depths of cut by material, operation, tool and machine.
 
-Surface speeds in ft/min and feeds in in/rev are on the careful side of what handbooks and makers of inserts
-give for uncoated carbide and, for drills and taps, high-speed steel on small machines. They are proposals.
+Surface speeds in ft/min and feeds in in/rev are conservative values from handbooks and insert makers for
+uncoated carbide and, for drills and taps, high-speed steel on small machines. They are only proposals.
 
 All depths are per side. A proposal is the smallest of three values, rounded down:
 
-- by material: ``Material.depth``, what handbooks give for light roughing on small lathes;
-- by insert: a quarter of the most that its cutting edge takes. Makers of inserts limit the depth to a share
-  of the edge, which is smaller for a sharper corner: 1/2 from 75°, 1/3 from 55°, 1/5 below;
-- by machine: the depth whose cutting force the spindle can turn at the diameter of the stock. Drives of
-  these lathes have a constant torque. A machine file may state the power at the highest speed,
-  ``[spindle] power_kw``; otherwise 1.5 kW is assumed, which is a small drive.
+- by material: ``Material.depth``, which handbooks give for light roughing on small lathes;
+- by insert: a quarter of the largest depth for its cutting edge. Insert makers limit the depth to a
+  fraction of the edge, which is smaller for a sharper corner: 1/2 from 75°, 1/3 from 55°, 1/5 below;
+- by machine: the depth at which the cutting force equals the torque of the spindle at the stock diameter.
+  Drives of these lathes have constant torque. A machine file may state the power at the highest speed,
+  ``[spindle] power_kw``; otherwise a small drive of 1.5 kW is assumed.
 
-Boring bars get half of it, because they bend. Without an insert in the tool's sheet, that of a small holder
-is assumed, CCMT 0602. Proposals are to be changed by who knows the job; only the most is enforced.
+Boring bars get half of the depth, because they bend. If the tool data has no insert, the insert of a small
+holder, CCMT 0602, is assumed. The operator may change every proposal; only the largest depth is enforced.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _INCHES = 12.0
 
 
 class Work(StrEnum):
-    """What is cut."""
+    """Kind of machining operation."""
 
     TURN = "turn"
     FINISH = "finish"
@@ -44,10 +44,11 @@ class Work(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Material:
-    """Surface speeds, ft/min: carbide in turning, high-speed steel in drilling; ``feed``: a factor.
+    """Cutting data of a material.
 
-    ``depth`` is that of a rough pass, inch a side; ``force`` the specific cutting force at the feeds that are
-    proposed, N/mm²: kc1.1 of the handbooks, for chips of 0.1 mm.
+    Surface speeds are in ft/min for turning with carbide and drilling with high-speed steel. ``feed`` is a
+    factor. ``depth`` is the depth of a roughing pass in inches per side. ``force`` is the specific cutting
+    force kc1.1 at the proposed feeds in N/mm², for a chip thickness of 0.1 mm.
     """
 
     turn: float
@@ -72,7 +73,7 @@ MATERIALS = {
     "PLASTIC": Material(800, 200, 1.5, 0.06, 300),
 }
 """In the order in which they are offered."""
-UNKNOWN = Material(250, 45, 0.8, 0.02, 3200)  # nobody has said what it is: careful
+UNKNOWN = Material(250, 45, 0.8, 0.02, 3200)  # conservative values for an unspecified material
 
 _SPEED = {
     Work.TURN: 1.0,
@@ -89,21 +90,21 @@ _FEED = {
     Work.BORE: 0.003,
     Work.GROOVE: 0.002,
     Work.PART: 0.0015,
-    Work.MILL: 0.001,  # a tooth
+    Work.MILL: 0.001,  # per tooth
 }
-_MOST_OF_NOSE = 0.5  # of the nose radius: a larger feed leaves a thread
-_DRILLS = 0.016  # of the diameter, in/rev; small drills less
+_MOST_OF_NOSE = 0.5  # fraction of the nose radius; a larger feed leaves a visible thread
+_DRILLS = 0.016  # fraction of the drill diameter, in/rev
 _LEAST = 0.0003
-_SURE_RPM = 50.0  # rpm are rounded down to these
+_SURE_RPM = 50.0  # rpm are rounded down to multiples of this value
 
 
 def material_of(setting: Setting) -> Material:
-    """What the head of the program says, or the careful one."""
+    """Return the material that the head of the program specifies, or conservative values."""
     return MATERIALS.get(setting.material, UNKNOWN)
 
 
 def surface_speed(work: Work, setting: Setting) -> float:
-    """ft/min, or m/min in a metric program, rounded to what a programmer writes."""
+    """Return the proposed surface speed in ft/min, or m/min in a metric program, rounded to 5."""
     material = material_of(setting)
     feet = material.drill if work is Work.DRILL else material.turn * _SPEED[work]
     value = feet * FEET if setting.metric else feet
@@ -111,7 +112,7 @@ def surface_speed(work: Work, setting: Setting) -> float:
 
 
 def rpm(work: Work, diameter: float, setting: Setting) -> float:
-    """For a diameter of the program's unit; what the machine's spindle can do at most."""
+    """Return the proposed rpm for a diameter in the program's unit, limited by the spindle."""
     speed = surface_speed(work, setting)
     around = math.pi * max(diameter, 1e-6)
     turns = speed * (1000.0 if setting.metric else _INCHES) / around
@@ -120,7 +121,10 @@ def rpm(work: Work, diameter: float, setting: Setting) -> float:
 
 
 def feed(work: Work, setting: Setting, tool: float = 0.0, diameter: float = 0.0) -> float:
-    """A turn, in the unit of the program; of a drill by its ``diameter``, of an insert by its nose radius."""
+    """Return the proposed feed per revolution in the unit of the program.
+
+    The feed of a drill depends on its ``diameter``, and the feed of an insert on its nose radius.
+    """
     factor = material_of(setting).feed
     if work is Work.DRILL:
         inch = max(_LEAST, _DRILLS * diameter * setting.mm / 25.4 * min(1.0, factor))
@@ -135,18 +139,18 @@ def feed(work: Work, setting: Setting, tool: float = 0.0, diameter: float = 0.0)
     return round(inch * 25.4, 3) if setting.metric else round(inch, 5)
 
 
-_OF_EDGE = ((75.0, 1 / 2), (55.0, 1 / 3), (0.0, 1 / 5))  # by corner angle, of the cutting edge
-_OF_ROUND = 1 / 4  # of the diameter of a round insert
-_PROPOSED = 1 / 4  # of the most
+_OF_EDGE = ((75.0, 1 / 2), (55.0, 1 / 3), (0.0, 1 / 5))  # fraction of the cutting edge, by corner angle
+_OF_ROUND = 1 / 4  # fraction of the diameter of a round insert
+_PROPOSED = 1 / 4  # fraction of the largest depth
 _SMALL = insert_of("C", 6.35, 0.4)
 _BAR = 1 / 2
-_STEP = {False: 0.005, True: 0.1}  # by metric: depths are rounded down to these
-_LEAVE = {False: 0.01, True: 0.25}  # by metric: for finishing
-_FACING = 0.75  # of the depth along a profile
+_STEP = {False: 0.005, True: 0.1}  # by metric; depths are rounded down to multiples
+_LEAVE = {False: 0.01, True: 0.25}  # by metric, finishing allowance
+_FACING = 0.75  # fraction of the depth along a profile
 
 
 def most_depth(setting: Setting, tool: float) -> float:
-    """Return the deepest cut that the insert of a tool takes, in the unit of the program."""
+    """Return the largest depth of cut for the insert of a tool, in the unit of the program."""
     insert = _insert(setting, tool)
     if not insert.edges:
         return _OF_ROUND * insert.inscribed_circle / setting.mm
@@ -155,24 +159,27 @@ def most_depth(setting: Setting, tool: float) -> float:
 
 
 def rough_depth(setting: Setting, tool: float, across: float, *, inside: bool = False) -> float:
-    """Return the proposed depth of rough passes of a tool at a diameter, in the unit of the program."""
+    """Return the proposed depth of roughing passes at a diameter, in the unit of the program."""
     by_material = material_of(setting).depth * 25.4 / setting.mm
     depth = min(by_material, _PROPOSED * most_depth(setting, tool), _turned(setting, tool, across))
     return _rounded(depth * (_BAR if inside else 1.0), setting)
 
 
 def facing_depth(setting: Setting, tool: float, across: float) -> float:
-    """Return the depth that is proposed for passes across the end of a bar."""
+    """Return the proposed depth of passes across the end of a bar."""
     return _rounded(_FACING * rough_depth(setting, tool, across), setting)
 
 
 def finish_depth(setting: Setting, rough: float) -> float:
-    """Return what roughing leaves along the contour, in X and Z alike: at most half a rough pass."""
+    """Return the finishing allowance in X and Z, at most half a roughing pass."""
     return min(_LEAVE[setting.metric], rough / 2.0)
 
 
 def _turned(setting: Setting, tool: float, across: float) -> float:
-    """Depth at which the cutting force has the torque of the spindle: force x depth x feed x radius."""
+    """Return the depth at which the cutting force needs the full torque of the spindle.
+
+    The torque is force · depth · feed · radius.
+    """
     torque = setting.shop.power / (setting.shop.max_rpm * math.pi / 30.0)  # N m
     radius, mm = across * setting.mm / 2000.0, setting.mm
     if radius <= 0.0:

@@ -1,7 +1,7 @@
-"""The shapes in the text of a program: found by comments, held against their lines, written, replaced.
+"""Shapes in the text of a program: found by their comments, compared, written and replaced.
 
-A shape is whole when the lines that its fields come to are the lines that stand there. Where somebody has
-changed a figure by hand and one field explains it, that field is taken over; else it is told as changed.
+A shape is intact if its fields produce the lines in the text. If a value was changed by hand and one field
+explains the change, the field adopts it. Otherwise the shape is reported as changed.
 """
 
 from __future__ import annotations
@@ -33,21 +33,21 @@ _END = {
     Dialect.OMNITURN: re.compile(r"\s*(?:M30|M02|M99|})"),
     Dialect.SINUMERIK: re.compile(r"\s*(?:N\d+\s*)?(?:M30|M0?2|M17|RET)\b(?!=)", re.IGNORECASE),
 }
-_BEGINS = ("}", "%_N_PART_")  # a subroutine
+_BEGINS = ("}", "%_N_PART_")  # start of a subroutine
 _LABEL = re.compile(r"CONTOUR_\d+(?:_END)?:")
 _FIRST_CUT = re.compile(r"G1X-?[.\d]+Z-?[.\d]+F[.\d]+")
 _WORD = re.compile(r"([A-Z~_=:,(\"]+)([-+]?(?:\d+\.?\d*|\.\d+))?")
 _SCALED = LENGTHS | {Kind.FEED, Kind.RATE, Kind.SURFACE}
-_FEET = {True: 0.3048, False: 1.0 / 0.3048}  # by metric: ft/min and m/min
-_MOST_CHANGES = 4  # figures changed by hand that are taken over
+_FEET = {True: 0.3048, False: 1.0 / 0.3048}  # by metric, conversion between ft/min and m/min
+_MOST_CHANGES = 4  # largest number of hand-changed values that are adopted
 
 
 @dataclass(frozen=True, slots=True)
 class Piece:
-    """A shape in a text: ``first`` is its line from 0, ``count`` how many it has.
+    """A shape in a text: ``first`` is its first line, counted from 0, and ``count`` the number of lines.
 
-    ``taken``: words of fields that were taken over from the lines. ``foreign``: the line from 0 that is not
-    what its fields come to, -1 where all agree.
+    ``taken`` are the fields that were adopted from the lines. ``foreign`` is the line, counted from 0, that
+    differs from the lines of the fields, or -1.
     """
 
     first: int
@@ -59,14 +59,14 @@ class Piece:
 
     @property
     def behind(self) -> int:
-        """The first line that is not its own."""
+        """Number of the first line after the shape."""
         return self.first + self.count
 
 
 def code_of(line: str, dialect: Dialect = Dialect.OMNITURN) -> str:
-    """A line without its comment and blanks, in capitals; a line of plane switching as it is.
+    """Return a line without comment and spaces, in capitals; a line of plane switching remains complete.
 
-    Of SINUMERIK also without its block number.
+    In SINUMERIK, the block number is also removed.
     """
     bare = line.strip()
     if dialect is Dialect.SINUMERIK:
@@ -77,28 +77,31 @@ def code_of(line: str, dialect: Dialect = Dialect.OMNITURN) -> str:
 
 
 def ends_program(line: str, dialect: Dialect) -> bool:
-    """Whether a line ends a program or a subroutine."""
+    """Return whether a line ends a program or a subroutine."""
     return _END[dialect].match(line) is not None and not begins_subroutine(line)
 
 
 def begins_subroutine(line: str) -> bool:
-    """Whether a subroutine that a form has written, or may write into, begins at a line."""
+    """Return whether a line starts a subroutine that a form has written or can write into."""
     return line.lstrip().upper().startswith(_BEGINS)
 
 
 def begun(lines: Sequence[str], dialect: Dialect) -> bool:
-    """Whether a program says already how its lengths count: the lines of a head, or of another hand."""
+    """Return whether a program already specifies its units, in a head or in other lines."""
     if dialect is Dialect.OMNITURN:
         return any(line.upper().startswith(("G90", "G91")) for line in lines[:1])
     codes = [code for line in lines if (code := code_of(line, dialect))]
     return any(not code.startswith("%") and not _END[dialect].match(code) for code in codes)
 
 
-# --- what is in force at a line
+# --- Settings in force at a line
 
 
 def setting_at(lines: Sequence[str], at: int, shop: Shop, new: Setting | None = None) -> Setting:
-    """What holds before line ``at`` (from 0). ``new``: what a program begins with that says nothing."""
+    """Return the settings in force before line ``at``, counted from 0.
+
+    ``new`` has the settings for a program that does not specify any.
+    """
     now = replace(new or Setting(), shop=shop)
     for line in lines[:at]:
         now = _after(line, now)
@@ -139,7 +142,7 @@ def _with_head(values: Values, now: Setting) -> Setting:
 
 
 def _head_of(line: str, dialect: Dialect) -> tuple[Shape, dict[str, Value]] | None:
-    """The shape whose comment a line carries, with its fields; None where it carries none."""
+    """Return the shape whose comment a line has, with its fields; None without such a comment."""
     found = _COMMENT[dialect].search(line)
     if found is None or line.lstrip().startswith(("(", ";")):
         return None
@@ -159,9 +162,10 @@ def _head_of(line: str, dialect: Dialect) -> tuple[Shape, dict[str, Value]] | No
 
 
 def unreadable(lines: Sequence[str], at: int, dialect: Dialect) -> tuple[int, Shape] | None:
-    """A shape whose comment was spoilt, and its line from 0, where ``at`` may be one of its lines.
+    """Return the line, counted from 0, and the shape of a damaged comment above line ``at``; or None.
 
-    Such a comment begins with the name and still has two words of its fields: others write DRILL there too.
+    Such a comment begins with the name of a shape and still has two of its fields, because programmers also
+    use names such as DRILL in comments.
     """
     for line in range(min(at, len(lines) - 1), -1, -1):
         found = _COMMENT[dialect].search(lines[line])
@@ -176,11 +180,11 @@ def unreadable(lines: Sequence[str], at: int, dialect: Dialect) -> tuple[int, Sh
     return None
 
 
-# --- the pieces of a text
+# --- Shapes of a text
 
 
 def pieces(lines: Sequence[str], shop: Shop, new: Setting | None = None) -> list[Piece]:
-    """All shapes of a program, from its beginning."""
+    """Return all shapes of a program in order."""
     found: list[Piece] = []
     now, at = replace(new or Setting(), shop=shop), 0
     while at < len(lines):
@@ -218,7 +222,7 @@ def _piece(lines: Sequence[str], at: int, head: tuple[Shape, dict[str, Value]], 
 
 
 def _held_against(one: Filled, there: list[str], at: int, setting: Setting) -> Piece:
-    """Its lines beside those that stand there."""
+    """Return the piece for these fields, compared with the lines in the text."""
     wanted = codes(one, setting)
     if wanted and there[: len(wanted)] == wanted:
         return Piece(at, len(wanted), one, setting)
@@ -234,13 +238,13 @@ def _held_against(one: Filled, there: list[str], at: int, setting: Setting) -> P
 
 
 def codes(one: Filled, setting: Setting) -> list[str]:
-    """Its lines without the comment; none where the fields come to none."""
+    """Return the code lines of a shape without comments; [] if its fields are incomplete or invalid."""
     if one.refusals(setting) and _incomplete(one):
         return []
     try:
         return [code_of(line, setting.dialect) for line in one.lines(setting)]
     except (ArithmeticError, ValueError, IndexError):
-        return []  # a comment may say anything
+        return []  # a comment may contain any values
 
 
 def _incomplete(one: Filled) -> bool:
@@ -248,7 +252,7 @@ def _incomplete(one: Filled) -> bool:
 
 
 def _contours(shape: Shape, there: list[str], setting: Setting) -> Iterator[tuple[Row, ...]]:
-    """The tables of points that may stand in these lines; one empty one for a shape that has none."""
+    """Yield the point tables that these lines may contain; one empty table for a shape without a contour."""
     if not shape.contour:
         yield ()
         return
@@ -267,7 +271,10 @@ def _contours(shape: Shape, there: list[str], setting: Setting) -> Iterator[tupl
 
 
 def _sinumerik_contours(there: list[str], setting: Setting) -> Iterator[tuple[Row, ...]]:
-    """From the first cut to the way off the part: the last line, or the one behind it."""
+    """Yield the contours from the first cut to the move away from the part.
+
+    This move is the last line or the line after it.
+    """
     labels = [n for n, line in enumerate(there) if _LABEL.fullmatch(line)]
     begin = next((n for n, line in enumerate(there) if _FIRST_CUT.fullmatch(line)), len(there))
     end = next((n for n in range(begin, len(there)) if there[n].startswith(("G0", "G40"))), len(there))
@@ -278,8 +285,10 @@ def _sinumerik_contours(there: list[str], setting: Setting) -> Iterator[tuple[Ro
 
 
 def _bare_contours(there: list[str], setting: Setting) -> Iterator[tuple[Row, ...]]:
-    """Without roughing: begins where the tool came to, ends before it goes off, the last line or the one
-    before it."""
+    """Yield the contours without roughing, from the approach to the move away from the part.
+
+    This move is the last line or the line before it.
+    """
     began = [
         n
         for n, line in enumerate(there)
@@ -297,11 +306,11 @@ def _bare_contours(there: list[str], setting: Setting) -> Iterator[tuple[Row, ..
                 yield (Row(across, float(z[1])), *rows)
 
 
-# --- figures changed by hand
+# --- Values changed by hand
 
 
 def _taken_over(one: Filled, there: list[str], setting: Setting, left: int) -> Filled | None:
-    """The fields with which the lines agree; None where none of those that would explain them do."""
+    """Return the shape with fields that match the lines; None if no such fields exist."""
     wanted = codes(one, setting)
     if wanted == there:
         return one
@@ -320,7 +329,7 @@ def _taken_over(one: Filled, there: list[str], setting: Setting, left: int) -> F
 
 
 def _agreeing(wanted: list[str], there: list[str]) -> int:
-    """How many words stand before the first that differs."""
+    """Return the number of words before the first difference."""
     count = 0
     for a, b in zip(wanted, there, strict=False):
         for this, that in zip(_WORD.findall(a), _WORD.findall(b), strict=False):
@@ -331,7 +340,7 @@ def _agreeing(wanted: list[str], there: list[str]) -> int:
 
 
 def _first_change(wanted: list[str], there: list[str]) -> tuple[float, float] | None:
-    """The first figure that differs where all letters agree; None where more than figures differ."""
+    """Return the first number that differs, before and after; None if other parts differ too."""
     if len(wanted) != len(there):
         return None
     for a, b in zip(wanted, there, strict=True):
@@ -345,7 +354,7 @@ def _first_change(wanted: list[str], there: list[str]) -> tuple[float, float] | 
 
 
 def _explaining(one: Filled, before: float, after: float) -> Iterator[tuple[str, float]]:
-    """Fields whose figure stands in the word that was changed: as it is, negative, doubled or halved."""
+    """Yield the fields whose value is in the changed word: unchanged, negated, doubled or halved."""
     for word, value in one.values.items():
         if isinstance(value, str):
             continue
@@ -354,16 +363,16 @@ def _explaining(one: Filled, before: float, after: float) -> Iterator[tuple[str,
                 yield word, round(after / sign, 6)
 
 
-# --- writing
+# --- Writing
 
 
 def with_shape(
     lines: Sequence[str], at: int, one: Filled, setting: Setting, instead: Piece | None = None
 ) -> tuple[list[str], int]:
-    """The text with a shape written before line ``at``, or in the place of a piece; and the line behind it.
+    """Return the text with a shape inserted before line ``at``, or replacing a piece, and the next line.
 
-    A program without an end gets its M30; a loop gets its subroutine at the end of the program, and the
-    line behind it is that in the subroutine.
+    A program without an end gets M30. A bar feed loop gets its subroutine at the end of the program, and the
+    next line is then inside the subroutine.
     """
     text = list(lines)
     while text and not text[-1].strip():
@@ -383,7 +392,7 @@ def with_shape(
 
 
 def in_unit_of(one: Filled, before: Setting, now: Setting) -> Filled:
-    """The same shape where the program has another unit now: lengths and feeds are other figures then."""
+    """Return a shape with lengths and feeds converted to the program's new unit."""
     if before.metric == now.metric:
         return one
     scale = 25.4 if now.metric else 1.0 / 25.4
@@ -406,8 +415,10 @@ def _scaled(row: Row, scale: float) -> Row:
 
 
 def renewed(lines: Sequence[str], shop: Shop, before: Sequence[Piece]) -> tuple[list[str], int]:
-    """The pieces behind a head that was changed, in the modes of now; and how many had been changed by hand
-    and stay as they are."""
+    """Rewrite the pieces after a changed head; return the text and the number of pieces left unchanged.
+
+    Pieces that were changed by hand are left unchanged.
+    """
     text, stay = list(lines), 0
     shift = 0
     new = Setting(dialect=before[0].setting.dialect) if before else None

@@ -1,4 +1,4 @@
-"""A shape: its fields, the lines that cut it, what it refuses, and its sketch; and one that is filled in."""
+"""A shape: its fields, lines, checks and sketch; and a shape with values."""
 
 from __future__ import annotations
 
@@ -25,17 +25,18 @@ def _no_checks(_filled: Filled, _setting: Setting) -> Iterator[Refusal]:
     return iter(())
 
 
-TOOL_WORD = "T"  # stands in the code of the line that has the comment, so not in the comment
+TOOL_WORD = "T"  # in the code of the line with the comment, and therefore not in the comment
 
 
 @dataclass(frozen=True, slots=True)
 class Shape:
-    """``name`` begins the comment, so it holds letters and blanks only. ``cut`` writes the lines.
+    """A shape that the editor offers.
 
-    ``first`` yields why nothing can be proposed for other fields, ``checks`` what the fields refuse of each
-    other. ``contour``: it has a table of points, which is read from its lines. ``ends`` are lines that belong
-    to the end of the program, behind M30. Without a comment (``noted``) its lines are no piece that is opened
-    again. ``says``: what is to be told of them. ``extent``: values of the points that proposals follow.
+    ``name`` begins the comment, so it has only letters and spaces. ``cut`` writes the lines. ``first`` yields
+    errors that prevent proposals for other fields, and ``checks`` errors between fields. ``contour`` means
+    that the shape has a point table, which is read from its lines. ``ends`` returns lines for the end of the
+    program, after M30. ``noted`` means that the lines have a comment, so that the shape can be opened again.
+    ``says`` returns notes about the lines. ``extent`` returns values of the points on which proposals depend.
     """
 
     name: str
@@ -52,35 +53,35 @@ class Shape:
     extent: Callable[[Sequence[Row]], Values] = field(default=lambda _rows: {})
 
     def field(self, word: str) -> Field | None:
-        """The field of this word."""
+        """Return the field with this word, or None."""
         return next((each for each in self.fields if each.word == word), None)
 
 
 @dataclass(frozen=True, slots=True)
 class Filled:
-    """A shape with what has been typed into it, and with what is proposed for the rest."""
+    """A shape with entered values and with proposals for the other fields."""
 
     shape: Shape
     values: Values
     rows: tuple[Row, ...] = ()
 
     def n(self, word: str) -> float:
-        """A number; 0 where there is none."""
+        """Return the value of a number field; 0 if it is missing."""
         value = self.values.get(word, 0.0)
         return 0.0 if isinstance(value, str) else float(value)
 
     def t(self, word: str) -> str:
-        """A word; empty where there is none."""
+        """Return the value of a text field; empty if it is missing."""
         value = self.values.get(word, "")
         return value if isinstance(value, str) else ""
 
     @property
     def fields(self) -> tuple[Field, ...]:
-        """Those that exist for these values."""
+        """Fields that exist for these values."""
         return tuple(each for each in self.shape.fields if each.only(self.values))
 
     def refusals(self, setting: Setting) -> list[Refusal]:
-        """Everything that is wrong, field by field; then what the fields refuse of each other."""
+        """Return all errors of single fields, or else the errors between fields."""
         if first := list(self.shape.first(self, setting)):
             return first
         said = (each.refusal(self.values.get(each.word)) for each in self.fields)
@@ -88,7 +89,7 @@ class Filled:
         return found or [*self._tool(setting), *self.shape.checks(self, setting)]
 
     def _tool(self, setting: Setting) -> Iterator[Refusal]:
-        """A tool whose sheet says that it is another one."""
+        """Yield an error if the tool data specifies another kind of tool."""
         known, sheet = self.shape.field(TOOL_WORD), setting.tool(self.n(TOOL_WORD))
         if known is not None and sheet is not None and sheet.kind not in {*known.tools, ToolKind.FORM}:
             wanted = " or ".join(known.tools)
@@ -101,13 +102,13 @@ class Filled:
             yield Refusal(TOOL_WORD, Message("{what}: enter another tool.", what=text))
 
     def lines(self, setting: Setting) -> list[str]:
-        """The lines with their comment; without a complete set of fields they mean nothing."""
+        """Return the lines with their comment. All fields must have values."""
         code = SinumerikCode(setting) if setting.dialect is Dialect.SINUMERIK else Code(setting)
         self.shape.cut(self, setting, code)
         return code.noted(self.comment(setting)) if self.shape.noted else code.lines
 
     def comment(self, setting: Setting) -> str:
-        """What the comment carries: the name, and value and word of each field that says something."""
+        """Return the comment: the name of the shape, and value and word of each field with a value."""
         said = [self.shape.name]
         for each in self.fields:
             value = self.values.get(each.word)
@@ -118,7 +119,7 @@ class Filled:
 
 
 def filled(shape: Shape, typed: Values, setting: Setting, rows: tuple[Row, ...] = ()) -> Filled:
-    """The shape with what was typed, and what is proposed for the rest, field after field."""
+    """Return the shape with the entered values, and proposals for the other fields in order."""
     values: dict[str, Value] = {}
     drawn = shape.extent(rows)
     for each in shape.fields:
@@ -132,7 +133,7 @@ def filled(shape: Shape, typed: Values, setting: Setting, rows: tuple[Row, ...] 
 
 
 def read_comment(shape: Shape, words: list[str]) -> dict[str, Value] | None:
-    """The values that a comment carries behind the name of its shape; None where it carries others."""
+    """Return the values from the words of a comment after the shape's name; None if they are invalid."""
     if len(words) % 2:
         return None
     found: dict[str, Value] = {}

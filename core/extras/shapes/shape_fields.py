@@ -1,4 +1,4 @@
-"""Fields of a shape, and the setting they are filled in for: program, machine, material, tools."""
+"""Fields of a shape, and the context for proposals: program, machine, material and tools."""
 
 from __future__ import annotations
 
@@ -19,21 +19,21 @@ Proposal = Callable[[Values, "Setting"], Value | None]
 
 
 class Kind(StrEnum):
-    """What a field measures."""
+    """Kind of a field's value."""
 
     LENGTH = "length"
     DIAMETER = "diameter"
-    COORDINATE = "coordinate"  # Z as the program has it, signed
+    COORDINATE = "coordinate"  # a Z value of the program, with its sign
     ANGLE = "angle"
     RATIO = "ratio"
     COUNT = "count"
-    FEED = "feed"  # a turn of the spindle
-    RATE = "rate"  # a minute
+    FEED = "feed"  # per revolution
+    RATE = "rate"  # per minute
     RPM = "rpm"
-    SURFACE = "surface"  # ft/min, metric m/min
+    SURFACE = "surface"  # ft/min, or m/min in a metric program
     SECONDS = "seconds"
     TOOL = "tool"
-    OFFSET = "offset"  # number of a secondary offset
+    OFFSET = "offset"  # =
     CHOICE = "choice"
     NAME = "name"
 
@@ -44,7 +44,7 @@ WORDS = frozenset({Kind.CHOICE, Kind.NAME})
 
 
 class Refusal(NamedTuple):
-    """A value that no part can have: the word of its field, and one sentence with what to do."""
+    """An error of a field: its word, and a sentence with the error and a remedy."""
 
     word: str
     text: str
@@ -56,10 +56,11 @@ def _always(_values: Values) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class Field:
-    """``word`` names it in the comment, ``label`` on the form. ``start`` is proposed where nothing is typed.
+    """A field of a shape; ``word`` is its name in the comment and ``label`` its name on the form.
 
-    ``zero``: 0 means "none". ``only`` says for which other values the field exists. ``marked``: a metric
-    comment carries MM, since whoever reads it as a tool's size knows no program.
+    ``start`` is the proposed value. ``zero`` means that 0 is allowed, as "none". ``only`` returns whether the
+    field exists for the other values. ``marked`` adds MM to metric values in the comment, for readers that
+    use the value as a tool size without knowing the program's unit.
     """
 
     word: str
@@ -71,14 +72,14 @@ class Field:
     zero: bool = False
     only: Callable[[Values], bool] = field(default=_always)
     marked: bool = False
-    tools: tuple[str, ...] = ()  # of T: the kinds that its sheet may state
+    tools: tuple[str, ...] = ()  # for T, the permitted kinds of tool
 
     def proposed(self, values: Values, setting: Setting) -> Value | None:
-        """What is taken where nothing is typed; None: it has to be typed."""
+        """Return the proposed value; None if a value must be entered."""
         return self.start(values, setting) if callable(self.start) else self.start
 
     def refusal(self, value: Value | None) -> Refusal | None:
-        """What is wrong with a value by itself; None: nothing."""
+        """Return the error of a single value, or None."""
         said = self._wrong_word(value) if isinstance(value, str | None) else self._wrong_number(value)
         return Refusal(self.word, said) if said else None
 
@@ -123,55 +124,55 @@ class Field:
 
 
 def choice_text(each: Field, choice: str) -> str:
-    """How the catalogues of translations know a choice: with the label of its field."""
+    """Return the text by which translation catalogs identify a choice: the field's label and the choice."""
     return f"{each.label}: {choice}"
 
 
 def size(inch: float, metric: float) -> Proposal:
-    """A proposal for a length, in the unit of the program."""
+    """Return a proposal for a length in the unit of the program."""
     return lambda _values, setting: metric if setting.metric else inch
 
 
 def number(values: Values, word: str) -> float:
-    """A value that is a number; 0 where there is none."""
+    """Return the value of a number field; 0 if it is missing."""
     value = values.get(word, 0.0)
     return float(value) if not isinstance(value, str) else 0.0
 
 
 def text(values: Values, word: str) -> str:
-    """A value that is a word; empty where there is none."""
+    """Return the value of a text field; empty if it is missing."""
     value = values.get(word, "")
     return value if isinstance(value, str) else ""
 
 
-_NEAR = {False: 0.1, True: 2.5}  # by metric: how near a rapid comes to the part
-CLEAR = {False: 1.0, True: 25.0}  # by metric: Z where tools change, where nobody has said it
+_NEAR = {False: 0.1, True: 2.5}  # by metric; distance from the part at which a rapid ends
+CLEAR = {False: 1.0, True: 25.0}  # by metric; default Z of the tool change position
 
 
 @dataclass(frozen=True, slots=True)
 class Shop:
-    """What the machine and its tool store say: rpm, live tool, tools by T (mm)."""
+    """Data of the machine and its tools: rpm, live tool, and tools by T in mm."""
 
     max_rpm: float = 3500.0
-    power: float = 1500.0  # W at the highest speed; where the machine file does not state it, a small drive
-    slide_accel: float = 0.0  # mm/s²; 0: not known
+    power: float = 1500.0  # W at the highest speed; the default is a small drive
+    slide_accel: float = 0.0  # mm/s², or 0 if it is unknown
     c_rpm: float = 200.0
-    live: tuple[int, int] = (15, 16)  # M codes of the live tool: on, off
-    live_output: bool = True  # SINUMERIK: an output turns the live tool as spindle 2
-    third_axis: str = "C"  # what SINUMERIK programs call C; empty: there is none
-    spindle_is_c: bool = True  # C is a second use of the spindle: it taps without a holder that gives
-    chuck: tuple[int, int] | None = None  # SINUMERIK: M codes that open and close it
-    travel: tuple[float, float] = (0.0, 0.0)  # mm, of X as a radius and of Z; 0: not known
+    live: tuple[int, int] = (15, 16)  # =
+    live_output: bool = True  # SINUMERIK: an output drives the live tool as spindle 2
+    third_axis: str = "C"  # name of the C axis in SINUMERIK programs; empty without a C axis
+    spindle_is_c: bool = True  # the C axis is the spindle, so rigid tapping is possible
+    chuck: tuple[int, int] | None = None  # SINUMERIK: M codes that open and close the chuck
+    travel: tuple[float, float] = (0.0, 0.0)  # mm, travel of X (as a radius) and of Z, or 0 if unknown
     tools: Mapping[int, ToolShape] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
 class Setting:
-    """Lengths in the unit of the program. ``change_z`` is Z where tools change, 0 where nobody has said it,
-    ``bar`` the bar's diameter.
+    """State of the program in which a shape is written, with lengths in the unit of the program.
 
-    ``called``: the shape stands in a subroutine, ``used`` are the tools before it,
-    ``free_sub`` the first number that no subroutine of the program has, or no labelled contour of SINUMERIK.
+    ``change_z`` is Z of the tool change position, or 0 if it is not specified, and ``bar`` the bar diameter.
+    ``called`` means that the shape is in a subroutine. ``used`` are the tools used before it. ``free_sub`` is
+    the first number that no subroutine of the program uses, and in SINUMERIK no labeled contour.
     """
 
     metric: bool = False
@@ -187,19 +188,19 @@ class Setting:
 
     @property
     def near(self) -> float:
-        """How near a rapid comes to the part."""
+        """Distance from the part at which a rapid ends."""
         return _NEAR[self.metric]
 
     @property
     def clear(self) -> float:
-        """Z where tools change."""
+        """Z of the tool change position."""
         return self.change_z or CLEAR[self.metric]
 
     @property
     def mm(self) -> float:
-        """mm of one unit of the program."""
+        """Size of one unit of the program in mm."""
         return 1.0 if self.metric else 25.4
 
     def tool(self, number: float) -> ToolShape | None:
-        """The shape of a tool, where its sheet states one."""
+        """Return the shape of a tool, or None if its tool data has no shape."""
         return self.shop.tools.get(int(number))

@@ -1,4 +1,4 @@
-"""The shapes that there are, in the order in which they are offered, each with the key that opens it."""
+"""Table of the shapes in the order of the menu, each with its key."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ from core.extras.shapes.threads.tapping import SINUMERIK_TAP, TAP
 from core.extras.shapes.threads.threading import SINUMERIK_THREAD, THREAD
 from core.language.source import Dialect
 
-# H, E and Space stop the machine on every page: they open nothing.
+# H, E and Space stop the machine on every page, so they cannot open a shape.
 SHAPES: dict[str, Shape] = {
     "N": HEAD,
     "F": FACE,
@@ -85,7 +85,7 @@ HELPERS_OF = {Dialect.OMNITURN: HELPERS, Dialect.SINUMERIK: SINUMERIK_HELPERS}
 
 
 def _labelled(shape: Shape) -> Shape:
-    """A contour that CYCLE95 finds by its labels."""
+    """Return the shape with a label field, for a contour that CYCLE95 finds by its labels."""
     return replace(shape, fields=(*shape.fields, LABEL))
 
 
@@ -114,7 +114,7 @@ _BY_NAME = {dialect: {shape.name: shape for shape in table.values()} for dialect
 
 
 def named(words: list[str], dialect: Dialect = Dialect.OMNITURN) -> tuple[Shape, list[str]] | None:
-    """The shape whose name begins these words, and the words behind it; None where none does."""
+    """Return the shape whose name begins these words, and the remaining words; or None."""
     for count in (2, 1):
         found = _BY_NAME[dialect].get(" ".join(words[:count]))
         if found is not None and len(words) >= count:

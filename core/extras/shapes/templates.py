@@ -1,4 +1,4 @@
-"""Heads and templates of programs, with the calculators, in SINUMERIK: begin, rough, thread, feed a bar."""
+"""Program heads and templates, and calculators for SINUMERIK: start, rough, thread and bar feed."""
 
 from __future__ import annotations
 
@@ -96,7 +96,7 @@ SINUMERIK_HEAD = replace(
 """The same for a control that knows its rapid: zero offset, plane, unit of F too."""
 
 
-V60_DEEP = 0.6134  # of a thread of 60 degrees, in pitches; ISO 68-1
+V60_DEEP = 0.6134  # depth of a 60-degree thread in pitches, ISO 68-1
 _TOOL = Field("T", "TOOL", Kind.TOOL, lambda _v, s: float(next_tool(s)), most=32)
 _SPEED = Field("RPM", "SPINDLE SPEED, RPM", Kind.RPM, 1000.0, most=MOST_RPM)
 _ACROSS = Field("FROM", "DIAMETER", Kind.DIAMETER, lambda v, s: bar(v, s) or (25.0 if s.metric else 1.0))
@@ -115,7 +115,7 @@ def _bar(_filled: Filled) -> Sketch:
 
 
 def _change(filled: Filled, setting: Setting, code: Code) -> None:
-    if setting.used:  # before the first tool Z counts from another place
+    if setting.used:  # before the first tool, Z has another zero
         code.rapid(z=setting.clear)
     code.begin(filled.n("T"), filled.n("RPM"), filled.n("FROM") / 2.0, setting.near)
 
@@ -225,7 +225,7 @@ BAR_FEED = Shape(
 )
 
 
-_BAR_RATE = {False: 20.0, True: 500.0}  # by metric, a minute
+_BAR_RATE = {False: 20.0, True: 500.0}  # by metric, feed per minute
 
 
 def _speed(filled: Filled, _setting: Setting, code: Code) -> None:
@@ -233,13 +233,13 @@ def _speed(filled: Filled, _setting: Setting, code: Code) -> None:
 
 
 def _speed_says(filled: Filled, setting: Setting) -> tuple[str, ...]:
-    """The feed a minute as it is written here."""
+    """Return the notes with the feed per minute in the syntax of SINUMERIK."""
     _, *others = SPEED.says(filled, setting)
     return Message("equivalent feed per minute: G94 F{number}", number=figure(filled.n("RATE"), 3)), *others
 
 
 def _run_up(filled: Filled, setting: Setting) -> Filled:
-    """With three turns before the thread: the slide has to reach the lead."""
+    """Return the shape with a run-up of three pitches, in which the axis reaches the lead."""
     return replace(filled, values={**filled.values, "RUNUP": 3.0 * filled.n("PITCH") + setting.near})
 
 
@@ -248,7 +248,10 @@ def _passes(filled: Filled, setting: Setting, code: Code) -> None:
 
 
 def _passes_say(filled: Filled, setting: Setting) -> tuple[str, ...]:
-    """The cycle goes to its first pass by itself."""
+    """Return the notes without the start position.
+
+    The cycle moves to its first pass automatically.
+    """
     depth, _, passes = THREADS.says(filled, setting)
     return depth, passes
 

@@ -1,4 +1,4 @@
-"""Fields that many shapes have: tool, speed, feed, diameter of the bar; with what is proposed for them."""
+"""Fields used by many shapes, such as tool, speed, feed and bar diameter, with their proposals."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ MOST_RPM = 100_000.0
 
 
 def tool_field(*kinds: ToolKind) -> Field:
-    """T: the first of such a kind by the tool sheets, one that is not used yet; else the next number."""
+    """Return a tool field that proposes the first unused tool of these kinds, or else the next number."""
 
     def proposed(values: Values, setting: Setting) -> Value | None:
         inside = values.get("SIDE") == "BORE" or kinds == (ToolKind.BORING,)
@@ -30,24 +30,24 @@ def tool_field(*kinds: ToolKind) -> Field:
 
 
 def next_tool(setting: Setting) -> int:
-    """The number behind the largest that is used, and that no sheet gives to another tool."""
+    """Return the next number after the largest used tool that the tool data does not assign."""
     first = max(setting.used, default=0) + 1
     free = (n for n in range(first, _MOST_TOOL + 1) if n not in setting.shop.tools)
     return next(free, min(first, _MOST_TOOL))
 
 
 def bar(_values: Values, setting: Setting) -> Value | None:
-    """The diameter of the bar, where the head says it."""
+    """Propose the bar diameter that the head specifies."""
     return setting.bar or None
 
 
 def around(word: str) -> Callable[[Values], float]:
-    """The diameter that a field says."""
+    """Return a function that reads a diameter from the field ``word``."""
     return lambda values: abs(number(values, word))
 
 
 def rpm_field(work: Work, across: Callable[[Values], float]) -> Field:
-    """S: by material, diameter and what the machine can do."""
+    """Return a speed field with a proposal by material, diameter and spindle."""
 
     def proposed(values: Values, setting: Setting) -> Value | None:
         return cutting_data.rpm(work, across(values) or setting.bar or 0.5, setting)
@@ -56,7 +56,7 @@ def rpm_field(work: Work, across: Callable[[Values], float]) -> Field:
 
 
 def feed_field(work: Work, word: str = "FEED", label: str = "FEED", **more: object) -> Field:
-    """F a turn: by material and tool."""
+    """Return a field for the feed per revolution, with a proposal by material and tool."""
 
     def proposed(values: Values, setting: Setting) -> Value | None:
         return cutting_data.feed(work, setting, number(values, "T"), number(values, "DIA"))
@@ -67,12 +67,12 @@ def feed_field(work: Work, word: str = "FEED", label: str = "FEED", **more: obje
 
 
 def surface_field() -> Field:
-    """Constant surface speed; 0: the same rpm all the way."""
+    """Return a field for constant surface speed; 0 means constant rpm."""
     return Field("SURF", "SURFACE SPEED", Kind.SURFACE, 0.0, zero=True)
 
 
 def too_fast(filled: Filled, setting: Setting) -> Iterator[Refusal]:
-    """More rpm than the spindle has."""
+    """Yield an error if the rpm exceeds the limit of the spindle."""
     turns = filled.n("RPM")
     if turns > setting.shop.max_rpm:
         most = f"{setting.shop.max_rpm:g}"
@@ -89,7 +89,7 @@ def too_fast(filled: Filled, setting: Setting) -> Iterator[Refusal]:
 
 
 def per_rev(filled: Filled, setting: Setting, *words: str) -> Iterator[Refusal]:
-    """Feeds beyond what the control takes, or what no tool of this size stands."""
+    """Yield errors for feeds per revolution that are far too high."""
     most = 0.05 * 25.4 / setting.mm
     for word in words:
         if filled.n(word) > most:
@@ -102,7 +102,7 @@ def per_rev(filled: Filled, setting: Setting, *words: str) -> Iterator[Refusal]:
 
 
 def too_deep(filled: Filled, setting: Setting) -> Iterator[Refusal]:
-    """DEEP beyond what the flutes of the tool reach by its sheet."""
+    """Yield an error if DEEP exceeds the flute length in the tool data."""
     shape, deep = setting.tool(filled.n("T")), filled.n("DEEP")
     if shape is not None and shape.length and deep > shape.length / setting.mm + 1e-9:
         yield Refusal(

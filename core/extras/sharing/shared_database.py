@@ -1,6 +1,6 @@
-"""Programs shared in a PostgreSQL database: rows are added in one transaction, and never changed.
+"""Sharing of programs in a PostgreSQL database, whose rows are added in one transaction and never changed.
 
-A connection string is read as libpq reads it: it is shown without secrets, and uses TLS to other computers.
+Connection strings are read as by libpq, shown without secrets, and use TLS to other computers.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ _VERIFIED = {"verify-ca", "verify-full"}
 
 
 def parsed(conninfo: str) -> dict[str, str]:
-    """The parameters that libpq reads. Raises SharingError, which repeats none of them."""
+    """Return the parameters of a connection string. Raises SharingError, which does not quote them."""
     if importlib.util.find_spec("psycopg") is None:
         raise Cause.NO_PSYCOPG.error("")
     import psycopg  # noqa: PLC0415  optional, and only for those who share so
@@ -47,9 +47,9 @@ def parsed(conninfo: str) -> dict[str, str]:
 
     try:
         found = {key: str(value) for key, value in conninfo_to_dict(conninfo).items() if value}
-    except psycopg.Error:  # its sentence has the words that libpq could not read
+    except psycopg.Error:  # its message quotes the text that libpq could not read
         found = {"port": "?"}
-    # In an address, a sign of the password that is not written as %.. ends up in another parameter.
+    # In an address, a password character that is not percent-encoded ends up in another parameter.
     misread = "://" in conninfo and "@" in found.get("host", "") + found.get("dbname", "")
     if misread or not found.get("port", "0").replace(",", "").isdigit():
         raise Cause.UNREADABLE.error("")
@@ -57,7 +57,7 @@ def parsed(conninfo: str) -> dict[str, str]:
 
 
 def shown(values: Mapping[str, str]) -> str:
-    """The parameters that sentences may name; also whether the server's certificate goes unchecked."""
+    """Return the parameters that messages may show, and whether the server's certificate is not verified."""
     named = " ".join(f"{key}={values[key]}" for key in _SHOWN if key in values)
     return (
         named
@@ -67,7 +67,10 @@ def shown(values: Mapping[str, str]) -> str:
 
 
 def with_tls(values: Mapping[str, str]) -> dict[str, str]:
-    """The parameters; a server elsewhere has to prove who it is, unless they or the system say otherwise."""
+    """Return the parameters with TLS verification for a server on another computer.
+
+    Parameters or environment variables that specify TLS have priority.
+    """
     found = dict(values)
     if is_local(values):
         return found
@@ -79,7 +82,7 @@ def with_tls(values: Mapping[str, str]) -> dict[str, str]:
 
 
 def is_local(values: Mapping[str, str]) -> bool:
-    """Return whether the server is on this computer, as far as the parameters say."""
+    """Return whether the server is on this computer according to the parameters."""
     if "service" in values:
         return False
     hosts = values.get("hostaddr") or values.get("host") or os.environ.get("PGHOST", "")
@@ -87,7 +90,7 @@ def is_local(values: Mapping[str, str]) -> bool:
 
 
 def _is_here(host: str) -> bool:
-    if host in {"", "localhost"} or host.startswith(("/", "@")):  # the latter are sockets
+    if host in {"", "localhost"} or host.startswith(("/", "@")):  # / and @ begin the names of sockets
         return True
     try:
         return ip_address(host).is_loopback
@@ -105,18 +108,18 @@ CREATE TABLE IF NOT EXISTS turndesk.desks (home text PRIMARY KEY, state bytea NO
 """
 _ADD = "INSERT INTO turndesk.versions VALUES (%s, %s, %s) ON CONFLICT DO NOTHING"
 _TELL = "INSERT INTO turndesk.desks VALUES (%s, %s) ON CONFLICT (home) DO UPDATE SET state = excluded.state"
-# Longer values than ours come cut off, so that they are strays.
+# Values that are too long are truncated, so that they are treated as strays.
 _DESKS = "SELECT home, substr(state, 1, %s) FROM turndesk.desks"
 _LIMITS = {
     "connect_timeout": 5,
     "application_name": "turndesk",
     "options": "-c statement_timeout=30s -c lock_timeout=10s -c synchronous_commit=on",
     "keepalives_idle": 10,
-    "tcp_user_timeout": 15_000,  # ms: a network that has gone is noticed
+    "tcp_user_timeout": 15_000,  # ms, to detect a lost network
 }
-_AT_ONCE = 500  # records a question
-# What a server says that is asked but refuses to begin: libpq hands on its sentence and no code. It may try
-# twice, with TLS and without: the cause that stands first here is the one to remove.
+_AT_ONCE = 500  # records per query
+# Messages of a server that rejects a connection. libpq returns them without a code. libpq may try twice, with
+# and without TLS. The first matching cause in this table is the one to correct.
 _AT_THE_DOOR: tuple[tuple[Cause, tuple[str, ...]], ...] = (
     (Cause.WRONG_PASSWORD, ("authentication failed", "no password supplied")),
     (Cause.NOT_TRUSTED, ("certificate", "ssl error")),
@@ -126,7 +129,7 @@ _AT_THE_DOOR: tuple[tuple[Cause, tuple[str, ...]], ...] = (
     (Cause.NOT_THERE, ("does not exist",)),
     (Cause.FULL, ("no space left",)),
 )
-# By the server's error codes, the first letters of them.
+# Causes by the first characters of the server's error codes.
 _CODES: tuple[tuple[Cause, tuple[str, ...]], ...] = (
     (Cause.NO_RIGHT, ("42501", "28", "25006")),
     (Cause.NOT_BEGUN, ("42P01", "3F000")),
@@ -137,19 +140,19 @@ _CODES: tuple[tuple[Cause, tuple[str, ...]], ...] = (
 
 
 class SharedDatabase:
-    """``conninfo`` is what libpq takes: ``host=shop-pc dbname=shop user=lathe3``, or an address.
+    """A PostgreSQL database as a shared place.
 
-    A connection is made for each call and ended by it: a server that is started anew, or killed, costs one
-    look and nothing else.
+    ``conninfo`` is a connection string of libpq, such as ``host=shop-pc dbname=shop user=lathe3``, or an
+    address. Each call opens and closes a connection, so a restart of the server affects at most one call.
     """
 
     def __init__(self, conninfo: str) -> None:
         self.name, self._conninfo = database_at("([sharing] postgresql in the machine file)"), conninfo
-        with suppress(SharingError):  # told by whoever asks the database
+        with suppress(SharingError):  # reported when the database is used
             self.name = database_at(shown(with_tls(parsed(conninfo))))
 
     def begin(self) -> None:
-        """Schema and tables, in one transaction."""
+        """Create the schema and the tables in one transaction."""
         with self._asked(demand=False) as connection:
             connection.execute(_LAYOUT)
             connection.execute(
@@ -159,7 +162,7 @@ class SharedDatabase:
             self._demand(connection)
 
     def look(self, known: Mapping[str, SharedVersion]) -> Found:
-        """Ids of all, records of those that are not known."""
+        """Return the ids of all versions, and the records of unknown versions."""
         with self._asked() as connection:
             there = {str(row[0]) for row in connection.execute("SELECT id FROM turndesk.versions")}
             wanted, fresh, strays = sorted(there - known.keys()), list[SharedVersion](), list[str]()
@@ -175,7 +178,10 @@ class SharedDatabase:
         return Found(frozenset(there - set(strays)), tuple(fresh), desks, tuple(strays))
 
     def put(self, versions: Sequence[Published], state: DeskState) -> None:
-        """All in one transaction: back when the server has it on its disk."""
+        """Add versions and this machine's state in one transaction.
+
+        The method returns when the data is on the server's disk.
+        """
         with self._asked() as connection:
             rows = [(each.version.id, written(each.version), each.text) for each in versions]
             if rows:
@@ -183,7 +189,7 @@ class SharedDatabase:
             connection.execute(_TELL, (state.home, state.written()))
 
     def text(self, version: SharedVersion) -> bytes:
-        """One row."""
+        """Return the text of a version from its row, checked against its checksum."""
         query = "SELECT substr(program_text, 1, %s) FROM turndesk.versions WHERE id = %s"
         with self._asked() as connection:
             row = connection.execute(query, (MOST_BYTES + 1, version.id)).fetchone()
@@ -212,7 +218,7 @@ class SharedDatabase:
 
     @contextmanager
     def _asked(self, *, demand: bool = True) -> Iterator[psycopg.Connection]:
-        """One transaction on a connection of its own; what the server refuses comes as SharingError."""
+        """Open a connection with one transaction; raise errors of the server as SharingError."""
         values: dict[str, Any] = with_tls(parsed(self._conninfo))
         import psycopg  # noqa: PLC0415  optional, and only for those who share so
 
@@ -237,5 +243,5 @@ class SharedDatabase:
 
 
 def _bare(line: str) -> str:
-    """The cause alone, of a connection that was not made."""
+    """Return only the cause from the message of a failed connection."""
     return line.rpartition(" failed: ")[2].removeprefix("FATAL:")

@@ -1,7 +1,7 @@
-"""Programs shared in a folder: a file a version, a file a desk. Files are added whole or not at all.
+"""Sharing of programs in a folder, with one file for each version and one for each machine.
 
-What is written to a network drive is not locked there: nobody writes a file that another desk writes, but
-for versions, which are the same bytes whoever writes them.
+Files are added completely or not at all. Files on a network drive are not locked. Each machine writes only
+its own files and version files, whose contents do not depend on the machine that writes them.
 """
 
 from __future__ import annotations
@@ -31,27 +31,27 @@ from core.extras.sharing.version_record import (
 from core.input_file import NotAFileError, TooLargeError, input_bytes
 from core.message import Message
 
-MARK = "turndesk-share.json"  # without it the folder is none of ours: an empty mount point has none
+MARK = "turndesk-share.json"  # identifies a shared folder; an empty mount point does not have this file
 VERSIONS, DESKS = "versions", "desks"
-LONGEST = LONGEST_RECORD + 1 + MOST_BYTES  # bytes of a version's file
+LONGEST = LONGEST_RECORD + 1 + MOST_BYTES  # bytes, largest file of a version
 _ENDING, _STATE, _WRITING = ".version", ".json", ".writing-"
 
 
 class SharedFolder:
-    """A folder that all desks reach. A version's file is its record, a line end, and its text."""
+    """A folder that all machines can access. A version file has the record, a line end and the text."""
 
     def __init__(self, folder: Path) -> None:
         self.name = folder_at(folder)
         self._folder = folder
-        self._sizes: dict[str, int] = {}  # of files, by the id of the version
+        self._sizes: dict[str, int] = {}  # file sizes by id of the version
 
     @property
     def mark(self) -> Path:
-        """The file by which the folder is known for one of shared programs."""
+        """Path of the file that identifies a folder with shared programs."""
         return self._folder / MARK
 
     def begin(self) -> None:
-        """Lay it out; the folder itself has to be there: one that is not mounted must not be made."""
+        """Set up the folder, which must exist, so that a folder that is not mounted is never created."""
         with self._system():
             if not self.mark.exists():
                 os.stat(self._folder)
@@ -61,7 +61,7 @@ class SharedFolder:
             self._demand()
 
     def look(self, known: Mapping[str, SharedVersion]) -> Found:
-        """Names and sizes first; only files of versions that are not known are opened."""
+        """Return the versions in the folder; only files of unknown versions are opened."""
         with self._system():
             self._demand()
             there, fresh, strays = set[str](), list[SharedVersion](), list[str]()
@@ -81,7 +81,7 @@ class SharedFolder:
             return Found(frozenset(there), tuple(fresh), desks, (*strays, *bad))
 
     def put(self, versions: Sequence[Published], state: DeskState) -> None:
-        """Each file is written aside, brought to the disk, then gets its name; the folder at the end."""
+        """Add version files and this machine's state; each file is synced before it gets its name."""
         with self._system():
             self._demand()
             self._clear(state.home)
@@ -92,7 +92,7 @@ class SharedFolder:
             _to_disk(self._folder / DESKS)
 
     def text(self, version: SharedVersion) -> bytes:
-        """Of the version's file, behind its first line."""
+        """Return the text of a version from its file, checked against its checksum."""
         path = self._folder / VERSIONS / f"{version.id}{_ENDING}"
         with self._system():
             self._demand()
@@ -103,7 +103,10 @@ class SharedFolder:
                 raise Cause.DAMAGED.error(self.name, error) from error
 
     def _is_whole(self, path: Path, version: SharedVersion) -> bool:
-        """By its size: a file that somebody has cut off is published again by a desk that has the text."""
+        """Return whether a version file has the expected size.
+
+        A truncated file is published again by a machine that has the text.
+        """
         size = self._sizes.setdefault(version.id, len(written(version)) + 1 + version.size)
         return path.stat().st_size == size
 
@@ -114,7 +117,7 @@ class SharedFolder:
             with suppress(OSError):
                 if input_bytes(path, len(whole)) == whole:
                     return
-            path.replace(path.with_name(f"{path.name}.damaged"))  # kept: whoever spoilt it may want to see it
+            path.replace(path.with_name(f"{path.name}.damaged"))  # saved for analysis
         self._write(path, whole, home)
 
     def _write(self, path: Path, data: bytes, home: str = "") -> None:
@@ -126,7 +129,7 @@ class SharedFolder:
         draft.replace(path)
 
     def _clear(self, home: str) -> None:
-        """What a power cut has left of this desk's own writing."""
+        """Remove unfinished files of this machine that a power failure has left."""
         for folder in (VERSIONS, DESKS):
             for path in (self._folder / folder).glob(f"{_WRITING}{home}-*"):
                 path.unlink(missing_ok=True)
@@ -142,7 +145,7 @@ class SharedFolder:
         return tuple(found), strays
 
     def _demand(self) -> None:
-        """Raises SharingError where the folder is not one of shared programs, or of a newer format."""
+        """Raise SharingError if the folder is not set up for shared programs or has a newer format."""
         os.stat(self._folder)
         try:
             data = input_bytes(self.mark, LONGEST_RECORD)
@@ -169,13 +172,13 @@ class SharedFolder:
 
 
 def _files(folder: Path) -> list[Path]:
-    """What lies in the folder, but for what somebody is writing just now."""
+    """Return the files in the folder, except files that are being written."""
     paths = (Path(entry.path) for entry in os.scandir(folder))
     return sorted(path for path in paths if not path.name.startswith(_WRITING))
 
 
 def _version_in(path: Path) -> SharedVersion | None:
-    """None: the file is no whole version, by what its first line says of the rest."""
+    """Return the version in a file; None if the file is incomplete or invalid."""
     try:
         record, _, text = input_bytes(path, LONGEST).partition(b"\n")
         version = read_version(path.name.removesuffix(_ENDING), record)
@@ -187,7 +190,7 @@ def _version_in(path: Path) -> SharedVersion | None:
 
 def _to_disk(folder: Path) -> None:
     if sys.platform == "win32":
-        return  # Windows opens no folder; its names go to the disk with the file
+        return  # Windows cannot open folders; their names are synced with the file
     handle = os.open(folder, os.O_RDONLY)
     try:
         os.fsync(handle)

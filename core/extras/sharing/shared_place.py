@@ -1,6 +1,6 @@
-"""What a place must offer in which desks share programs, and why programs cannot be shared just now.
+"""Interface of a place where machines share programs, and the errors of sharing.
 
-Versions are added to a place, never changed. Each cause is one sentence, with what to do.
+Versions are added to a place and never changed. Each error has one cause and a remedy.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ class Published(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Found:
-    """What a look at the place has found. ``there``: ids of all its versions; ``fresh``: the unknown ones.
+    """Contents of a shared place: ``there`` are the ids of all versions, and ``fresh`` the unknown versions.
 
-    ``strays`` are things in it that are no version and no desk, by name: garbage, damaged, half written.
+    ``strays`` are the names of other items, such as damaged or incomplete files.
     """
 
     there: frozenset[str]
@@ -38,38 +38,41 @@ class Found:
 
 
 class SharedPlace(Protocol):
-    """Each call may take its time and raise SharingError with one cause; it is made on a worker only."""
+    """A place where machines share programs.
 
-    name: str  # as sentences call it
+    Calls may take long, so they are made only in a worker thread. They raise SharingError.
+    """
+
+    name: str  # the name in messages
 
     def begin(self) -> None:
-        """Lay the place out; what is laid out already stays as it is."""
+        """Set up the place. Parts that are already set up remain unchanged."""
         ...
 
     def look(self, known: Mapping[str, SharedVersion]) -> Found:
-        """What is there, with the records of versions that are not ``known`` (by id)."""
+        """Return the contents of the place, with the records of versions that are not ``known`` (by id)."""
         ...
 
     def put(self, versions: Sequence[Published], state: DeskState) -> None:
-        """Add versions, and say what this desk has. All is there to stay when this is back.
+        """Add versions and the state of this machine, and return when they are stored permanently.
 
-        A version that is there already is left as it is. After a failure some of them may be there, each
-        whole: the same call again adds the rest.
+        Versions that already exist are left unchanged. After a failure some versions may have been added,
+        each completely. The same call then adds the rest.
         """
         ...
 
     def text(self, version: SharedVersion) -> bytes:
-        """The text of a version, checked."""
+        """Return the text of a version, checked against its checksum."""
         ...
 
 
 def folder_at(folder: object) -> str:
-    """What sentences call a folder."""
+    """Return the name of a folder for messages."""
     return Message("the folder {folder}", folder=folder)
 
 
 def database_at(address: str) -> str:
-    """What they call a database; ``address`` without a password."""
+    """Return the name of a database for messages; ``address`` must not contain a password."""
     return Message("the database {address}", address=address)
 
 
@@ -79,7 +82,7 @@ _NOT_THERE = frozenset({errno.ENOENT, errno.ENOTDIR})
 
 
 class Cause(Enum):
-    """What is in the way, and what to do about it."""
+    """Cause of a sharing error; the value is the template of the message."""
 
     AWAY = (
         "{place} does not respond ({why}); this control continues to work, and will "
@@ -125,24 +128,24 @@ class Cause(Enum):
 
     @property
     def code(self) -> str:
-        """Return the code of the error: the name in kebab case, such as ``no-right``."""
+        """Code of the error: the name in kebab case, such as ``no-right``."""
         return "disk-full" if self is Cause.FULL else self.name.lower().replace("_", "-")
 
     def error(self, place: str, why: object = "") -> SharingError:
-        """The sentence for it, on one line."""
+        """Return the SharingError with this cause, with the reason ``why`` on one line."""
         made = SharingError(Message(self.value, place=place, why=" ".join(str(why).split())), self.code)
         made.cause = self
         return made
 
 
 class SharingError(CodedError):
-    """Sharing cannot do what it was asked; nothing that was there has changed."""
+    """Sharing cannot do a requested operation. The shared contents are unchanged."""
 
     cause: Cause
 
 
 def of_system(place: str, error: OSError) -> SharingError:
-    """The sentence for what the system says."""
+    """Return the SharingError for an error of the system."""
     why = error.strerror or str(error)
     if error.errno in _FULL:
         return Cause.FULL.error(place)

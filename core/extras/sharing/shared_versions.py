@@ -1,4 +1,4 @@
-"""Versions of programs that desks share, as this desk keeps them: its own, and those of others."""
+"""Shared program versions as this machine stores them: its own versions and those of other machines."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from typing import NamedTuple
 
 
 class SharedVersion(NamedTuple):
-    """One version of a program: whose it is, what it was made from, and the SHA-256 of its text.
+    """One version of a program: its machine, the versions it was made from, and the SHA-256 of its text.
 
-    ``id`` is SHA-256 of its record, so that two desks never give the same one to different versions.
-    ``saved`` is what the clock of that desk said (UTC): shown, and never compared.
+    ``id`` is the SHA-256 of its record, so different versions never have the same id. ``saved`` is the time
+    of the machine's clock (UTC); it is shown and never compared.
     """
 
     id: str
@@ -27,7 +27,7 @@ class SharedVersion(NamedTuple):
 
     @property
     def key(self) -> str:
-        """Of its program: names that differ by case only are one program."""
+        """Key of its program. Names that differ only in case belong to the same program."""
         return key_of(self.program)
 
 
@@ -35,31 +35,39 @@ _COLUMNS = ", ".join(SharedVersion._fields)
 
 
 def key_of(name: str) -> str:
-    """The program that a name means, whatever the case of its letters."""
+    """Return the key of a program name, which ignores case."""
     return name.casefold()
 
 
 @dataclass(frozen=True, slots=True)
 class Family:
-    """All that is known of one program's versions. ``here`` is the id of the one that this machine has."""
+    """All known versions of one program. ``here`` is the id of the version on this machine, or empty."""
 
     versions: Mapping[str, SharedVersion] = field(default_factory=dict)
     here: str = ""
 
     @property
     def newest(self) -> tuple[SharedVersion, ...]:
-        """Those that no other follows: one, unless two desks have changed the same version."""
+        """Versions that no other version follows.
+
+        There is one, unless two machines have changed the same version.
+        """
         followed = {each for version in self.versions.values() for each in version.follows}
         return tuple(version for name, version in sorted(self.versions.items()) if name not in followed)
 
     @property
     def elsewhere(self) -> tuple[SharedVersion, ...]:
-        """The newest ones that this machine does not have."""
+        """Newest versions that this machine does not have."""
         return tuple(version for version in self.newest if version.id != self.here)
 
     @property
     def state(self) -> str:
-        """``same``: here is the newest; ``newer`` elsewhere; ``both`` changed; ``new``: not here yet."""
+        """Relation to other machines.
+
+        The value is ``same`` if this machine has the newest version, ``newer`` if another machine has a newer
+        version, ``both`` if both have changed the program, or ``new`` if this machine does not have the
+        program.
+        """
         if not self.elsewhere:
             return "same"
         if not self.here:
@@ -67,7 +75,7 @@ class Family:
         return "newer" if all(map(self.newer, self.elsewhere)) else "both"
 
     def made_from(self, version: str, older: str) -> bool:
-        """Whether ``version`` is ``older`` or was made from it, over however many desks."""
+        """Return whether ``version`` is ``older`` or was made from it directly or indirectly."""
         waiting, seen = [version], set[str]()
         while waiting:
             at = waiting.pop()
@@ -79,21 +87,28 @@ class Family:
         return False
 
     def newer(self, version: SharedVersion) -> bool:
-        """Whether it was made from what this machine has; else both were changed, or are of one name only."""
+        """Return whether a version was made from the version on this machine.
+
+        Otherwise both machines changed the program, or the programs only have the same name. Without a
+        version on this machine the result is True.
+        """
         return not self.here or self.made_from(version.id, self.here)
 
     def of_text(self, text: str) -> SharedVersion | None:
-        """A version with this text (SHA-256) that comes after what this machine has; the newest, if any."""
+        """Return a version with this text (SHA-256) that is newer than the one on this machine, or None.
+
+        A version that no other version follows is preferred.
+        """
         found = [each for each in self.versions.values() if each.text == text and self.newer(each)]
         newest = {each.id for each in self.newest}
         return max(found, key=lambda each: (each.id in newest, each.id), default=None)
 
 
-# --- the tables -----------------------------------------------------------------------------------------
+# --- Tables ---------------------------------------------------------------------------------------------
 
 
 def families(connection: sqlite3.Connection, more: Iterable[SharedVersion] = ()) -> dict[str, Family]:
-    """Every shared program by its key; with ``more`` versions as if they were known already."""
+    """Return the versions of every shared program by key; ``more`` versions are treated as known."""
     here = dict(connection.execute("SELECT program, version FROM shared_here").fetchall())
     found: dict[str, dict[str, SharedVersion]] = {}
     for version in (*all_versions(connection), *more):
@@ -102,13 +117,13 @@ def families(connection: sqlite3.Connection, more: Iterable[SharedVersion] = ())
 
 
 def all_versions(connection: sqlite3.Connection) -> tuple[SharedVersion, ...]:
-    """Those of all programs, in the order in which they became known."""
+    """Return the versions of all programs in the order in which they became known."""
     rows = connection.execute(f"SELECT {_COLUMNS} FROM shared_versions ORDER BY rowid")
     return tuple(_version(row) for row in rows)
 
 
 def unpublished(connection: sqlite3.Connection) -> tuple[SharedVersion, ...]:
-    """Versions that the shared place does not have and whose text is kept here."""
+    """Return the versions that the shared place does not have and whose text is stored here."""
     rows = connection.execute(
         f"SELECT {_COLUMNS} FROM shared_versions WHERE published = 0 AND EXISTS"
         " (SELECT 1 FROM program_versions WHERE sha256 = shared_versions.text) ORDER BY rowid"
@@ -117,7 +132,7 @@ def unpublished(connection: sqlite3.Connection) -> tuple[SharedVersion, ...]:
 
 
 def text_of(connection: sqlite3.Connection, digest: str) -> bytes | None:
-    """A text of this SHA-256 that is kept here; None: there is none, or it is not as it was saved."""
+    """Return the stored text with this SHA-256; None if it is missing or damaged."""
     for (text,) in connection.execute("SELECT text FROM program_versions WHERE sha256 = ?", (digest,)):
         if sha256(text).hexdigest() == digest:
             return bytes(text)
@@ -125,7 +140,7 @@ def text_of(connection: sqlite3.Connection, digest: str) -> bytes | None:
 
 
 def add(connection: sqlite3.Connection, versions: Iterable[SharedVersion]) -> None:
-    """Versions become known; what is known already stays as it is."""
+    """Store versions as known. Versions that are already known remain unchanged."""
     connection.executemany(
         f"INSERT INTO shared_versions ({_COLUMNS}) VALUES (?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT DO NOTHING",
         [(*each[:4], " ".join(each.follows), *each[5:]) for each in versions],
@@ -133,26 +148,26 @@ def add(connection: sqlite3.Connection, versions: Iterable[SharedVersion]) -> No
 
 
 def published(connection: sqlite3.Connection, versions: Iterable[SharedVersion]) -> None:
-    """The shared place has taken these."""
+    """Mark versions as stored in the shared place."""
     connection.executemany(
         "UPDATE shared_versions SET published = 1 WHERE id = ?", [(each.id,) for each in versions]
     )
 
 
 def withdraw(connection: sqlite3.Connection, version: SharedVersion) -> None:
-    """A version that came to nothing before anybody else knew of it."""
+    """Delete a version that has not been published."""
     connection.execute("DELETE FROM shared_versions WHERE id = ? AND published = 0", (version.id,))
 
 
 def set_there(connection: sqlite3.Connection, there: Collection[str]) -> None:
-    """These and no others are in the shared place: what has gone from it is published again."""
+    """Mark exactly these versions as published, so that versions missing there are published again."""
     rows = connection.execute("SELECT id, published FROM shared_versions").fetchall()
     changed = [(int(name in there), name) for name, before in rows if (name in there) != bool(before)]
     connection.executemany("UPDATE shared_versions SET published = ? WHERE id = ?", changed)
 
 
 def set_here(connection: sqlite3.Connection, key: str, version: str) -> None:
-    """This machine has this version of the program in its folder; empty: none any more."""
+    """Store which version of a program this machine has in its folder; empty means that it has none."""
     if not version:
         connection.execute("DELETE FROM shared_here WHERE program = ?", (key,))
         return

@@ -1,4 +1,4 @@
-"""[sharing] of the machine file: where the programs of this desk are shared with other desks."""
+"""Table [sharing] of the machine file: the place where this machine shares programs with others."""
 
 from __future__ import annotations
 
@@ -8,15 +8,16 @@ from core.key_declaration import Range, Unit, file_key, key_table
 from core.message import Message
 from core.table_schema import Driver, DriverTable, FileReading, Finding, raw_at, written
 
-_LONGEST = 40  # letters of a desk's name
+_LONGEST = 40  # characters of a machine's name
 
 
 @key_table
 class SharingTable:
-    """Either ``folder`` or ``postgresql`` (what libpq takes); the other is empty.
+    """Settings for sharing programs.
 
-    ``desk`` is what this desk is called among the others; empty: as the machine. ``look``: seconds between
-    two looks at what is new there.
+    Either ``folder`` or ``postgresql`` (a connection string of libpq) is set. ``desk`` is the name of this
+    machine for other machines; empty means the machine's own name. ``look`` is the time between two checks
+    for new versions, in seconds.
     """
 
     folder: str = file_key(default="", meaning="Shared folder, mounted on every computer.")
@@ -38,7 +39,7 @@ def _rules(file: FileReading) -> Iterator[Finding]:
     if not values.has("sharing.folder", "sharing.postgresql", "sharing.desk"):
         return
     named = [kind for kind in ("folder", "postgresql") if values.text(f"sharing.{kind}")]
-    removed = raw_at(file.data, "sharing.git") is not None  # it has a finding of its own
+    removed = raw_at(file.data, "sharing.git") is not None  # it has its own finding
     if len(named) != 1 and not removed:
         said = " and ".join(named) or "none"
         yield Finding("sharing", said, "specify exactly one of the keys folder and postgresql", "many-places")

@@ -1,4 +1,4 @@
-"""The record of a shared version and of what a desk has: how they are written, and what is no good one."""
+"""Encoding and checking of the records of shared versions and of machine states."""
 
 from __future__ import annotations
 
@@ -13,34 +13,34 @@ from core.store.program_records import check_name
 from core.store.store_errors import StoreError
 
 FORMAT = 1
-MOST_BYTES = 32 * 1024 * 1024  # of a program: more is not shared
-LONGEST_STATE = 4 * 1024 * 1024  # bytes of what a desk says it has
+MOST_BYTES = 32 * 1024 * 1024  # bytes; larger programs are not shared
+LONGEST_STATE = 4 * 1024 * 1024  # bytes, largest state of a machine
 LONGEST_RECORD = 64 * 1024
 _TEXTS = ("program", "text", "desk", "saved", "why")
 _HEX = frozenset("0123456789abcdef")
 
 
 class RecordError(CodedError):
-    """It is no record of ours: garbage, half written, or damaged."""
+    """A record is invalid: not written by TurnDesk, incomplete or damaged."""
 
 
 def new_version(
     program: str, text: bytes, follows: tuple[str, ...], desk: str, saved: str, why: str
 ) -> SharedVersion:
-    """The version that a text becomes; its id follows from all the rest."""
+    """Return the version for a text. Its id is the SHA-256 of the other values."""
     bare = SharedVersion("", program, sha256(text).hexdigest(), len(text), follows, desk, saved, why)
     return bare._replace(id=sha256(written(bare)).hexdigest())
 
 
 def written(version: SharedVersion) -> bytes:
-    """The record as bytes, always the same for the same version; its id is their SHA-256."""
+    """Return the record of a version as bytes, always identical for the same version."""
     values = version._asdict()
     del values["id"]
     return _plain({"format": FORMAT, **values})
 
 
 def read_version(name: str, record: bytes) -> SharedVersion:
-    """The version whose record is kept under this id. Raises RecordError."""
+    """Return the version stored under this id. Raises RecordError if the record is invalid."""
     if sha256(record).hexdigest() != name:
         raise RecordError("the record does not match the checksum in the record name", "not-as-published")
     values = _object(record)
@@ -65,7 +65,7 @@ def read_version(name: str, record: bytes) -> SharedVersion:
 
 
 def checked_text(version: SharedVersion, text: bytes) -> bytes:
-    """The text, when it is that of the version. Raises RecordError."""
+    """Return the text if it matches the version. Raises RecordError if it does not."""
     if sha256(text).hexdigest() != version.text:
         raise RecordError(
             Message(
@@ -78,25 +78,28 @@ def checked_text(version: SharedVersion, text: bytes) -> bytes:
     return text
 
 
-# --- what a desk has ------------------------------------------------------------------------------------
+# --- State of a machine ---------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, slots=True)
 class DeskState:
-    """Which version of each program a desk has: ids by name. ``home`` tells desks of one name apart."""
+    """The versions that a machine has, as ids by program name.
+
+    ``home`` identifies the machine, because two machines may have the same name.
+    """
 
     home: str
     desk: str
-    at: str  # by its own clock, UTC
+    at: str  # UTC, by the machine's clock
     has: Mapping[str, str] = field(default_factory=dict)
 
     def written(self) -> bytes:
-        """As bytes."""
+        """Return the state encoded as JSON bytes."""
         return _plain({"format": FORMAT, "desk": self.desk, "at": self.at, "has": dict(self.has)})
 
 
 def read_state(home: str, data: bytes) -> DeskState:
-    """What a desk has told of itself. Raises RecordError."""
+    """Return the state that a machine has published. Raises RecordError if it is invalid."""
     values = _object(data)
     desk, at, has = values.get("desk"), values.get("at"), values.get("has")
     if not is_home(home) or not isinstance(desk, str) or not isinstance(at, str) or not isinstance(has, dict):
@@ -107,12 +110,12 @@ def read_state(home: str, data: bytes) -> DeskState:
 
 
 def is_home(text: str) -> bool:
-    """Whether it can tell a desk from others."""
+    """Return whether a text is a valid identifier of a machine."""
     return len(text) == 32 and set(text) <= _HEX
 
 
 def is_id(value: object) -> bool:
-    """Whether it can be the id of a version."""
+    """Return whether a value is a valid id of a version."""
     return isinstance(value, str) and len(value) == 64 and set(value) <= _HEX
 
 

@@ -1,1 +1,1 @@
-"""Klartext programs to elementary blocks: tilted planes on a mill with rotary axes."""
+"""Interpreter of Klartext programs for mills with rotary axes and tilted planes."""

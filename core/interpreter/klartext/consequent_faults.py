@@ -1,8 +1,9 @@
-"""One fault, told once: what only follows from a fault before it is not told again.
+"""Suppression of errors that are only consequences of an earlier error.
 
-The control stops at its first fault. Here the pass goes on, so that a program's independent faults are all
-told together; but a TOOL CALL that was refused leaves no axis and no speed, and an arc behind a refused block
-begins nowhere. Such faults may be true or not: they are told when their cause is mended.
+The control stops at its first error. The interpreter continues, so that one pass reports all independent
+errors. After a rejected TOOL CALL, however, the tool axis and the speed are unknown, and after a rejected
+block, the start of an arc is unknown. Errors that may be consequences of such a block are reported only after
+the block is corrected.
 """
 
 from __future__ import annotations
@@ -50,9 +51,9 @@ _LACKING = frozenset({NOT_SUPPORTED, M_UNDEFINED, TOOL_UNKNOWN, CYCLE_UNKNOWN, N
 """What control, machine or shop lacks: the same wherever it stands, so it is told at its first place."""
 
 _SPINDLE = frozenset({3, 4, 13, 14})
-_CALLS = frozenset({89, 99})  # M functions that run a cycle
+_CALLS = frozenset({89, 99})  # M functions that call a cycle
 
-_BEGINS = (  # how a block begins that could not be read, and what follows from it
+_BEGINS = (  # start of a block that cannot be read, and the possible consequences
     (re.compile(r"TOOL"), _OF_TOOLS),
     (
         re.compile(r"L\b|LP|LN|C[CPRT]?\b|CTP|APPR|DEP|RND|CHF|F[LCS]|FPOL|I?[XYZ]|SPL"),
@@ -68,16 +69,19 @@ _BEGINS = (  # how a block begins that could not be read, and what follows from 
 
 
 class Consequences:
-    """What the faults of a pass have left uncertain."""
+    """The uncertain state after the errors of a pass."""
 
     def __init__(self) -> None:
         self._silent: set[str] = set()
         self._said: set[str] = set()
-        self._cycles = False  # a tool, a cycle or a value of one is not what the program means
-        self._unknown: set[tuple[str, int]] = set()  # parameters that a fault has left without a value
+        self._cycles = False  # the tool, the cycle or a cycle parameter is uncertain
+        self._unknown: set[tuple[str, int]] = set()  # parameters without a value because of an error
 
     def follows(self, problem: ProgramError, node: nodes.Node | None) -> bool:
-        """Whether a fault of a block may be owed to one before it; else what follows from it is kept."""
+        """Return whether an error may be a consequence of an earlier error.
+
+        The consequences of the error itself are recorded.
+        """
         found = problem.diagnostic
         parameter = problem.parameter if isinstance(problem, MissingValueError) else None
         silent = found.code in self._silent or parameter in self._unknown
@@ -90,7 +94,7 @@ class Consequences:
         return silent
 
     def unreadable(self, text: str) -> None:
-        """A block that could not be read, as it is written."""
+        """Record a block that cannot be read, given as it is written."""
         follows = next((codes for begins, codes in _BEGINS if begins.match(text.upper())), _ALL)
         self._silent |= follows
         self._cycles = self._cycles or bool(follows & (_OF_CYCLES | {TOOL_AXIS_MISSING}))
@@ -119,7 +123,7 @@ class Consequences:
 
 
 def _parameters_of(node: nodes.Node | None) -> set[tuple[str, int]]:
-    """Parameters that a block was to give a value."""
+    """Return the parameters that a block would have set."""
     match node:
         case nodes.Assign() | nodes.SystemRead():
             return {(node.kind, node.q)}
@@ -130,7 +134,7 @@ def _parameters_of(node: nodes.Node | None) -> set[tuple[str, int]]:
 
 
 def ends_the_pass(node: nodes.Node | None) -> bool:
-    """Whether nobody can say where the program goes on behind a fault in this block."""
+    """Return whether the program flow is unknown after an error in this block."""
     return isinstance(node, (nodes.Jump, nodes.Call, nodes.ErrorMessage))
 
 
@@ -141,7 +145,7 @@ def _runs_a_cycle(node: nodes.Node | None) -> bool:
 
 
 def told_once(lines: list[KlartextLine]) -> None:
-    """Take away errors of reading that only repeat: the same lack again, further lines of one cycle."""
+    """Remove syntax errors that only repeat: the same missing function, or further lines of one cycle."""
     said: set[str] = set()
     cycle = ""
     for index, line in enumerate(lines):

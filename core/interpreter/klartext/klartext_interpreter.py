@@ -1,4 +1,4 @@
-"""The interpreter of Klartext: a program and its circumstances to elementary blocks, one after the other."""
+"""Interpreter of Klartext: generates the elementary blocks of a program for a setup."""
 
 from __future__ import annotations
 
@@ -54,27 +54,27 @@ class Interpreter(LinePass[nodes.KlartextLine]):
 
     @property
     def source_blocks(self) -> int:
-        """Lines that hold more than a comment."""
+        """Number of lines that contain more than a comment."""
         return self._program.blocks
 
     @property
     def state(self) -> State:
-        """Where everything stands after the last block that was taken."""
+        """State after the last generated block."""
         return self._state
 
     @property
     def modal(self) -> Modal:
-        """The state after the last block that was taken."""
+        """Modal state after the last generated block."""
         return self._state.modal
 
     @property
     def checkpoint(self) -> Checkpoint:
-        """What the line inherits that would be executed next."""
+        """State that the next line inherits."""
         return mid_program_startup.checkpoint_of(self._parts, self._shared)
 
     @property
     def waits_for(self) -> str:
-        """Why no other pass can go on from here."""
+        """Reason why no other pass can continue from here; empty if one can."""
         return self._path.waits_for
 
     @property
@@ -87,7 +87,7 @@ class Interpreter(LinePass[nodes.KlartextLine]):
         return self._setup, self._log, program, self._setup.kinematics, *program.called.values()
 
     def _go_on_from(self, begin: Begin) -> None:
-        """Take up what the line of ``begin`` inherits: a line of MDI, or the one that was searched."""
+        """Restore the state that the line of ``begin`` inherits, for MDI or for a restart."""
         kept = begin.checkpoint.kept
         if kept is not None:
             parts: Parts = kept.parts(self._setup, self._log)
@@ -104,7 +104,7 @@ class Interpreter(LinePass[nodes.KlartextLine]):
         self._stop_endless(line.number, "Reduce the repeat counts.")
 
     def blocks(self, *, to_first_error: bool = False) -> Iterator[Block]:
-        """The elementary blocks, made as they are asked for. To be called once."""
+        """Return an iterator that generates the elementary blocks. Call this method once."""
         yield from self._approach
         self._made = self._state.blocks
         for line in self._lines(self._flow.next):
@@ -118,7 +118,7 @@ class Interpreter(LinePass[nodes.KlartextLine]):
             yield from self._end_of_program()
 
     def _end_of_program(self) -> Iterator[Block]:
-        """END PGM, which ends as M30 does."""
+        """Yield the end of the program at END PGM, which acts like M30."""
         state, end = self._state, self._program.end
         if end >= len(self._program.lines):
             return
@@ -132,7 +132,7 @@ class Interpreter(LinePass[nodes.KlartextLine]):
         yield m_functions.end(state)
 
     def _guarded(self, line: nodes.KlartextLine) -> Iterator[Block]:
-        """The blocks of a line; an error of it is kept and ends them."""
+        """Yield the blocks of a line; an error is logged and ends them."""
         if line.skip and self._state.setup.block_delete:
             return
         if line.error is not None:
@@ -176,7 +176,10 @@ class Interpreter(LinePass[nodes.KlartextLine]):
                 yield from self._coordinates(node)
 
     def _coordinates(self, node: nodes.Node) -> Iterator[Block]:
-        """Blocks that change what coordinates mean, tools and cycles: nothing may wait before them."""
+        """Yield the blocks of tools, cycles and coordinate changes.
+
+        No element may be buffered before them.
+        """
         state = self._state
         match node:
             case nodes.Plane():
@@ -199,13 +202,13 @@ class Interpreter(LinePass[nodes.KlartextLine]):
                 self._call_program(node.name or self._selected(node.column), node.column)
 
     def _shift(self, node: nodes.Datum) -> None:
-        """A datum shift; where its block names a table, that one is selected before. Raises ProgramError."""
+        """Execute a datum shift, with a table if the block names one. Raises ProgramError."""
         if node.table:
             self._select(nodes.Selection("TABLE", node.table, node.column))
         datum(self._state, node)
 
     def _select(self, node: nodes.Selection) -> None:
-        """SEL TABLE, SEL PATTERN and SEL PGM. Raises ProgramError for a table that is not there."""
+        """Execute SEL TABLE, SEL PATTERN or SEL PGM. Raises ProgramError for a missing table."""
         if node.kind == "PGM":
             self._state.selected_program = node.name
             return
@@ -231,7 +234,7 @@ class Interpreter(LinePass[nodes.KlartextLine]):
         return rows
 
     def _selected(self, column: int) -> str:
-        """The program of SEL PGM. Raises ProgramError where none is selected."""
+        """Return the program of SEL PGM. Raises ProgramError without one."""
         if not self._state.selected_program:
             text = "No program is selected."
             raise self._state.refuse(column, FILE_MISSING, text, "Write SEL PGM before this block.")
@@ -245,7 +248,10 @@ class Interpreter(LinePass[nodes.KlartextLine]):
     # --- moves, M functions, cycles -----------------------------------------------------------------------
 
     def _move(self, node: nodes.Move, comment: str) -> Iterator[Block]:
-        """A path function with the M functions before and behind it, and the cycle that M99 or M89 calls."""
+        """Yield the blocks of a path function with its M functions.
+
+        A cycle that M99 or M89 calls follows.
+        """
         state, path = self._state, self._path
         m_functions.check(state, node.codes)
         feed_rates.switch(state, node.codes)
@@ -258,7 +264,7 @@ class Interpreter(LinePass[nodes.KlartextLine]):
         yield from self._with_cycle(node.codes, node.column, moved=moved)
 
     def _called(self, node: nodes.Codes | nodes.Stop | nodes.CycleCall, comment: str) -> Iterator[Block]:
-        """M functions alone, STOP, CYCL CALL."""
+        """Yield the blocks of M functions alone, STOP or CYCL CALL."""
         state, path = self._state, self._path
         m_functions.check(state, node.codes)
         feed_rates.switch(state, node.codes)
@@ -285,10 +291,11 @@ class Interpreter(LinePass[nodes.KlartextLine]):
         for block in self._path.between(lambda: m_functions.behind(state, codes, comment)):
             yield block
             if isinstance(block.action, ProgramEnd):
-                self._flow.end_all()  # behind END PGM: nothing ends twice
+                # the position is then after END PGM, so that the program does not end twice
+                self._flow.end_all()
 
     def _with_cycle(self, codes: Sequence[nodes.MCode], column: int, *, moved: bool) -> Iterator[Block]:
-        """M99 runs the cycle here, M89 from here on behind every move in the plane, up to M99."""
+        """Yield the cycle of M99, or of M89, which calls it after every move in the plane until M99."""
         numbers = {code.number for code in codes}
         wanted = self._cycles.modal and moved
         if m_functions.M89 in numbers:
@@ -301,7 +308,7 @@ class Interpreter(LinePass[nodes.KlartextLine]):
         yield from self._run_cycle(column)
 
     def _run_cycle(self, column: int) -> Iterator[Block]:
-        """The machining cycle where the tool stands, or the program that cycle 12 has named."""
+        """Yield the machining cycle at the tool position, or call the program of cycle 12."""
         if self._cycles.program:
             self._call_program(self._cycles.program, column)
             return
@@ -309,7 +316,7 @@ class Interpreter(LinePass[nodes.KlartextLine]):
         yield from self._cycles.call(column, figures)
 
     def _figure(self, part: nodes.ContourPart, column: int) -> ContourFigure:
-        """The contour of a subprogram, gone through with a copy of all that is in force."""
+        """Return the contour of a subprogram, which is executed with a copy of the state."""
         state = copy_of(self._state)
         if part.file:
             flow, name = self._flow.through_program(part.file), part.file
@@ -339,12 +346,12 @@ class Interpreter(LinePass[nodes.KlartextLine]):
         return ContourFigure(name, runner.elements, runner.side, part.pocket)
 
     def _corner_is_next(self) -> bool:
-        """Whether the next block is RND or CHF, for which an element has to wait."""
+        """Return whether the next block is RND or CHF, for which an element must be buffered."""
         return isinstance(self._flow.next_node(), nodes.Corner)
 
 
 def _draw(state: State, runner: FigureRunner, flow: Flow, line: nodes.KlartextLine) -> None:
-    """A line of a contour's subprogram: its geometry counts, feeds, M functions and tools do not."""
+    """Execute a line of a contour's subprogram; feeds, M functions and tools have no effect."""
     match line.node:
         case nodes.Move():
             runner.draw(line.node)

@@ -1,6 +1,6 @@
-"""A Klartext program read once: its lines, labels and unit, and what is wrong with it as text.
+"""Reading of a Klartext program: its lines, labels, unit and syntax errors.
 
-A block that is typed in MDI is read on its own: what needs other blocks is refused.
+A block of MDI is read separately, and blocks that need other blocks are errors.
 """
 
 from __future__ import annotations
@@ -44,7 +44,10 @@ Name = int | str
 
 @dataclass(slots=True)
 class Program:
-    """``lines`` has one entry a line; ``labels`` the index of each label's line; ``end`` that of END PGM."""
+    """A program that was read. ``lines`` has one entry per line.
+
+    ``labels`` maps each label to the index of its line, and ``end`` is the index of END PGM.
+    """
 
     source: Source
     lines: list[KlartextLine]
@@ -53,24 +56,25 @@ class Program:
     inch: bool = False
     problems: list[Diagnostic] = field(default_factory=list)
     _texts: dict[int, str] = field(default_factory=dict)
-    corners: Corners | None = None  # of BLK FORM, mm
-    called: dict[str, Program] = field(default_factory=dict)  # by the file's name in capitals
-    tables: dict[str, dict[int, Row]] = field(default_factory=dict)  # of datums and points, by name too
+    corners: Corners | None = None  # corners of BLK FORM, mm
+    called: dict[str, Program] = field(default_factory=dict)  # called programs by file name in capitals
+    # datum and point tables by file name in capitals
+    tables: dict[str, dict[int, Row]] = field(default_factory=dict)
 
     @property
     def blocks(self) -> int:
-        """Lines that hold more than a comment."""
+        """Number of lines that contain more than a comment."""
         return sum(1 for line in self.lines if line.node is not None or line.error is not None)
 
     def text(self, line: KlartextLine) -> str:
-        """The block of a line as it is shown, written once however often it is executed."""
+        """Return the block of a line for display, formatted only once."""
         text = self._texts.get(line.number)
         if text is None:
             text = self._texts[line.number] = written(line)
         return text
 
     def subprogram_end(self, label: int) -> int | None:
-        """Index of the LBL 0 that ends the subprogram whose label stands at this index."""
+        """Return the index of the LBL 0 that ends the subprogram with its label at this index, or None."""
         for index in range(label + 1, self.end):
             node = self.lines[index].node
             if isinstance(node, Label) and node.name == 0:
@@ -79,7 +83,7 @@ class Program:
 
 
 def read_program(source: Source) -> Program:
-    """Read every line, and the programs that it calls. Raises nothing: see ``problems``."""
+    """Read all lines and called programs. Never raises; errors are in ``problems``."""
     if (other := _din_iso(source)) is not None:
         return Program(source, [other], end=1, problems=[other.error] if other.error else [])
     lines = _lines(source)
@@ -103,7 +107,10 @@ _DIN_ISO = re.compile(r"\s*(?:%\s*\S+\s+G7[01]\b|N\s*[0-9]+\s*(?:G[0-9]|[%T]|M[0
 
 
 def _din_iso(source: Source) -> KlartextLine | None:
-    """The first line with text, with its refusal, of a program in DIN/ISO: told once, not line by line."""
+    """Return the first line with an error if the program is in DIN/ISO; otherwise None.
+
+    The error is reported only once.
+    """
     first = next(((at, text) for at, text in enumerate(source.lines, start=1) if text.strip()), None)
     if first is None or _DIN_ISO.match(first[1]) is None:
         return None
@@ -114,7 +121,7 @@ def _din_iso(source: Source) -> KlartextLine | None:
 
 
 def _lines(source: Source) -> list[KlartextLine]:
-    """One entry a line; a block that goes on over several lines (~) stands in its first."""
+    """Return one entry per line; a block with continuation lines (~) is in its first line."""
     texts = source.lines
     found: list[KlartextLine] = []
     while len(found) < len(texts):
@@ -130,10 +137,10 @@ def _lines(source: Source) -> list[KlartextLine]:
 
 
 def _joined(texts: Sequence[str], number: int) -> Iterator[KlartextLine]:
-    """The lines of one block: what is wrong is told where it stands."""
+    """Yield the lines of one block, with an error at its location."""
     pieces = [text[: comment_start(text)].rstrip().removesuffix(CONTINUED) for text in texts]
     if not pieces[0].strip().strip("/").strip().strip("0123456789"):
-        pieces[1:] = [""] * (len(pieces) - 1)  # a comment that goes on: the control breaks long ones so
+        pieces[1:] = [""] * (len(pieces) - 1)  # The control splits long comments into continued lines.
     line = read_line(number, " ".join(pieces))
     if (problem := line.error) is not None:
         row, column = 0, problem.column
@@ -146,7 +153,7 @@ def _joined(texts: Sequence[str], number: int) -> Iterator[KlartextLine]:
 
 
 def _corners(program: Program) -> Corners | None:
-    """Least and greatest corner, where both are given in numbers and hold a block between them."""
+    """Return the minimum and maximum corner if both are numbers and enclose a block; otherwise None."""
     scale = MM_PER_INCH if program.inch else 1.0
     found: dict[int, Vector] = {}
     for line in program.lines:
@@ -165,7 +172,7 @@ def _corners(program: Program) -> Corners | None:
 
 
 def _around(blank: RoundBlank, scale: float) -> Corners | None:
-    """Corners of the block around a cylinder; None where it is not told in numbers."""
+    """Return the corners of the block around a cylinder; None if its dimensions are not numbers."""
     told = (blank.radius, blank.length, blank.above)
     if any(each.q is not None for each in told) or blank.radius.number <= 0.0 or blank.length.number <= 0.0:
         return None
@@ -176,7 +183,7 @@ def _around(blank: RoundBlank, scale: float) -> Corners | None:
 
 
 def _frame(program: Program) -> Iterator[Diagnostic]:
-    """BEGIN PGM first and END PGM last, of the same program."""
+    """Yield the errors of BEGIN PGM and END PGM, which must be first and last and match."""
     with_blocks = [index for index, line in enumerate(program.lines) if line.node or line.error]
     first = program.lines[with_blocks[0]] if with_blocks else None
     if first is None or not isinstance(first.node, Begin):
@@ -226,7 +233,7 @@ def _labels(program: Program) -> Iterator[Diagnostic]:
 
 
 def _calls(program: Program) -> Iterator[Diagnostic]:
-    """Calls of labels that are not there, and of subprograms without an end."""
+    """Yield an error for each call of a missing label or of a subprogram without an end."""
     for line in program.lines[: program.end]:
         node = line.node
         if not isinstance(node, (Call, Jump)):
@@ -248,11 +255,11 @@ DEEPEST_CALL = 19
 
 @dataclass(slots=True)
 class _Level(Frame[Program]):
-    section: bool = False  # a subprogram of the program that is being executed, ended by LBL 0
+    section: bool = False  # a subprogram of the active program, which LBL 0 ends
 
 
 class Flow(ControlFlow[_Level]):
-    """Where a program goes on: labels, jumps, repeats, and the programs that it calls."""
+    """Position in a program: labels, jumps, repeats and called programs."""
 
     def __init__(self, program: Program) -> None:
         super().__init__(_Level(program, 0, program.end))
@@ -261,16 +268,16 @@ class Flow(ControlFlow[_Level]):
 
     @property
     def program(self) -> Program:
-        """The program whose line was taken last."""
+        """The program of the last line that was read."""
         return self.here.routine
 
     @property
     def _begun(self) -> int:
-        """The place among the frames at which the program under way has begun."""
+        """Index of the frame in which the active program started."""
         return max(at for at, each in enumerate(self.frames) if not each.section)
 
     def next(self) -> KlartextLine | None:
-        """The next line; None where the main program is at its END PGM."""
+        """Return the next line, or None at the END PGM of the main program."""
         while self.at >= self.end:
             begun = self._begun
             if not begun:
@@ -281,7 +288,7 @@ class Flow(ControlFlow[_Level]):
         return self.here.routine.lines[self.at - 1]
 
     def through_subprogram(self, label: int | str) -> Flow | None:
-        """A way through one subprogram of the program under way; None where it has none of this name."""
+        """Return a flow through one subprogram of the active program; None if it does not exist."""
         program = self.program
         at = program.labels.get(label)
         if at is None or program.subprogram_end(at) is None:
@@ -292,30 +299,30 @@ class Flow(ControlFlow[_Level]):
         return own
 
     def beside(self, name: str) -> Program | None:
-        """A program that lies beside the main one."""
+        """Return a program in the folder of the main program, or None."""
         return self._main.called.get(file_name(name))
 
     def through_program(self, name: str) -> Flow | None:
-        """A way through a program beside the main one; None where there is none of this name."""
+        """Return a flow through a program in the folder of the main program; None if it does not exist."""
         program = self.beside(name)
         return None if program is None else Flow(program)
 
     def next_node(self) -> Node | None:
-        """What the next line with a block says, where the program goes straight on."""
+        """Return the block of the next line that has one, without a jump; or None."""
         lines = self.program.lines
         rest = (lines[at].node for at in range(self.at, self.end))
         return next((node for node in rest if node is not None and not isinstance(node, Heading)), None)
 
     def end_all(self) -> None:
-        """M2 or M30: nothing comes any more."""
+        """End the program with M2 or M30."""
         super().end_all()
         self.ended_by_code = True
 
     def call(self, line: int, node: Call, times: int) -> None:
-        """CALL LBL, or ``times`` repeats of its section. Raises ProgramError for calls nested too deep."""
+        """Execute CALL LBL, or ``times`` repeats of its section. Raises ProgramError if nested too deeply."""
         target = self.here.routine.labels.get(node.name)
         if target is None:
-            return  # told when the program was read
+            return  # already reported when the program was read
         if node.repeat is not None:
             self._repeat(line, target, times)
             return
@@ -330,28 +337,31 @@ class Flow(ControlFlow[_Level]):
         self.enter(replace(self.here, at=target + 1, left={}, section=True))
 
     def label(self, node: Label) -> None:
-        """LBL: 0 ends the subprogram under way, others mark a place."""
+        """Execute LBL: LBL 0 ends the active subprogram, and other labels only mark a position."""
         if node.name == 0 and self.here.section:
             self.leave()
 
     def jump(self, node: Jump) -> None:
-        """On behind a label."""
+        """Continue after a label."""
         target = self.here.routine.labels.get(node.name)
-        if target is not None:  # else it was told when the program was read
+        if target is not None:  # otherwise, the error was already reported when the program was read
             self.at = target + 1
 
     @property
     def reads_the_control(self) -> bool:
-        """Whether FN 18 stands in the program or in one that lies beside it."""
+        """Whether the program or a called program has FN 18."""
         programs = (self._main, *self._main.called.values())
         return any(isinstance(line.node, SystemRead) for each in programs for line in each.lines)
 
     def table(self, name: str) -> dict[int, Row] | None:
-        """The rows of a table that lies beside the program; None where there is none of this name."""
+        """Return the rows of a table in the folder of the program; None if it does not exist."""
         return self._main.tables.get(file_name(name))
 
     def call_program(self, name: str, line: int) -> Program | None:
-        """On in another program; None where there is none of this name. Raises ProgramError too deep."""
+        """Enter another program; return None if it does not exist.
+
+        Raises ProgramError if calls are nested too deeply.
+        """
         called = self.beside(name)
         if called is None:
             return None
@@ -389,9 +399,9 @@ _NEEDS_OTHERS: tuple[tuple[type, str], ...] = (
 
 
 def read_single(source: Source, *, inch: bool) -> Program:
-    """A block of MDI as a program of one block that needs no frame. Raises nothing.
+    """Return a block of MDI as a program of one block. Never raises.
 
-    Refused is what has no meaning without other blocks, with its column.
+    Blocks that need other blocks are reported as errors.
     """
     line = read_line(1, source.lines[0] if source.lines else "")
     problem = line.error or _alone(line)
@@ -399,7 +409,7 @@ def read_single(source: Source, *, inch: bool) -> Program:
 
 
 def _alone(line: nodes.KlartextLine) -> Diagnostic | None:
-    """Why this block means nothing on its own, None where it does."""
+    """Return the error for a block that needs other blocks, or None."""
     node = line.node
     column = getattr(node, "column", 1) or 1
     if line.skip:

@@ -1,4 +1,4 @@
-"""Where machine and workpiece stand while a Klartext program is gone through, and what is in force."""
+"""State of machine, workpiece and modal functions during a pass through a Klartext program."""
 
 from __future__ import annotations
 
@@ -26,8 +26,11 @@ ORIGIN: Vector = (0.0, 0.0, 0.0)
 
 @dataclass(frozen=True, slots=True)
 class WorkingPlane:
-    """The plane in force. ``frame`` with the tables at 0; ``targets`` by axis, in the machine, 0 to 360 on a
-    modulo axis."""
+    """The active plane. ``frame`` is its orientation with the tables at 0.
+
+    ``targets`` are machine angles by axis, from 0 to 360 on a modulo axis. ``line`` is the line of the PLANE
+    block.
+    """
 
     frame: Matrix
     targets: Mapping[str, float]
@@ -37,16 +40,19 @@ class WorkingPlane:
 SLIDES = "XYZ"
 ROTARY = "ABC"
 Q_TARGETS = (120, 121, 122)
-SAME_POINT = 1e-7  # mm or degrees: nearer points are one point
+SAME_POINT = 1e-7  # mm or degrees; closer points count as equal
 
 
 class State:
-    """``at`` holds all axes by name, ``there`` in the machine's order; mm and degrees, rotary counted on.
+    """State of a pass.
 
-    ``datum`` is the workpiece datum in the workpiece's system, ``shift`` what TRANS DATUM has added within
-    the plane in force. ``frame`` and ``origin`` are the working plane's axes and origin in the workpiece's
-    system, ``place`` takes its points to machine positions of the slides; ``point`` is where the tip stands
-    in it, mm. ``line`` is the one that is being executed, ``text`` its block as it is shown.
+    ``at`` has all axis positions by name, ``there`` in the machine's order; mm and degrees.
+
+    Rotary axes are continuous. ``datum`` is the workpiece datum in the workpiece system, and ``shift`` is the
+    TRANS DATUM within the active plane. ``frame`` and ``origin`` are the axes and origin of the working plane
+    in the workpiece system. ``place`` converts its points to machine positions of the linear axes, and
+    ``point`` is the tip position in it, in mm. ``line`` is the active line, and ``text`` is its block as
+    displayed.
     """
 
     def __init__(self, setup: Setup, kinematics: Kinematics, log: Log, *, inch: bool) -> None:
@@ -61,8 +67,9 @@ class State:
         self.frame = IDENTITY
         self.tool_length = 0.0
         self.m128 = False
-        self.short_way = True  # M126: rotary axes without end go the short way; M127 by the figures
-        self._shown: Angles | None = None  # worked out again when a rotary axis has turned
+        # M126: modulo rotary axes move the shorter distance; M127: by the difference of the displayed angles
+        self.short_way = True
+        self._shown: Angles | None = None  # recalculated after a move of a rotary axis
         self.place = self._place()
         self.point = self.place.point(self.slides)
         self.setup = setup
@@ -70,31 +77,34 @@ class State:
         self.scale = MM_PER_INCH if inch else 1.0
         self.blocks = 0
         self.tool_axis = ""
-        self.feed: float | None = None  # F in force, as programmed
-        self.feed_per = ""  # what it counts: U a revolution, Z a tooth, else a minute
+        self.feed: float | None = None  # active F, as programmed
+        self.feed_per = ""  # base of the feed: U per revolution, Z per tooth, otherwise per minute
         self.tool_feed: float | None = None  # F of the last TOOL CALL
         self.tool_feed_per = ""
-        self.per_revolution = False  # M136: F counts a revolution
-        self.rotary_by_way = False  # M116: F of rotary axes alone counts mm of the tip on the workpiece
-        self.plunging: float | None = None  # M103: the share of F that is left for Z on the way down
-        self.spindle_angle = 0.0  # of cycle 13, for M19
+        self.per_revolution = False  # M136: F is per revolution
+        # M116: F of moves of only rotary axes is in mm of the tip on the workpiece
+        self.rotary_by_way = False
+        self.plunging: float | None = None  # M103: fraction of F that applies to downward Z motion
+        self.spindle_angle = 0.0  # angle of cycle 13 for M19
         self.q: dict[int, float] = {}
         self.q_beside: dict[tuple[str, int], float] = {}  # QL and QR
-        self.q_global: dict[int, float] = {}  # of GLOBAL DEF, for PREDEF
+        self.q_global: dict[int, float] = {}  # values of GLOBAL DEF for PREDEF
         self.figure = Figure()
-        self.pole: tuple[float, float] | None = None  # of CC, by the axes of its plane
+        self.pole: tuple[float, float] | None = None  # pole of CC, in the axes of its plane
         self.pole_plane: Order = XY
-        self.turn = ""  # DR in force, + or -
+        self.turn = ""  # active DR, + or -
         self.tool_radius = 0.0
         self.oversize = (0.0, 0.0)  # DL and DR of the last TOOL CALL, mm
         self.tool_defs: dict[int | str, tuple[float, float]] = {}  # length and radius of TOOL DEF, mm
-        self.tool_cells: dict[tuple[int, int], float] = {}  # of FN 17, by tool and column: read back, no more
-        self.datum_table: dict[int, Row] | None = None  # of SEL TABLE
-        self.selected_program = ""  # of SEL PGM
-        self.table_known = False  # the program has positioned it, so it no longer matters where it stood
+        # values of FN 17 by tool and column, which FN 18 returns
+        self.tool_cells: dict[tuple[int, int], float] = {}
+        self.datum_table: dict[int, Row] | None = None  # table of SEL TABLE
+        self.selected_program = ""  # program of SEL PGM
+        self.table_known = False  # the program has positioned the table, so its start position has no effect
         self.blank: Corners | None = None
-        self.behind_stop = self.place_assumed = False  # a place was read behind a stop, where a hand may move
-        self.reported: set[object] = set()  # warnings that would otherwise repeat
+        # a position was read after a program stop, at which the operator may move the axes
+        self.behind_stop = self.place_assumed = False
+        self.reported: set[object] = set()  # warnings that would otherwise be repeated
         self.modal = Modal(absolute=True, metric=not inch, rapid_rate=setup.last_rapid)
         self._c = self.names.index("C") if "C" in self.at else -1
         self._shared: PlaneSystem | None = None
@@ -103,15 +113,15 @@ class State:
 
     @property
     def programmed(self) -> Vector:
-        """Where the tip stands in the program's own coordinates, mm."""
+        """Tip position in program coordinates, in mm."""
         return self.figure.program(self.point)
 
     def machine(self, programmed: Vector) -> Vector:
-        """Machine X Y Z at which the tip stands on a point of the program, mm."""
+        """Return machine X Y Z at which the tip is at a point of the program, in mm."""
         return self.place.machine(self.figure.plane(programmed))
 
     def go(self, goal: dict[str, float]) -> None:
-        """Stand there; ``goal`` holds every axis."""
+        """Set the axis positions; ``goal`` has all axes."""
         if any(goal[name] != self.at[name] for name in self.rotary_names):
             self._shown = None
         turned = self._shown is None
@@ -121,42 +131,42 @@ class State:
         self.point = self.place.point(self.slides)
 
     def stand(self, at: Sequence[float]) -> None:
-        """Stand at these machine positions, in the machine's order: where the slides really are."""
+        """Set the axes to these machine positions, in the machine's order."""
         self.at, self.there = dict(zip(self.names, at, strict=True)), tuple(at)
         self._shown = None
         self.derive()
 
     @property
     def displayed(self) -> Angles:
-        """A B C as they are displayed, None for axes the machine lacks."""
+        """Displayed angles of A B C, with None for axes that the machine does not have."""
         if self._shown is None:
             axes = {axis.name: self.shown(axis) for axis in self.kinematics.rotaries}
             self._shown = (axes.get("A"), axes.get("B"), axes.get("C"))
         return self._shown
 
     def shown(self, axis: Rotary) -> float:
-        """Where a rotary axis stands, as words have it."""
+        """Return the displayed angle of a rotary axis."""
         return self.kinematics.shown(axis, self.at[axis.name])
 
     @property
     def slides(self) -> Vector:
-        """Machine X Y Z, mm."""
+        """Machine X Y Z, in mm."""
         return self.at["X"], self.at["Y"], self.at["Z"]
 
     @property
     def rotary(self) -> dict[str, float]:
-        """Rotary axes by name, degrees, counted on."""
+        """Continuous angles of the rotary axes by name, in degrees."""
         return {axis.name: self.at[axis.name] for axis in self.kinematics.rotaries}
 
     @property
     def targets(self) -> dict[str, float]:
-        """The effective angle of each rotary axis: that of the plane in force, else where it stands."""
+        """Effective angle of each rotary axis: from the active plane, otherwise its present angle."""
         if self.plane is not None:
             return dict(self.plane.targets)
         return {axis.name: axis.displayed(self.at[axis.name]) for axis in self.kinematics.rotaries}
 
     def derive(self) -> None:
-        """Work out again what follows from plane, datum and tool."""
+        """Recalculate the values that depend on plane, datum and tool."""
         self.frame = IDENTITY
         if self.plane is not None:
             self.frame = product(transposed(self.kinematics.basic), self.plane.frame)
@@ -166,13 +176,13 @@ class State:
         self._shared = None
 
     def preset(self) -> None:
-        """Another preset: datum shift, mirroring, rotation and scaling end."""
+        """Reset datum shift, mirroring, rotation and scaling for another preset."""
         self.datum = self.shift = ORIGIN
         self.figure = Figure()
         self.derive()
 
     def set_plane(self, plane: WorkingPlane | None) -> None:
-        """Another plane, or none. The datum's point on the workpiece stays where it is."""
+        """Set another plane or None. The datum point on the workpiece does not change."""
         self.datum, self.shift = self.origin, ORIGIN
         self.plane = plane
         self.derive()
@@ -188,42 +198,42 @@ class State:
     # --- numbers ------------------------------------------------------------------------------------------
 
     def path_feed(self, word: float) -> float:
-        """F as mm/s: mm/min, or tenths of an inch a minute in an INCH program."""
+        """Return F in mm/s, from mm/min, or from tenths of an inch per minute in an INCH program."""
         return word / 60.0 if self.scale == 1.0 else word * 0.1 * MM_PER_INCH / 60.0
 
     def refuse(
         self, column: int, code: str, text: str, hint: str, line: int = 0, /, **values: object
     ) -> ProgramError:
-        """An error to be raised, at this column of the line that is being executed, or of ``line``.
+        """Return an error at this column of the active line, or of ``line``.
 
-        ``values`` fill the holes of ``text`` and ``hint``.
+        ``values`` are the values for the placeholders of ``text`` and ``hint``.
         """
         return fault(line or self.line, column, code, worded(text, values), worded(hint, values))
 
     def check(self, ok: object, column: int, code: str, text: str, hint: str, /, **values: object) -> None:
-        """Raise the error of ``refuse`` unless a condition holds."""
+        """Raise the error of ``refuse`` unless the condition ``ok`` is true."""
         if not ok:
             raise self.refuse(column, code, text, hint, **values)
 
     def place_is_read(self) -> None:
-        """The program reads where an axis stands: behind a stop that is what a proof assumes."""
+        """Record that the program reads a position, which the proof can only assume after a program stop."""
         self.place_assumed = self.place_assumed or self.behind_stop
 
     def of_the_place(self, error: ProgramError) -> ProgramError:
-        """An error of a formula, which may rest on such a place."""
+        """Return an error of a formula, marked if it depends on an assumed position."""
         return ProgramError(resting_on(error.diagnostic, AT_THE_STOP)) if self.place_assumed else error
 
     def tell_once(
         self, column: int, severity: Severity, code: str, text: str, hint: str = "", /, **values: object
     ) -> None:
-        """A finding that is the same wherever it stands: told at its first place."""
+        """Log a finding only at its first location."""
         text = worded(text, values)
         if text not in self.reported:
             self.reported.add(text)
             self.log.add(Diagnostic(self.line, column, severity, code, text, worded(hint, values)))
 
     def unheeded(self, what: str, column: int) -> None:
-        """Tell that something steers nothing here."""
+        """Note once that a function has no effect."""
         self.tell_once(
             column, Severity.NOTE, "unheeded", Message("{what} has no effect on this control.", what=what)
         )
@@ -233,9 +243,10 @@ class State:
     def move(
         self, kind: Kind, end: Mapping[str, float], feed: float | None, way: CurvedMove | None = None
     ) -> Block:
-        """Go to ``end`` (axes that it lacks stay) and tell it. ``feed`` None is rapid.
+        """Move to ``end`` and return the block; missing axes do not move, and a ``feed`` of None is a rapid.
 
-        The feed counts mm of the slides, or degrees where only rotary axes turn or lead (``way``).
+        The feed is in mm of the linear axes, or in degrees if only rotary axes move or determine the move
+        (``way``).
         """
         before, start, goal = self.point, self.at, {**self.at, **end}
         away = math.dist((start["X"], start["Y"], start["Z"]), (goal["X"], goal["Y"], goal["Z"]))
@@ -259,7 +270,7 @@ class State:
         return self._block(kind, before, travel, rate)
 
     def action(self, action: Action) -> Block:
-        """A block in which no axis moves."""
+        """Return a block without motion."""
         self.behind_stop = self.behind_stop or isinstance(action, ProgramStop)
         here = Travel(self.there, self.there, 0.0, slides=False)
         kind = Kind.DWELL if isinstance(action, Dwell) else Kind.ACTION
@@ -305,7 +316,7 @@ class State:
         slides: bool,
         curved: bool,
     ) -> float:
-        """Path speed at which the slowest axis goes its fastest, mm/s or degrees/s."""
+        """Return the path speed at which the slowest axis moves at its limit, in mm/s or degrees/s."""
         if curved and slides:
             return min(slide.vmax for slide in self.kinematics.slides)
         axes = (*(self.kinematics.slides if slides else ()), *self.kinematics.rotaries)

@@ -1,1 +1,1 @@
-"""OmniTurn programs to elementary blocks: each family of G and M codes in a file of its own."""
+"""Interpreter of OmniTurn programs, with one module for each family of G and M codes."""

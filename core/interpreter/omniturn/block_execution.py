@@ -1,4 +1,4 @@
-"""One line → its blocks, in the order in which the control acts."""
+"""Execution of one line: its elementary blocks, in the order in which the control acts."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from core.interpreter.shared.elementary_blocks import Block
 from core.interpreter.shared.interpretation import ToolUse
 
 Ahead = Sequence[ReadyLine]
-_ARC = Acts.ARC  # asked of every line
+_ARC = Acts.ARC  # Read for every line.
 
 
 def execute(
@@ -33,9 +33,9 @@ def execute(
     first: bool,
     contour: Sequence[Statement] = (),
 ) -> Iterator[Block]:
-    """Modes, then T, G10 or G92, spindle, M functions that start, motion, M functions that stop.
+    """Yield the blocks of a line: modes, T, G10 or G92, spindle, starting M codes, motion, stopping M codes.
 
-    ``ahead``: the next few lines; ``contour``: those that describe the contour of G75 or G78.
+    ``ahead`` are the next few lines, and ``contour`` are the lines that describe the contour of G75 or G78.
     Raises ProgramError at the first word that cannot be executed.
     """
     if statement.simple:
@@ -70,7 +70,7 @@ def execute(
 
 
 def _start(state: State, statement: Statement) -> Iterator[Block]:
-    """What an M code does before the motion, M03 and M04 apart."""
+    """Yield the blocks of an M code that acts before the motion, other than M03 and M04."""
     if statement.locks:
         yield from lock(state, statement)
     elif statement.m is not None:

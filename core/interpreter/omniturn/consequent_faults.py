@@ -1,8 +1,8 @@
-"""Errors that only follow from a refused line, of the text or of the run, and are not reported.
+"""Suppression of errors that are only consequences of a rejected line.
 
 The control stops at the first error. The interpreter continues, so that one pass reports all independent
-errors. A refused line may have started the spindle or set the feed. Errors about what it may have set are
-reported once the line is corrected.
+errors. A rejected line may have started the spindle or set the feed. Errors that may be consequences of such
+a line are reported only after the line is corrected.
 """
 
 from __future__ import annotations
@@ -32,13 +32,13 @@ _SETS = (
 
 
 class Consequences:
-    """The errors that may follow from the lines refused so far."""
+    """The errors that may be consequences of the lines rejected so far."""
 
     def __init__(self) -> None:
         self._uncertain: set[str] = set()
 
     def note(self, text: str, *, place_known: bool) -> None:
-        """Note a refused line; ``place_known``: the axes are where it would have left them."""
+        """Record a rejected line; ``place_known`` means that the position after the line is known."""
         code = text.upper()
         for words, codes in _SETS:
             if words.search(code) and not (place_known and codes is _PLACE):
@@ -49,15 +49,16 @@ class Consequences:
         return code in self._uncertain
 
 
-_CENTER = re.compile(r"\s*((?:[IKR][-+]?[\d.]+\s*)+)(?:\(.*)?$")  # the rest of an arc, on a line of its own
+# the center words of an arc on a separate line
+_CENTER = re.compile(r"\s*((?:[IKR][-+]?[\d.]+\s*)+)(?:\(.*)?$")
 _BARE_ARC = re.compile(r"[^(IKR]*(?P<arc>G0[23])[^(IKR]*(?:\(.*)?$")
 _SHORT_END = re.compile(r"M2\b")
 
 
 def without_follow_ups(problems: Sequence[Diagnostic], lines: Sequence[str]) -> list[Diagnostic]:
-    """Return the findings without those that another one explains.
+    """Return the findings without those that another finding explains.
 
-    An arc whose center is on the next line is one mistake. After a refused M2 nothing is after the end.
+    An arc whose center is on the next line is one mistake. After a rejected M2, no line is after the end.
     """
     ends = any(each.code == "m-digits" and _SHORT_END.match(each.message) for each in problems)
     rest = [each for each in problems if not (ends and each.code == "after-end")]
@@ -65,7 +66,7 @@ def without_follow_ups(problems: Sequence[Diagnostic], lines: Sequence[str]) -> 
 
 
 def _divided_arc(found: Diagnostic, lines: Sequence[str]) -> Diagnostic | None:
-    """Return the finding about the arc whose center words are those that the next line cannot use."""
+    """Return the finding for an arc whose center words are on the next line, or None."""
     if found.code != "word-unused" or found.line < 2:
         return None
     arc, center = _BARE_ARC.match(lines[found.line - 2]), _CENTER.match(lines[found.line - 1])

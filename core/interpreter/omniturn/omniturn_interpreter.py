@@ -1,4 +1,4 @@
-"""The interpreter: a program and its circumstances → elementary blocks, one after the other."""
+"""Interpreter of OmniTurn: generates the elementary blocks of a program for a setup."""
 
 from __future__ import annotations
 
@@ -32,11 +32,11 @@ from core.language.omniturn import lex_line
 if TYPE_CHECKING:
     from core.interpreter.omniturn.motion.move_series import SeriesLookAhead
 
-# --- what can be said before the first block
+# --- checks before the first block
 
 
 def check_opening(state: State, program: Program) -> tuple[int, bool]:
-    """Number of the first line to execute (0: none), and whether the program is too large to be begun."""
+    """Return the number of the first line to execute (0 for none), and whether the program is too large."""
     log = state.log
     check_m_codes(state, program.m_codes)
     begin = state.setup.begin
@@ -54,7 +54,7 @@ def check_opening(state: State, program: Program) -> tuple[int, bool]:
 
 
 def _refuse_move(program: Program, log: Log) -> None:
-    """MDI after power-up or M30: neither G90 nor G91 is in force, so X and Z have no meaning yet."""
+    """Log an error for a move in MDI after power-up or M30, because neither G90 nor G91 is active."""
     step = program.ready[0]
     named = isinstance(step, Statement) and {90, 91}.intersection(step.modal)
     moves = isinstance(step, tuple) or (step is not None and {"X", "Z"}.intersection(step.words))
@@ -64,7 +64,7 @@ def _refuse_move(program: Program, log: Log) -> None:
 
 
 def _first_line(program: Program, log: Log, *, block_delete: bool) -> int:
-    """Number of the first line to execute, 0 where there is none; it must say G90 or G91."""
+    """Return the number of the first line to execute, or 0; log an error if it lacks G90 and G91."""
     for number, step in enumerate(program.ready, start=1):
         if step is None:
             continue
@@ -85,7 +85,7 @@ LONG = 200
 
 
 class Interpreter(Interpretation):
-    """One pass through an OmniTurn program, or through one line of MDI."""
+    """One pass through an OmniTurn program or through one line of MDI."""
 
     def __init__(self, program: Program, setup: Setup) -> None:
         super().__init__(Log(program.diagnostics))
@@ -102,16 +102,16 @@ class Interpreter(Interpretation):
 
     @property
     def source_blocks(self) -> int:
-        """Lines that hold more than a comment."""
+        """Number of lines that contain more than a comment."""
         return self._program.blocks
 
     @property
     def modal(self) -> Modal:
-        """The state after the last block that was taken."""
+        """Modal state after the last generated block."""
         return self._state.modal
 
     def blocks(self, *, to_first_error: bool = False) -> Iterator[Block]:
-        """The elementary blocks, made as they are asked for. To be called once."""
+        """Return an iterator that generates the elementary blocks. Call this method once."""
         for each in chain(self._approach(), self._pass()):
             if self._stopped:
                 if to_first_error:
@@ -122,7 +122,7 @@ class Interpreter(Interpretation):
                 yield each
 
     def series(self) -> Iterator[Block | Series]:
-        """The same, whole series of straight moves in one: for whoever goes through all of a program."""
+        """Return the same blocks, with straight moves combined in series where possible."""
         if self._program.structure.loop_ends or len(self._program.ready) >= LONG:
             from core.interpreter.omniturn.motion.move_series import SeriesLookAhead
 
@@ -131,7 +131,7 @@ class Interpreter(Interpretation):
 
     @property
     def checkpoint(self) -> Checkpoint:
-        """What the line inherits that would be executed next."""
+        """State that the next line inherits."""
         return checkpoint_of(self._state)._replace(flow=self._flow.place)
 
     def _approach(self) -> Iterator[Block]:
@@ -188,14 +188,15 @@ class Interpreter(Interpretation):
             return
         if statement.flow == UNREADABLE:
             self._stopped = True
-            self._modifier.drop()  # what is held back lacks this line
+            self._modifier.drop()  # The buffered blocks are invalid without this line.
             self._skip(statement)
         elif statement.calls:
             self._modifier.check(statement)
             yield from self._call(statement)
         elif statement.flow == PLANE:
             self._modifier.check(statement)
-            from core.interpreter.omniturn.motion.plane_switching import plane_line  # as rare as it is large
+            # This module is large and rarely needed.
+            from core.interpreter.omniturn.motion.plane_switching import plane_line
 
             for block in plane_line(self._state, statement):
                 yield from self._modified(block)
@@ -217,9 +218,9 @@ class Interpreter(Interpretation):
                     self._flow.stop()
 
     def _contour(self, statement: Statement) -> list[Statement] | None:
-        """Return the lines that describe the contour of a cycle; None where they have no end.
+        """Return the lines that describe the contour of a cycle; None if the contour has no end.
 
-        They are passed by even where the cycle does not run.
+        These lines are skipped even if the cycle does not run.
         """
         lines = self._flow.contour(statement)
         if lines is None:
@@ -229,13 +230,13 @@ class Interpreter(Interpretation):
         return [each for each in found if each is not None]
 
     def _nose(self, statement: Statement) -> Iterator[Block]:
-        """G41, G42 or G40."""
+        """Yield the blocks that G41, G42 or G40 releases."""
         found = switch(self._state, statement, nose_code(statement), called=self._flow.called)
         if found is not None:
             yield from self._released(self._modifier.switch(found))
 
     def _modified(self, block: Block) -> Iterator[Block]:
-        """The block, or, with a corner or nose compensation, the blocks that no later line can change."""
+        """Yield the block, or with a corner or nose compensation the blocks that no later line can change."""
         if self._state.contour.active:
             yield from self._released(self._modifier.take(block))
         else:
@@ -248,7 +249,7 @@ class Interpreter(Interpretation):
             self._refuse(problem)
 
     def _refuse(self, problem: ProgramError) -> None:
-        """Keep the error, unless it follows from another; no block that is held back may come any more."""
+        """Log the error unless it is a consequence of another error, and discard buffered blocks."""
         if not self._consequences.includes(problem.diagnostic.code):
             self._log.add(problem.diagnostic)
         self._stopped = True
@@ -265,11 +266,14 @@ class Interpreter(Interpretation):
         self._flow.call(statement)
 
     def _takes(self, statement: Statement) -> bool:
-        """Whether a conditional call is made; the input is asked at this moment."""
+        """Return whether a conditional call is made, which depends on the present state of its input."""
         return takes_call(statement, self._state.setup.inputs)
 
     def _recover(self, problem: ProgramError, line: ReadyLine) -> None:
-        """Keep the error, and stand where its line would have ended, so that the next is judged well."""
+        """Log the error and set the position at the end of its line.
+
+        Later lines are then checked from the correct position.
+        """
         self._refuse(problem)
         if problem.diagnostic.code == "recursion" or self._log.full:
             self._flow.stop()
@@ -277,34 +281,35 @@ class Interpreter(Interpretation):
             self._skip(line)
 
     def _skip(self, statement: Statement) -> None:
-        """Go on after a line that is refused."""
+        """Continue after a rejected line."""
         self._arrive(statement)
         self._consequences.note(statement.text, place_known=statement.moves and self._state.absolute)
 
     def _arrive(self, statement: Statement) -> None:
-        """Stand where the line would have ended."""
+        """Set the position at the end of the line."""
         state = self._state
         if statement.moves and state.absolute:
             go(state, on_step(state, statement, "X"), on_step(state, statement, "Z"))
             state.tool_line = 0
 
 
-# --- Going through a program up to a line: what SEARCHTO rebuilds the state with. The same interpreter.
+# --- A pass up to a line, with which SEARCHTO rebuilds the state
 
 
 class PassToLine(Interpreter):
-    """A pass that stops before any line, in each pass of a loop and each call, and goes on from there."""
+    """A pass that can stop before any line, in each loop pass and call, and continue from there."""
 
     def before(self, line: int) -> Iterator[Block]:
-        """The blocks until this line, counted from 1, comes next; ``at_line`` tells whether it does.
+        """Yield the blocks before the next execution of this line (from 1); ``at_line`` is then True.
 
-        May be called again with a later line. At the first error they end; ``failed`` tells.
+        The method may be called again with a later line. At the first error, the blocks end and ``failed`` is
+        True.
         """
         self._flow.until(line)
         return self._until_stop()
 
     def once_more(self, line: int) -> Iterator[Block]:
-        """The same line executed, and on until it is about to be executed once more."""
+        """Yield the blocks from this line until the same line is next again."""
         self._flow.until(line)
         self._flow.pass_stop()
         return self._until_stop()
@@ -313,30 +318,30 @@ class PassToLine(Interpreter):
         for each in self._lines():
             if self._stopped:
                 return
-            assert isinstance(each, Block)  # series are made for ``series`` alone
+            assert isinstance(each, Block)  # only ``series`` generates series
             yield each
 
     @property
     def at_line(self) -> bool:
-        """Whether the line that was asked for comes next."""
+        """Whether the requested line is next."""
         return self._flow.stopped and not self._stopped
 
     @property
     def setup(self) -> Setup:
-        """The circumstances of the pass."""
+        """The setup of the pass."""
         return self._state.setup
 
     @property
     def next_line(self) -> int:
-        """The line that would be executed next, counted from 1."""
+        """Number of the next line, from 1."""
         return self._flow.at + 1
 
     @property
     def called(self) -> bool:
-        """Whether a subroutine is being executed."""
+        """Whether a subroutine is active."""
         return self._flow.called
 
     @property
     def holds_moves(self) -> bool:
-        """Whether moves are held back, because a corner or nose compensation looks at the lines to come."""
+        """Whether moves are buffered because a corner or nose compensation needs later lines."""
         return self._state.contour.active or self._state.modal.nose_comp != 40

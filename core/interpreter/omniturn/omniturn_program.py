@@ -1,6 +1,6 @@
-"""A program read once: its lines ready to run, its structure, and what is wrong with it as text.
+"""Reading of a program: its lines ready for execution, its structure and its syntax errors.
 
-A line that is typed in MDI is read like a line of a program, without what needs other lines.
+A line of MDI is read like a line of a program, but words that need other lines are errors.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ from core.language.omniturn.plane_switching_lines import (
 from core.language.source import Source
 from core.message import Message
 
-# --- habits of shops: one note a kind for the file, or an error each when strict
+# --- common deviations: one note for each kind in a file, or an error for each in strict mode
 
 
 _ODD_IN_COMMENT = frozenset("!@#$%^&*\"'?><,/\\|=-.")
@@ -64,15 +64,15 @@ _KINDS = {
 
 
 class Style:
-    """Collects the deviations of one program."""
+    """Collector of style deviations in one program."""
 
     def __init__(self, *, strict: bool) -> None:
         self.found: list[Diagnostic] = []
         self._strict = strict
-        self._places: dict[str, int] = {}  # kind → place in what was found
+        self._places: dict[str, int] = {}  # kind → index in ``found``
 
     def tell(self, kind: str, line: int, column: int = 0, count: int = 1) -> None:
-        """Say that ``kind`` occurs at this place, there and behind it so often."""
+        """Record ``count`` occurrences of ``kind``, the first of them at this location."""
         at = self._places.get(kind)
         if at is not None and not self._strict:
             self.found[at] = replace(self.found[at], count=self.found[at].count + count)
@@ -83,14 +83,14 @@ class Style:
         self.found.append(Diagnostic(line, column, severity, kind, message, hint, count=count))
 
     def look_at_file(self, source: Source) -> None:
-        """Note what is odd about the line ends of the file."""
+        """Record deviations in the line ends of the file."""
         if "\r" in source.text:
             self.tell("line-ends", 1, count=source.text.count("\r"))
         if source.text and source.text[-1] not in "\r\n":
             self.tell("last-newline", len(source.lines))
 
     def look_at(self, line: Line, statement: Statement) -> None:
-        """Comments and tool numbers of one line."""
+        """Record deviations in the comments and tool numbers of one line."""
         tool = statement.words.get("T")
         if tool is not None and tool.text[1:].startswith("0") and len(tool.text) > 2:
             self.tell("tool-zero", line.number, tool.column)
@@ -110,28 +110,32 @@ _NEAR = 5  # lines
 
 @dataclass(frozen=True, slots=True)
 class Program:
-    """A program ready to run. ``ready`` has one entry a line; ``m_codes`` are those of the machine file."""
+    """A program ready for execution.
+
+    ``ready`` has one entry per line; ``m_codes`` are M codes of the machine file.
+    """
 
     source: Source
     ready: ReadyLines
     structure: Structure
     diagnostics: tuple[Diagnostic, ...]
-    blocks: int  # lines that hold more than a comment
-    names_units: bool  # G70 or G71 stands somewhere
-    m_codes: tuple[Statement, ...]  # lines whose M code only the machine file can know
-    asks: tuple[Statement, ...] = ()  # lines that call a subroutine by an input
-    calls: tuple[tuple[int, int], ...] = ()  # line of each call or contour by a subroutine, and its number
+    blocks: int  # lines with more than a comment
+    names_units: bool  # whether the program contains G70 or G71
+    m_codes: tuple[Statement, ...]  # lines whose M code must be in the machine file
+    asks: tuple[Statement, ...] = ()  # lines whose subroutine call depends on an input
+    # line and subroutine number of each call, and of each contour in a subroutine
+    calls: tuple[tuple[int, int], ...] = ()
 
     def for_one_pass(self) -> Program:
-        """The same; what the pass finds out about a line is its own."""
+        """Return a copy for one pass, which changes its lines independently."""
         return replace(self, ready=self.ready.copy())
 
     def line(self, number: int) -> Line:
-        """The words of a line, counted from 1."""
+        """Return the words of a line, which is counted from 1."""
         return lex_line(number, self.source.lines[number - 1])
 
     def statement(self, number: int) -> Statement | None:
-        """A line ready to run, counted from 1; None where there is nothing on it."""
+        """Return the statement of a line, which is counted from 1; None for an empty line."""
         ready = self.ready[number - 1]
         return statement_of(self.line(number)) if isinstance(ready, tuple) else ready
 
@@ -140,10 +144,10 @@ class _Reader:
     def __init__(self, source: Source, *, strict: bool) -> None:
         self.source = source
         self.style = Style(strict=strict)
-        self.blank = 0  # lines that hold nothing
+        self.blank = 0  # number of blank lines
         self.statements: list[Statement] = []
         self.problems: list[Diagnostic] = []
-        self._plane = 0  # line of a (~PL..) whose (END) is still to come
+        self._plane = 0  # line of a (~PL..) without its (END) so far
 
     def read(self) -> ReadyLines:
         lines = read_lines(self.source.lines, self._line, in_order="~" in self.source.text)
@@ -178,7 +182,7 @@ class _Reader:
         return statement
 
     def _suspect_plane(self, number: int, text: str) -> None:
-        """(PLXC) without its ~ is a comment, and so are the moves behind it: nothing would be milled."""
+        """Report a (PLXC) without its ~, because it and its moves are then only comments."""
         following = islice(self.source.lines, number, number + _NEAR)
         lacks = lacks_sign(text, following) if "(" in text else None
         if lacks is not None:
@@ -195,7 +199,7 @@ class _Reader:
             )
 
     def _in_plane(self, number: int, text: str, entry: PlaneLine | None) -> Statement:
-        """A line from the entry to (END), both included."""
+        """Read a line from the entry of plane switching to (END), both included."""
         statement = Statement(number, text.strip(), flow=PLANE)
         try:
             statement.plane = entry if entry is not None and not self._plane else lex_plane(number, text)
@@ -216,9 +220,9 @@ class _Reader:
 
 
 def read_program(source: Source, strict: bool = False) -> Program:
-    """Lex all lines, find loops, subroutines and ends, and say what is wrong. Raises nothing.
+    """Read all lines, find loops, subroutines and the end, and collect the errors. Never raises.
 
-    ``strict`` makes errors of what the original control's book forbids and real shops write.
+    With ``strict``, style deviations that the manual of the original control forbids are errors.
     """
     reader = _Reader(source, strict=strict)
     ready = reader.read()
@@ -248,7 +252,7 @@ def read_program(source: Source, strict: bool = False) -> Program:
 
 
 def of_machine_file(statement: Statement) -> bool:
-    """Whether the line holds an M code that is none of the control itself."""
+    """Return whether the line has an M code that is not built into the control."""
     return statement.m is not None and statement.m_code is None and f"M{statement.m}" not in FLOW_CODES
 
 
@@ -261,7 +265,7 @@ def _calls(statements: list[Statement]) -> Iterator[tuple[int, int]]:
 
 
 def read_statement(number: int, text: str) -> tuple[Statement | None, list[Diagnostic]]:
-    """One line of a text on its own, and what is wrong with it; None for an empty one."""
+    """Return one line as a statement, with its errors; None for an empty line."""
     reader = _Reader(Source("", text), strict=False)
     statement = reader.statement(number, text)
     return statement, reader.problems
@@ -284,7 +288,7 @@ def _comments_in_loops(statements: list[Statement], structure: Structure) -> lis
 
 
 def _beyond_the_end(ready: ReadyLines, structure: Structure) -> list[Diagnostic]:
-    """Moves after M30 that no subroutine holds: the first of them."""
+    """Return an error for the first move after M30 that is not in a subroutine; an empty list without one."""
     inside = False
     starts, ends = set(structure.subroutines.values()), set(structure.subroutine_ends.values())
     for at in range(structure.main_end, len(ready)):
@@ -297,7 +301,7 @@ def _beyond_the_end(ready: ReadyLines, structure: Structure) -> list[Diagnostic]
 
 
 def _capped(problems: list[Diagnostic]) -> list[Diagnostic]:
-    """Errors first in the count: no flood of warnings may hide one."""
+    """Return at most 100 findings. Errors have priority, so that warnings cannot displace an error."""
     if len(problems) <= _MOST_PROBLEMS:
         return problems
     by_weight = sorted(problems, key=lambda problem: problem.severity is not Severity.ERROR)
@@ -308,9 +312,9 @@ _HINT = "Use this command in a program."
 
 
 def read_single(source: Source) -> Program:
-    """A line of MDI as a program of one line that needs no end. Raises nothing.
+    """Return a line of MDI as a program of one line. Never raises.
 
-    Refused is what has no meaning without other lines, with its column.
+    Words that need other lines are reported as errors.
     """
     text = source.lines[0] if source.lines else ""
     try:
@@ -334,7 +338,7 @@ def read_single(source: Source) -> Program:
 
 
 def _alone(statement: Statement) -> Diagnostic | None:
-    """Why this line means nothing on its own, None where it does."""
+    """Return the error for a line that needs other lines, or None."""
     if statement.flow and statement.flow != UNREADABLE:
         return _refuse(statement, 1, _steers(statement))
     if statement.block_delete:

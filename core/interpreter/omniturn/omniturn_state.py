@@ -1,4 +1,4 @@
-"""Everything that changes while a program is gone through, flat as every move reads it; its checkpoint."""
+"""State that changes during a pass, with direct attributes for fast access; and its checkpoint."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Numbers = TypeVar("Numbers", float, Floats)
 
 
 class Corner(NamedTuple):
-    """C or R of a straight move: what is made where it meets the next one. ``size`` in mm."""
+    """A corner (C or R) between a straight move and the next one; ``size`` is in mm."""
 
     letter: str
     size: float
@@ -29,7 +29,10 @@ class Corner(NamedTuple):
 
 
 class CompensationSwitch(NamedTuple):
-    """G41, G42 or G40 among the blocks. ``dx dz``: the secondary offset that the point reached has in it."""
+    """Mark for G41, G42 or G40 among the blocks.
+
+    ``dx dz`` is the secondary offset that is included in the point reached.
+    """
 
     code: int
     line: int
@@ -38,7 +41,7 @@ class CompensationSwitch(NamedTuple):
 
     @property
     def name(self) -> str:
-        """What messages call it."""
+        """The code for messages, such as G41."""
         return f"G{self.code}"
 
 
@@ -47,12 +50,12 @@ Item = Block | CompensationSwitch
 
 @dataclass(slots=True)
 class ContourState:
-    """Corners still to cut and nose compensation in force, between the lines and the blocks handed out."""
+    """Open corners and active nose compensation between the lines and the generated blocks."""
 
-    active: bool = False  # blocks are held back, so each has to pass through the contour modifier
-    corner: Corner | None = None  # of the move just made
-    approach: int = 0  # line of a G41 or G42 whose approach is still to come
-    d_line: int = 0  # last line that held a D
+    active: bool = False  # blocks are buffered, so each block must pass through the contour modifier
+    corner: Corner | None = None  # corner after the present move
+    approach: int = 0  # line of a G41 or G42 that no approach has followed yet
+    d_line: int = 0  # last line with a D
 
 
 HIGH_FEED = 0.05 * MM_PER_INCH * (1 + 1e-9)
@@ -60,8 +63,11 @@ HIGH_FEED = 0.05 * MM_PER_INCH * (1 + 1e-9)
 
 
 class State:
-    """Position and modal state. mm, X a radius; ``x z`` the point reached, ``px pz`` the one programmed,
-    which lacks the secondary offset. What stands under "derived" follows from ``modal``."""
+    """Position and modal state in mm, with X as a radius.
+
+    ``x z`` is the point reached. ``px pz`` is the programmed point, which does not include the secondary
+    offset. The other values are derived from ``modal``.
+    """
 
     __slots__ = (
         "absolute",
@@ -105,24 +111,24 @@ class State:
         self.x, self.z, self.c = setup.start
         self.px, self.pz = self.x, self.z
         self.first_feed: float | None = None  # F of the first line under G94, mm/s
-        self.tool_line = 0  # line of a T whose move to X and Z is still to come
-        self.title_rapid = 0  # line of a G00 (TITLE) after which no F has come
-        self.pending_shift: dict[int, bool] = {}  # line of a G10 → whether a T has come
+        self.tool_line = 0  # line of a T that no move of X and Z has followed yet
+        self.title_rapid = 0  # line of a G00 (TITLE) that no F has followed yet
+        self.pending_shift: dict[int, bool] = {}  # line of a G10 → whether a T has followed
         self.coarse_at: tuple[float, float] | None = None  # machine point of the G35 in force
         self.turning: tuple[int, int, float] | None = None  # line, column, s that C still needs to arrive
         self.contour = ContourState()
-        self.reported: set[str] = set()  # errors that would otherwise repeat on every move
+        self.reported: set[str] = set()  # errors that would otherwise be repeated for every move
         self.modal = Modal(metric=setup.metric, rapid_rate=setup.last_rapid)
         self.derive()
 
     def adopt(self, modal: Modal) -> None:
-        """Make ``modal`` the state in force; where it says nothing new, blocks go on sharing the old one."""
+        """Set the modal state; if it is equal to the present one, blocks continue to share that object."""
         if modal != self.modal:
             self.modal = modal
             self.derive()
 
     def derive(self) -> None:
-        """Work out from the modal state what every move needs."""
+        """Calculate the values that every move needs from the modal state."""
         modal = self.modal
         self.absolute = modal.absolute is not False
         self.scale_z = 1.0 if modal.metric else MM_PER_INCH
@@ -135,37 +141,39 @@ class State:
         self.per_rev = modal.per_rev and not modal.rapid
         self.rpm = modal.rpm * modal.spindle
         steady = not modal.rapid and (modal.feed, modal.per_rev) == (modal.cut_feed, modal.cut_per_rev)
-        steady = steady and not (modal.per_rev and (modal.feed or 0.0) > HIGH_FEED)  # each of those is told
-        self.steady_feed = modal.feed if steady else None  # where G01 and this F again would change nothing
-        self.slow_length = 0.0  # a longer move under this feed takes too long to be meant
-        self.fast = False  # whether the next plain move needs no check: set by a move that passed all
+        # each such feed causes a warning
+        steady = steady and not (modal.per_rev and (modal.feed or 0.0) > HIGH_FEED)
+        self.steady_feed = modal.feed if steady else None  # feed that G01 with the same F would not change
+        self.slow_length = 0.0  # length in mm above which a move at this feed is too slow
+        # the next plain move needs no check, because a move with this state passed all checks
+        self.fast = False
 
     def is_first_feed(self, feed: float) -> bool:
-        """Programs without G00 rapid by the first line's F: a move at that feed counts as a rapid."""
+        """Return whether this is the first line's F, at which programs without G00 make rapids."""
         if self.modal.per_rev or self.first_feed is None:
             return False
         return abs(feed - self.first_feed) <= 1e-9 * self.first_feed
 
     def feed_word(self, value: Numbers) -> Numbers:
-        """F in mm/s under G94, in mm/rev under G95."""
+        """Return F in mm/s under G94, or in mm/rev under G95."""
         return value * self.scale_z / (1 if self.modal.per_rev else 60)
 
     def stay(self, modal: Modal) -> None:
-        """Change the frame under a machine point that stays where it is."""
+        """Set a modal state with another frame; the machine position remains the same."""
         x, z = self.x + self.offset_x, self.z + self.offset_z
         self.adopt(modal)
         self.x, self.z = x - self.offset_x, z - self.offset_z
         self.px, self.pz = self.x - self.dx, self.z - self.dz
 
     def rpm_at(self, x: float) -> float:
-        """Commanded speed with the tip at radius ``x`` (mm); signed, 0 with the spindle stopped."""
+        """Return the commanded signed speed in rpm with the tip at radius ``x`` (mm); 0 if stopped."""
         modal = self.modal
         if not modal.css or not modal.spindle:
             return self.rpm
         return modal.surface_rpm_at(x, self.setup.limits.max_rpm)
 
     def action(self, line: int, text: str, action: Action) -> Block:
-        """A block in which no axis moves."""
+        """Return a block without motion."""
         self.blocks += 1
         kind = Kind.DWELL if isinstance(action, Dwell) else Kind.ACTION
         x, z, c, modal = self.x, self.z, self.c, self.modal
@@ -179,7 +187,7 @@ class State:
         *, per_rev: bool = False, rpm: float = 0.0, css: float | None = None,
         centre: tuple[float, float] = (0.0, 0.0), clockwise: bool = False, plane: PlaneMove | None = None,
     ) -> Block:  # fmt: skip
-        """The block of a move from ``start`` (x, z, c) to where the state stands by now."""
+        """Return the block of a move from ``start`` (x, z, c) to the present position of the state."""
         self.blocks += 1
         return Block(
             self.blocks, line, kind, text, *start, self.x, self.z, self.c, self.offset_x, self.offset_z,
@@ -187,7 +195,8 @@ class State:
         )  # fmt: skip
 
 
-_NOT_OF_THE_STATE = ("flow", "kept", "at")  # the flow is the interpreter's, the others are other dialects'
+# ``flow`` belongs to the interpreter, the others belong to other dialects
+_NOT_OF_THE_STATE = ("flow", "kept", "at")
 _KEPT = tuple(name for name in Checkpoint._fields if name not in _NOT_OF_THE_STATE)
 
 
@@ -197,10 +206,10 @@ def checkpoint_of(state: State) -> Checkpoint:
 
 
 def restore(state: State, begin: Begin) -> None:
-    """Put back what the line of ``begin`` inherits.
+    """Restore the state that the line of ``begin`` inherits.
 
-    A line of MDI begins where the slides stand. A restart begins at its checkpoint, to which its way leads;
-    C stays where it is unless it is locked.
+    A line of MDI begins at the present position. A restart begins at its checkpoint, which its approach
+    reaches. C remains at its position unless it is locked.
     """
     point = begin.checkpoint
     for name in _KEPT:

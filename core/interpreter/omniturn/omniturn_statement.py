@@ -1,4 +1,4 @@
-"""One line ready to run: its words sorted by what they do, and refused where they may not stand together."""
+"""Statements: the words of a line, sorted by function and checked for conflicts."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ PlainMove = tuple[float | None, float | None, float | None, int, bool]
 """A line of G00 or G01, X, Z and F and no more: X, Z, F as written, 0 or 1 for the code (-1: none), and
 whether one of the numbers has a fifth decimal. Most lines of a long program."""
 
-_ARC, _LOCK, _MODE = Acts.ARC, Acts.LOCK, Acts.MODE  # asked of every line
+_ARC, _LOCK, _MODE = Acts.ARC, Acts.LOCK, Acts.MODE  # Read for every line.
 _FEED, _LIMIT = FWord.FEED, SWord.LIMIT
 _C_WORDS = frozenset({"C", "CA", "CI"})
 UNREADABLE = "unreadable"
@@ -24,7 +24,10 @@ PLANE = "plane"
 
 @dataclass(slots=True)
 class Statement:
-    """A line ready to run. ``words`` by letter (G and M apart); ``parts`` the texts of its blocks."""
+    """A line ready for execution.
+
+    ``words`` are by letter, without G and M; ``parts`` are the texts of its blocks.
+    """
 
     line: int
     text: str
@@ -32,56 +35,56 @@ class Statement:
     modal: tuple[int, ...] = ()
     one_shot: int | None = None
     m: int | None = None
-    entry: Code = PLAIN  # of the one-shot code in the table
+    entry: Code = PLAIN  # table entry of the one-shot code
     code: Word | None = None  # the one-shot word
     m_word: Word | None = None
-    m_code: Code | None = None  # the entry of its M code, where the control itself knows it
+    m_code: Code | None = None  # table entry of its M code, if it is built into the control
     flow: str = ""  # a key of FLOW_CODES, UNREADABLE, or PLANE
     comment: str | None = None
     block_delete: bool = False
     parts: dict[str, str] | None = None
-    simple: bool = False  # nothing but a move, its feed and G00…G03
+    simple: bool = False  # only a move, its feed and G00…G03
     plane: PlaneLine | None = None  # a line of plane switching
-    f_is_feed: bool = True  # no code on it gives F another meaning
+    f_is_feed: bool = True  # no code on the line changes the meaning of F
     s_is_limit: bool = False  # S belongs to G76 or G77
-    moves: bool = False  # it asks the slides to move
-    turns: bool = False  # it holds C, which turns the spindle where that is locked
-    locks: bool = False  # it makes the spindle the axis C
-    calls: bool = False  # a subroutine, on condition or not
-    asks: bool = False  # an input, whether to call
+    moves: bool = False  # the line moves X or Z
+    turns: bool = False  # the line has a C word, which moves a locked spindle
+    locks: bool = False  # the line locks the spindle as the C axis
+    calls: bool = False  # the line calls a subroutine, conditionally or not
+    asks: bool = False  # the call depends on an input
 
     @property
     def ends_program(self) -> bool:
-        """Whether the line holds M30 or M02."""
+        """Whether the line has M30 or M02."""
         return self.m_code is not None and self.m_code.ends_program
 
     @property
     def contour_cycle(self) -> bool:
-        """Whether the line runs along a contour that other lines describe."""
+        """Whether the line is a cycle along a contour that other lines describe."""
         return self.entry.acts is Acts.CONTOUR
 
     @property
     def executable(self) -> bool:
-        """Whether there is anything on the line besides a comment."""
+        """Whether the line has more than a comment."""
         return bool(self.words or self.modal or self.code or self.m_word or self.flow)
 
     def value(self, letter: str) -> float | None:
-        """Number of a word, None where the line does not hold it."""
+        """Return the number of a word; None if the line does not have the word."""
         word = self.words.get(letter)
         return None if word is None else word.value
 
     def column(self, letter: str) -> int:
-        """Column of a word, 0 where the line does not hold it."""
+        """Return the column of a word; 0 if the line does not have the word."""
         word = self.words.get(letter)
         return 0 if word is None else word.column
 
     def refuse(
         self, at: Word | str | int, code: str, text: str, hint: str = "", /, **values: object
     ) -> ProgramError:
-        """An error of this line, to be raised: at a word, at the word of a letter, or at a column.
+        """Return an error of this line at a word, at the word of a letter, or at a column.
 
-        M stands for the M code; where the line has no such word the error is at its one-shot code.
-        ``values`` fill the holes of ``text`` and ``hint``.
+        The letter M means the M code. If the line does not have the word, the error is at its one-shot code.
+        ``values`` are the values for the placeholders of ``text`` and ``hint``.
         """
         if isinstance(at, str):
             at = (self.m_word if at == "M" else self.words.get(at)) or self.code or 0
@@ -91,24 +94,24 @@ class Statement:
     def check(
         self, ok: object, at: Word | str | int, code: str, text: str, hint: str = "", /, **values: object
     ) -> None:
-        """Raise the error of ``refuse`` unless a condition holds."""
+        """Raise the error of ``refuse`` unless the condition ``ok`` is true."""
         if not ok:
             raise self.refuse(at, code, text, hint, **values)
 
     @property
     def code_column(self) -> int:
-        """Column of the one-shot code, 0 where the line does not hold one."""
+        """Column of the one-shot code; 0 if the line does not have one."""
         return 0 if self.code is None else self.code.column
 
     def part(self, name: str) -> str:
-        """Text of one of the blocks that the line makes."""
+        """Return the text of one of the line's blocks."""
         return self.text if self.parts is None else self.parts.get(name, self.text)
 
 
 ReadyLine = PlainMove | Statement | None
 """A line to run: a move of plain numbers, anything else, or nothing at all."""
 
-# --- reading: words of a line sorted, and what may not stand together refused
+# --- reading: sort the words of a line and reject conflicts
 
 
 _SIMPLE = frozenset({"X", "Z", "I", "K", "R", "F"})
@@ -117,7 +120,7 @@ _MOTIONS = frozenset({Acts.MOTION, Acts.CYCLE, Acts.CONTOUR})
 
 
 def statement_of(line: Line) -> Statement:
-    """The line made ready. Raises ProgramError for what may not stand together on a line."""
+    """Return the statement of a line. Raises ProgramError if words of the line exclude each other."""
     if line.errors:
         return unreadable(line)
     statement = Statement(line.number, line.text, comment=line.comment, block_delete=line.block_delete)
@@ -150,7 +153,10 @@ def statement_of(line: Line) -> Statement:
 
 
 def unreadable(line: Line) -> Statement:
-    """A line that cannot run; X and Z of a move are kept, so that the lines after it are judged well."""
+    """Return a statement for a line with errors.
+
+    It retains X and Z of a move, so that later lines are checked from the correct position.
+    """
     words: dict[str, Word] = {}
     if not any(word.letter == "G" and word.value in {4, 10, 92} for word in line.words):
         words = {word.letter: word for word in line.words if word.letter in {"X", "Z"}}
@@ -217,7 +223,7 @@ def _sort_g(statement: Statement, word: Word, modal: list[Word]) -> None:
 
 
 def _look_for_rarer(statement: Statement) -> None:
-    """What a line does besides moving the slides."""
+    """Set the functions of a line other than moves of X and Z."""
     statement.flow, m_code = _flow(statement), statement.m_code
     statement.turns = (
         statement.one_shot is None and not statement.flow and not _C_WORDS.isdisjoint(statement.words)
@@ -284,7 +290,7 @@ def _check_flow(statement: Statement, line: Line) -> None:
 
 
 def _name_parts(statement: Statement, line: Line) -> None:
-    """Each block that the line makes gets the words it comes from; a single block gets the line."""
+    """Assign to each block of the line the words that it comes from; a single block gets the whole line."""
     groups: dict[str, str] = {}
     for word in line.words:
         name = _group(statement, word)

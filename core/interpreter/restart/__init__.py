@@ -1,1 +1,1 @@
-"""Going on in the middle of a program: which lines are good for it, what they inherit, the way there."""
+"""Restart in the middle of a program: possible lines, inherited state, retract and approach."""

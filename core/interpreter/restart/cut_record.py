@@ -1,8 +1,8 @@
-"""What a program cuts and where it has been: what a way through the part is checked with.
+"""Record of all moves and cuts of a program, with which paths through the part are checked.
 
-One row for each straight piece of every move in the order of the run, arcs in chords. ``x0 z0 x z`` are where
-the tip stands in the frame of part zero (machine less tool offset), mm, X a radius with the sign of its side:
-the frame of the metal, whatever G10, G92 and D do to the words of the program.
+The record has one row for each straight piece of each move in the order of execution, with arcs as chords.
+``x0 z0 x z`` are tip positions in the frame of part zero (machine position minus tool offset) in mm, with X
+as a signed radius. This frame moves with the part and is independent of G10, G92 and D.
 """
 
 from __future__ import annotations
@@ -30,20 +30,20 @@ feeds by the revolution; the spindle turns as M04. None of them: a rapid."""
 SAME = 1e-5  # mm
 _ASIDE = 0.05  # mm
 _ON_CENTRE = 0.05  # mm of radius
-_CHORD = 0.004  # mm that a chord may leave its arc
-_WATCHED = 2000  # blocks between two looks at whether the work is still wanted
+_CHORD = 0.004  # mm; permitted distance of a chord from its arc
+_WATCHED = 2000  # number of blocks between two calls of ``watch``
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CutRecord:
-    """All moves of a program as rows (m,), and what they tell about the bar.
+    """All moves of a program as rows (m,), and the known limits of the material.
 
-    ``n`` is the number of the elementary block, ``bar`` counts how often the collet has been opened: what was
-    cut before that is elsewhere by then. ``radius`` is the largest at which anything is fed, 0 where nothing
-    is. ``over`` is one
-    at which tools are drawn off the bar by rapid; inf: none is known, the largest cut may be a bore. ``face``
-    is a Z beyond which nothing is cut and at which tools come within the radius by rapid; inf: none is known.
-    ``reach`` by tool: least and greatest machine X of its moves; ``clear_z``: the greatest machine Z of all.
+    ``n`` is the number of the elementary block. ``bar`` counts the times that the collet was opened, because
+    earlier cuts are then on another part of the bar. ``radius`` is the largest radius of a feed move, or 0.
+    ``over`` is a radius at which tools retract in rapid, or inf if unknown, because the largest cut may be a
+    bore. ``face`` is a Z beyond all cuts at which tools move inside that radius in rapid, or inf if unknown.
+    ``reach`` has the minimum and maximum machine X of each tool. ``clear_z`` is the maximum machine Z of all
+    moves.
     """
 
     n: Ints
@@ -55,12 +55,12 @@ class CutRecord:
     how: Ints
     tool: Ints
     bar: Ints
-    offsets: dict[int, tuple[float, float]]  # of tools: machine less tip, mm
+    offsets: dict[int, tuple[float, float]]  # by tool: machine position minus tip position, mm
     radius: float
-    begins: float  # the greatest Z at which a cut begins
+    begins: float  # the maximum Z at which a cut begins
     over: float
     face: float
-    faces: dict[int, float]  # of each tool that has shown one itself
+    faces: dict[int, float]  # by tool, if its moves show a face
     reach: dict[int, tuple[float, float]]
     clear_z: float
     blocks: int
@@ -69,42 +69,42 @@ class CutRecord:
         return len(self.n)
 
     def row_behind(self, block: int) -> int:
-        """The last row of this block, or of the last move before it; -1: nothing has moved by then."""
+        """Return the last row of this block or of an earlier block; -1 if no axis has moved."""
         return int(np.searchsorted(self.n, block, side="right")) - 1
 
     def first_row(self, row: int) -> int:
-        """The first row of the block that this row belongs to."""
+        """Return the first row of the block of this row."""
         return int(np.searchsorted(self.n, self.n[row], side="left"))
 
     def ends(self, row: int) -> tuple[float, float, float, float]:
-        """(x0, z0, x, z) of a row."""
+        """Return (x0, z0, x, z) of a row."""
         return float(self.x0[row]), float(self.z0[row]), float(self.x[row]), float(self.z[row])
 
     def front(self, tool: int) -> float:
-        """The Z of the tip from which on nothing is before the part."""
+        """Return the tip Z from which on the tool is in front of all material."""
         return self.faces.get(tool, self.face)
 
     def beyond(self, x: float, z: float) -> bool:
-        """Whether a point that was come to by rapid lies over all that is cut, or before all of it."""
+        """Return whether the end of a rapid is clear of the part, radially or axially."""
         return abs(x) >= self.radius - SAME or z >= self.begins - SAME
 
     def outside(self, x: float, z: float, tool: int) -> bool:
-        """Whether the tip of this tool is where no metal can be: over the bar or before its face."""
+        """Return whether the tip of this tool is outside the material, radially or in front of the face."""
         return not self.radius or abs(x) >= self.over - SAME or z >= self.front(tool) - SAME
 
 
 class _Rows:
-    """Collects tables (9, m) whose rows are ``n line x0 z0 x z how tool bar``."""
+    """Collector of tables (9, m) with the rows ``n line x0 z0 x z how tool bar``."""
 
     def __init__(self) -> None:
         self.offsets: dict[int, tuple[float, float]] = {}
         self._fed: dict[int, tuple[float, float]] = {}
         self._tables = [np.zeros((9, 0))]
-        self._pieces: list[tuple[float, ...]] = []  # of blocks, which are no table yet
+        self._pieces: list[tuple[float, ...]] = []  # rows of blocks that are not in a table yet
         self._opened = 0
 
     def take(self, block: Block) -> None:
-        """Add the rows of one block, arcs in chords."""
+        """Add the rows of one block, with arcs as chords."""
         if not block.moves:
             self._opened += isinstance(block.action, Collet)
             return
@@ -120,7 +120,7 @@ class _Rows:
             self._finish_pieces()
 
     def take_series(self, series: Series) -> None:
-        """Add the rows of many straight moves at once."""
+        """Add the rows of a series of straight moves."""
         self._finish_pieces()
         like, ends = series.pattern, (series.x0, series.z0, series.x, series.z)
         dx, dz = self._frame(like)
@@ -129,19 +129,19 @@ class _Rows:
         self._tables.append(np.array([series.n, series.line, *places, *same], dtype=np.float64))
 
     def table(self) -> Floats:
-        """All rows."""
+        """Return all rows."""
         self._finish_pieces()
         return np.concatenate(self._tables, axis=1)
 
     def _frame(self, block: Block) -> tuple[float, float]:
-        """From the program's frame to the tip's in that of part zero, mm."""
+        """Return the shift from the program frame to the tip position relative to part zero, in mm."""
         modal = block.modal
         base = modal.base_x, modal.base_z
         if block.kind is Kind.RAPID:
             self.offsets.setdefault(modal.tool, base)
         elif self._fed.setdefault(modal.tool, base) == base:
             self.offsets[modal.tool] = base
-        else:  # it cuts in two places, and nobody can tell which of them the slides stand in
+        else:  # The tool cuts with two offsets, and the one that applies to the present position is unknown.
             self.offsets[modal.tool] = nan, nan
         return block.offset_x - base[0], block.offset_z - base[1]
 
@@ -152,7 +152,7 @@ class _Rows:
 
 
 def record_cuts(blocks: Iterable[Block | Series], watch: Callable[[float], None]) -> CutRecord:
-    """Goes through all of a program; ``watch`` is told how many blocks have passed and may raise."""
+    """Return the record of all blocks; ``watch`` receives the number of blocks and may raise an exception."""
     rows, count = _Rows(), 0
     for each in blocks:
         if isinstance(each, Series):
@@ -190,13 +190,13 @@ def _record(rows: _Rows, blocks: int) -> CutRecord:
 
 
 def _faces(feeds: Bools, x0: Floats, x: Floats, z: Floats, tool: Ints, radius: float) -> dict[int, float]:
-    """Of each tool the least Z beyond all that is cut at which a rapid brings it within that radius.
+    """Return for each tool the minimum Z beyond all cuts at which a rapid moves inside the cut radius.
 
-    Where a cut begins there may be air, where it goes to there was metal.
+    The start of a cut may be in air, but the end of a cut was in material.
     """
     cut = _greatest(z[feeds], inf)
     within = max(radius - SAME, _ON_CENTRE)
-    across = ~(np.abs(x - x0) <= SAME)  # the first move of all comes from nobody knows where
+    across = ~(np.abs(x - x0) <= SAME)  # the start of the first move is unknown
     called = np.concatenate(([True], tool[1:] != tool[:-1])) if len(tool) else across
     before = (z > cut + SAME) | (called & (z >= cut - SAME))
     known = ~feeds & across & before & (np.abs(x) < within)
@@ -204,16 +204,16 @@ def _faces(feeds: Bools, x0: Floats, x: Floats, z: Floats, tool: Ints, radius: f
 
 
 def _farthest(feeds: Bools, z0: Floats, z: Floats, tool: Ints) -> dict[int, float]:
-    """Of each tool the greatest Z to which it goes by rapid, where that is beyond the start of all cuts."""
+    """Return for each tool the maximum Z of its rapids, if it is beyond the start of all cuts."""
     cut = _greatest(np.concatenate((z0[feeds], z[feeds])), -inf)
     told = {int(each): _greatest(z[~feeds & (tool == each)], -inf) for each in np.unique(tool)}
     return {each: far for each, far in told.items() if far > cut + SAME}
 
 
 def _over(feeds: Bools, x0: Floats, z0: Floats, x: Floats, z: Floats, radius: float) -> float:
-    """The least radius to which a rapid goes out among the cuts, none of which goes to it or along it.
+    """Return the minimum radius to which rapids retract between cuts and that no cut reaches.
 
-    A boring bar is drawn off towards the centre, and what it comes to by rapid is smaller than what it cuts.
+    A boring bar retracts toward the center, and its rapids end at a smaller radius than its cuts.
     """
     reached = feeds & ((np.abs(z - z0) > SAME) | (np.abs(x) >= np.abs(x0)))
     cut = _greatest(np.abs(np.concatenate((x[feeds], x0[reached], x[reached]))), 0.0)
@@ -225,7 +225,7 @@ def _over(feeds: Bools, x0: Floats, z0: Floats, x: Floats, z: Floats, radius: fl
 
 
 def _forget_start(x0: Floats, z0: Floats, x: Floats, z: Floats) -> None:
-    """Where the slides stood at Cycle Start is not known: nan until an axis has been moved."""
+    """Set the unknown start positions to nan until each axis has moved."""
     for start, end in ((x0, x), (z0, z)):
         if len(start):
             moved = np.flatnonzero(np.abs(end - start) > SAME)
@@ -256,7 +256,7 @@ def _how(block: Block) -> int:
 
 
 def _points(block: Block) -> list[tuple[float, float]]:
-    """The ends of its straight pieces."""
+    """Return the end points of the straight pieces of a block."""
     if block.kind is not Kind.ARC:
         return [(block.x, block.z)]
     cx, cz = block.cx, block.cz
@@ -268,6 +268,6 @@ def _points(block: Block) -> list[tuple[float, float]]:
 
 
 def _step(radius: float) -> float:
-    """The angle, radians, whose chord leaves an arc of this radius by no more than is allowed."""
+    """Return the angle in radians whose chord is within the tolerance of an arc of this radius."""
     share = min(1.0, _CHORD / radius) if radius > 0.0 else 1.0
     return min(pi / 2, 2.0 * sqrt(2.0 * share))

@@ -1,4 +1,4 @@
-"""How often a run comes to a line: the passes of loops and the calls of subroutines in which it does."""
+"""Visits of a line during a run: the loop passes and subroutine calls in which it is executed."""
 
 from __future__ import annotations
 
@@ -24,18 +24,18 @@ _WATCHED = 2000
 
 @dataclass(frozen=True, slots=True)
 class Visits:
-    """In the order of the run: how many elementary blocks come before each, and where the flow stands."""
+    """Visits of a line in order: the number of earlier elementary blocks, and the flow position, of each."""
 
     program: Program
     blocks: list[int]
     places: list[FlowPlace]
 
     def at(self, block: int) -> int:
-        """The number of the visit in which this block was run, from 1; the first when it came before."""
+        """Return the number of the visit in which this block was executed, from 1; 1 if it was earlier."""
         return max(1, bisect_left(self.blocks, block))
 
     def why_not(self, line: int, number: int) -> str:
-        """Why there is no such visit; empty when there is."""
+        """Return why a visit does not exist; empty if it exists."""
         if not self.blocks:
             return Message("The program never reaches line {line}.", line=line)
         if len(self.blocks) > MOST:
@@ -54,19 +54,22 @@ class Visits:
         )
 
     def anchor(self, number: int) -> tuple[int, int]:
-        """The line of the main program, outside of all loops, in which the visit comes; its number there."""
+        """Return the main program line that contains the visit, and the number of the visit there.
+
+        The line is outside of all loops.
+        """
         anchor, nth = _anchor(self.places[number - 1]), number
         while nth > 1 and _anchor(self.places[nth - 2]) == anchor:
             nth -= 1
         return anchor, number - nth + 1
 
     def line_visit(self, number: int) -> LineVisit:
-        """The visit in the operator's words: passes and calls, outermost first."""
+        """Return the visit with its loop passes and calls for the operator, the outermost first."""
         return LineVisit(number, len(self.blocks), tuple(_within(self.program, self.places[number - 1])))
 
 
 def visits_of(program: Program, setup: Setup, line: int, watch: Callable[[float], None]) -> Visits:
-    """Goes through the whole run; inputs answer as ``setup`` says."""
+    """Return the visits of a line in a whole run, with the inputs of ``setup``."""
     found = Visits(program, [], [])
     walk, count, ended = PassToLine(program, setup), 0, False
     blocks = walk.before(line)

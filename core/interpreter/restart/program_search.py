@@ -1,8 +1,9 @@
-"""Block search with calculation: Klartext and SINUMERIK programs gone through up to a line, all state kept.
+"""Block search with calculation for Klartext and SINUMERIK programs.
 
-Every block before the line is interpreted as in a run, so that tool, spindle, datum, plane, parameters, loops
-and calls are those of the run. A second pass from another start goes beside the first: an axis that stands
-elsewhere in it has not been positioned by the program, and the line is refused unless that axis never moved.
+All blocks before the line are interpreted as in a run, so that tool, spindle, datum, plane, parameters, loops
+and calls are those of the run. A second pass starts at other axis positions. An axis with a different
+position in that pass was not positioned by the program, and the line is rejected unless the axis has never
+moved.
 """
 
 from __future__ import annotations
@@ -26,24 +27,27 @@ from core.message import Message
 
 Watch = Callable[[float], None]
 
-_ASIDE = 7.3  # mm, degrees: the other start; no program's words fall together with it
+_ASIDE = 7.3  # mm or degrees; shift of the second start position, which no program positions by chance
 _SAME = 1e-6
-_TRIED = 5  # lines on each side of one that is not good
-_SLIDES = 3  # of a mill: X, Y and Z come before its rotary axes
-_WATCHED = 2000  # blocks between two looks at whether the work is still wanted
+_TRIED = 5  # number of lines that are tried on each side of an unsuitable line
+_SLIDES = 3  # number of linear axes of a mill, which precede its rotary axes
+_WATCHED = 2000  # number of blocks between two calls of ``watch``
 
 
 @dataclass(slots=True)
 class _LinesOfRun:
-    """What a whole run tells: by line, how many blocks came before each of its visits."""
+    """Visits of all lines in a whole run: by line, the number of blocks before each visit."""
 
     visits: dict[int, list[int]] = field(default_factory=dict)
-    waits: dict[int, str] = field(default_factory=dict)  # why a line is not good at its first visit
-    ended: int = 0  # line of the program's end
+    waits: dict[int, str] = field(default_factory=dict)  # reason why a line is unsuitable at its first visit
+    ended: int = 0  # line of the program end
 
 
 class ProgramSearch:
-    """One program under fixed circumstances. ``watch`` is told how many blocks have passed and may raise."""
+    """Search in one program with a fixed setup.
+
+    ``watch`` receives the number of blocks and may raise an exception to cancel the search.
+    """
 
     def __init__(self, reading: ReadProgram, setup: Setup, watch: Watch) -> None:
         self._reading = reading
@@ -53,13 +57,14 @@ class ProgramSearch:
 
     @cached_property
     def cut(self) -> CutRecord:
-        """All that the program cuts on a lathe; gone through once."""
+        """Record of all cuts of the program on a lathe, calculated on first use."""
         return record_cuts(self._pass().series(), self.watch)
 
     def find(self, line: int, visit: int = 0, broken: Interruption | None = None) -> RestartPoint | NoRestart:
-        """What line ``line`` inherits the ``visit``-th time, or why the program cannot go on from it.
+        """Return the restart point of a line at its ``visit``-th execution, or why a restart is not possible.
 
-        0: the pass that was interrupted, or the first. ``broken`` is where the program was interrupted.
+        A ``visit`` of 0 is the interrupted pass, or the first one. ``broken`` is the interruption of the
+        program.
         """
         found = self._search(line, visit, broken)
         if isinstance(found, RestartPoint):
@@ -96,7 +101,7 @@ class ProgramSearch:
         return told
 
     def _to(self, line: int, number: int, aside: float, broken: Interruption | None) -> _Stand:
-        """To the ``number``-th time that the run comes to a line."""
+        """Return the state of a pass at the ``number``-th execution of a line."""
         run, stand, left = self._pass(aside), _Stand(), number
 
         def stop(at: int) -> bool:
@@ -113,7 +118,7 @@ class ProgramSearch:
             stand.point = run.checkpoint
         return stand
 
-    # --- the answer ---------------------------------------------------------------------------------------
+    # --- the result ---------------------------------------------------------------------------------------
 
     def _search(self, line: int, visit: int, broken: Interruption | None) -> RestartPoint | str:
         lines = self._reading.source.lines
@@ -157,7 +162,7 @@ class ProgramSearch:
         )
 
     def _places(self, here: Checkpoint, other: Checkpoint | None) -> tuple[float | None, ...] | str:
-        """Machine positions of all axes, None for one that has not moved; or why they are not known."""
+        """Return machine positions, with None for an axis that has not moved; or why they are unknown."""
         if other is None:
             return "the program before this line depends on the axis positions at Cycle Start."
         found: list[float | None] = []
@@ -211,10 +216,9 @@ class ProgramSearch:
         return RestartPoint(line, point, clear, None, visit, left_out=(first, last), axes=at)
 
     def _nearest(self, line: int, way: int, broken: Interruption | None) -> int:
-        """The nearest line that is good, of those to which the run comes and that wait for no other.
+        """Return the nearest suitable line in one direction, or 0 if none of the first few lines is suitable.
 
-        Each is looked for as it would be when it is asked for; where none of the first few is good, none is
-        named.
+        Each line is checked like a requested line.
         """
         near = [each for each, why in self._run.waits.items() if not why and (each - line) * way > 0]
         near.sort(key=lambda each: abs(each - line))
@@ -224,19 +228,23 @@ class ProgramSearch:
 
 @dataclass(slots=True)
 class _Stand:
-    """Where a pass has come to; ``cutting``: by feed; ``left_out`` the lines of cuts behind what was done."""
+    """State of a pass.
+
+    ``cutting`` means that the last move was a feed, and ``left_out`` are the first and last line of skipped
+    cuts.
+    """
 
     point: Checkpoint | None = None
     waits: str = ""
     failed: bool = False
     cutting: bool = False
-    length: float = 0.0  # of the tool, mm
-    top: float = -inf  # machine Z of the tip where the highest cut of those begins, mm
-    turned: bool = False  # rotary axes turn in one of them: heights tell nothing
+    length: float = 0.0  # tool length, mm
+    top: float = -inf  # machine Z of the tip at the start of the highest skipped cut, mm
+    turned: bool = False  # a skipped cut moves rotary axes, so that heights cannot be compared
     left_out: tuple[int, int] | None = None
 
     def see(self, block: Block, *, uncut: bool) -> None:
-        """Note the next block of the pass; ``uncut``: its cut was not begun or is incomplete."""
+        """Process the next block of the pass; ``uncut`` means that its cut is missing or incomplete."""
         if block.swivel is not None:
             self.length = block.swivel.system.tool_length
         if not block.moves:
@@ -251,14 +259,14 @@ class _Stand:
                 self.top = max(self.top, tip)
 
     def above(self, point: Checkpoint) -> bool:
-        """Whether the place was reached by rapid and is no lower than where what is left out would begin."""
+        """Return whether the position was reached in rapid and is not below the start of a skipped cut."""
         return not (self.cutting or self.turned) and point.at[2] - self.length >= self.top - _SAME
 
 
 def _is_uncut(block: Block, broken: Interruption) -> bool:
     """Return whether the cut of a block was not begun, or was interrupted before its end.
 
-    A closed block, such as a full circle, counts as uncut: its place does not tell how far it was cut.
+    A closed block, such as a full circle, counts as uncut, because its end does not show how far it was cut.
     """
     if block.n != broken.block or block.travel is None:
         return block.n > broken.done
@@ -269,12 +277,12 @@ def _is_uncut(block: Block, broken: Interruption) -> bool:
 
 
 def _is_same_place(one: Sequence[float], other: Sequence[float]) -> bool:
-    """Return whether two machine positions agree; whole turns of the rotary axes make no difference."""
+    """Return whether two machine positions agree; whole revolutions of the rotary axes are ignored."""
     offs = [b - a for a, b in zip(one, other, strict=False)]
     turned = [(each + 180.0) % 360.0 - 180.0 for each in offs[_SLIDES:]]
     return all(abs(each) <= NEAR for each in (*offs[:_SLIDES], *turned))
 
 
 def _at(point: Checkpoint) -> tuple[float, ...]:
-    """Machine positions of all axes."""
+    """Return the machine positions of all axes."""
     return point.at or (*point.machine, point.c + point.modal.offset_c)

@@ -1,9 +1,10 @@
-"""The way from where the machine stands to a line in the middle of a program, as lathe or mill allows.
+"""Path from the present machine position to a line in the middle of a program, on a lathe or mill.
 
-On a lathe: out of the work by the tool and the block that were interrupted; Z clear of the part, X over the
-start, spindle and coolant; then into the work by the line. Rapids only where no metal can be. On a mill: out
-along the tool and Z to its top; then the rotary axes, at the top of all travel; the tool that is wanted; over
-the place; spindle and coolant; and in along the tool as it will cut, the last bit by feed.
+On a lathe, the tool leaves the part as the interrupted block requires. Z moves clear of the part, X moves
+over the start, spindle and coolant start, and the tool enters as the line requires. Rapids are only outside
+the material. On a mill, the tool retracts along its axis, and Z moves to its upper limit. The rotary axes
+move there, the tool is changed, and the tool moves over the position. Spindle and coolant start, and the tool
+enters along its axis, with a feed at the end.
 """
 
 from __future__ import annotations
@@ -43,15 +44,15 @@ from core.message import Message
 
 _SAME = 1e-6  # mm
 _TURN = 360.0
-_HELD = 0.5  # degrees that C may have turned under a tool that stands in a hole
+_HELD = 0.5  # degrees; permitted turn of C while a tool is in a hole
 _INCH = 25.4
 _OWN_C = 60.0  # degrees/s: 10 rpm
-_LATER = 400  # rows behind the block that was kept in which a control that was cut off may have stood
+_LATER = 400  # number of rows after the saved block in which the tool may be after a power failure
 
 
 @dataclass(frozen=True, slots=True)
 class MachineNow:
-    """The machine as it stands: machine point (x, z, c), mm and degrees, and modal state; what broke off."""
+    """Present machine state: position (x, z, c) in mm and degrees, modal state, and the interruption."""
 
     at: tuple[float, ...]
     modal: Modal
@@ -60,7 +61,7 @@ class MachineNow:
 
 @dataclass(frozen=True, slots=True)
 class Choices:
-    """What the operator decides. ``rapid`` and ``modest``: mm/s of legs outside and inside of the work."""
+    """Decisions of the operator. ``rapid`` and ``modest`` are speeds outside and inside the part, in mm/s."""
 
     coolant: bool = True
     rapid: float = 100 * _INCH / 60
@@ -68,7 +69,7 @@ class Choices:
 
 
 def retract_from_work(cut: CutRecord, now: MachineNow) -> tuple[Retract, int]:
-    """How the tool that stands in the work leaves it, and the number of that tool."""
+    """Return the retract of the tool from the part, and the number of that tool."""
     broken = now.broken
     if broken is None or broken.tool not in cut.offsets:
         return _unknown(cut, now), now.modal.tool
@@ -92,7 +93,10 @@ def _tip(cut: CutRecord, at: tuple[float, ...], tool: int) -> tuple[float, float
 
 
 def _unknown(cut: CutRecord, now: MachineNow) -> Retract:
-    """Nothing was interrupted that is known: every tool of the program must stand where no metal can be."""
+    """Return the retract without a known interruption.
+
+    The tool is clear only if all tools of the program are outside the material.
+    """
     clear = now.at[1] >= cut.clear_z - _SAME or all(
         cut.outside(*_tip(cut, now.at, tool), tool) for tool in cut.offsets
     )
@@ -100,7 +104,7 @@ def _unknown(cut: CutRecord, now: MachineNow) -> Retract:
 
 
 def _stale(cut: CutRecord, broken: Interruption, x: float, z: float) -> Place | None:
-    """The first row from the one that was kept on at which the tool stands now; None: at none of them."""
+    """Return the first row, from the saved one on, at which the tool is now; otherwise None."""
     row = max(0, cut.row_behind(broken.block))
     for each in range(row, min(row + _LATER, len(cut))):
         if int(cut.tool[each]) != broken.tool:
@@ -111,7 +115,7 @@ def _stale(cut: CutRecord, broken: Interruption, x: float, z: float) -> Place | 
 
 
 def _off_the_row(cut: CutRecord, broken: Interruption, x: float, z: float) -> Retract:
-    """Stopped on the way of a restart: somewhere on the way out of the block that had been interrupted."""
+    """Return the remaining retract after a stop on the approach or retract of an earlier restart."""
     row = cut.row_behind(broken.block)
     place = None if row < 0 else nearest(cut, row, x, z)
     if place is None or int(cut.tool[row]) != broken.tool:
@@ -121,7 +125,7 @@ def _off_the_row(cut: CutRecord, broken: Interruption, x: float, z: float) -> Re
 
 
 def _held(way: Retract, now: MachineNow) -> Retract:
-    """A mill in its hole leaves only while C stands as it stood."""
+    """Return the retract; a mill in its hole can leave only if C has not turned."""
     broken = now.broken
     if way.tool_place is not ToolPlace.MILL or broken is None or len(now.at) < 3 or len(broken.at) < 3:
         return way
@@ -130,7 +134,7 @@ def _held(way: Retract, now: MachineNow) -> Retract:
 
 
 def _on_the_way(was: Retract, start: tuple[float, float], x: float, z: float) -> Retract:
-    """The rest of the way out of a tool that has been moved along it already."""
+    """Return the rest of a retract along which the tool has already moved."""
     at = RetractLeg(*start)
     for number, hop in enumerate(was.legs):
         if off_line(at.x, at.z, hop.x, hop.z, x, z) <= NEAR:
@@ -140,7 +144,7 @@ def _on_the_way(was: Retract, start: tuple[float, float], x: float, z: float) ->
 
 
 def begin_at(found: RestartPoint, now: MachineNow, choices: Choices) -> Begin:
-    """The beginning of a pass that goes on from the line. C counts the turns that it really has made."""
+    """Return the start of a pass at the line, with the real number of revolutions of C."""
     point, modal = found.checkpoint, found.checkpoint.modal
     if modal.c_locked:
         modal = modal._replace(offset_c=_near(point.c + modal.offset_c, now.at[2]) - point.c)
@@ -150,7 +154,7 @@ def begin_at(found: RestartPoint, now: MachineNow, choices: Choices) -> Begin:
 
 
 def approach_steps(found: RestartPoint, now: MachineNow, choices: Choices) -> tuple[ApproachStep, ...]:
-    """Everything between the standstill of now and the first block of the line."""
+    """Return all steps between the present standstill and the first block of the line."""
     out = way_out(found.cut, now, choices) if found.cut is not None else ()
     at = _end(out, now.at)
     return (*stopping(found.checkpoint.modal, now.modal), *out, *_over(found, at, choices),
@@ -158,7 +162,7 @@ def approach_steps(found: RestartPoint, now: MachineNow, choices: Choices) -> tu
 
 
 def way_out(cut: CutRecord, now: MachineNow, choices: Choices) -> tuple[Leg, ...]:
-    """Out of the work, and Z clear of the part; nothing where no way is sure."""
+    """Return the moves out of the part, with Z clear of it; empty if no safe path is known."""
     found, tool = retract_from_work(cut, now)
     if not found.known:
         return ()
@@ -174,8 +178,10 @@ def way_out(cut: CutRecord, now: MachineNow, choices: Choices) -> tuple[Leg, ...
 
 
 def _free(cut: CutRecord, tool: int, start: tuple[float, float], end: tuple[float, float]) -> bool:
-    """Whether a straight way between two machine points leads from one free place to another, and not
-    through the corner of the bar."""
+    """Return whether a straight move between two machine points remains outside the material.
+
+    The move must not cross the corner of the bar.
+    """
     (x0, z0), (x1, z1) = _tip(cut, start, tool), _tip(cut, end, tool)
     over = min(abs(x0), abs(x1)) >= cut.over - _SAME and x0 * x1 > 0.0
     before = min(z0, z1) >= cut.front(tool) - _SAME
@@ -183,12 +189,12 @@ def _free(cut: CutRecord, tool: int, start: tuple[float, float], end: tuple[floa
 
 
 def starting(found: RestartPoint, now: MachineNow, choices: Choices) -> tuple[ApproachStep, ...]:
-    """What will start to turn, flow or switch on: the operator has to confirm it."""
+    """Return the functions that will start or turn on, which the operator must confirm."""
     return tuple(step for step in _starts(found, now, choices) if isinstance(step, FunctionStep))
 
 
 def stopping(wanted: Modal, now: Modal) -> Iterator[ApproachStep]:
-    """What runs and must not, before anything moves."""
+    """Yield the functions that must stop before any motion."""
     if now.spindle and now.spindle != wanted.spindle:
         yield FunctionStep(SpindleStop(), "M05")
     if now.coolant and not wanted.coolant:
@@ -202,7 +208,7 @@ def _starts(found: RestartPoint, now: MachineNow, choices: Choices) -> Iterator[
     if wanted.c_locked:
         yield FunctionStep(SpindleLock(orient=False), "M89")
         yield CTurn(_near(point.c + wanted.offset_c, now.at[2]), (wanted.c_rpm or 10.0) * 6.0, "C")
-    elif point.at:  # C has a drive of its own, and the program has positioned it
+    elif point.at:  # C has a separate drive, and the program has positioned it.
         yield CTurn(_own_c(point.at[2], now.at[2]), _OWN_C, "C")
     if wanted.oriented is not None:
         yield FunctionStep(SpindleOrient(wanted.oriented), f"M19 {wanted.oriented:g}")
@@ -217,12 +223,12 @@ def _starts(found: RestartPoint, now: MachineNow, choices: Choices) -> Iterator[
 
 
 def _own_c(angle: float, now: float) -> float:
-    """Where C is turned to: its angle as it is, unless the program has counted it on over many turns."""
+    """Return the target angle of C, unless the program has counted many revolutions."""
     return angle if abs(angle) <= _TURN else _near(angle, now)
 
 
 def _over(found: RestartPoint, at: tuple[float, float], choices: Choices) -> Iterator[Leg]:
-    """Z clear of the part where the start is farther out, then X over the first place before the work."""
+    """Yield the moves of Z clear of the part and of X over the first point outside the part."""
     x, z = _before(found)[0]
     clear = max(at[1], z)
     yield from _leg(at[0], at[1], at[0], clear, choices, rapid=True)
@@ -230,7 +236,7 @@ def _over(found: RestartPoint, at: tuple[float, float], choices: Choices) -> Ite
 
 
 def _in(found: RestartPoint, at: tuple[float, float], choices: Choices) -> Iterator[Leg]:
-    """Down to where the work begins by rapid, and into it by the way that leads out of it."""
+    """Yield the rapid to the start of the part, and the entry along the reversed retract path."""
     places = _before(found)
     x, z = places[0][0], max(at[1], places[0][1])
     cut, tool = found.cut, found.checkpoint.modal.tool
@@ -242,7 +248,7 @@ def _in(found: RestartPoint, at: tuple[float, float], choices: Choices) -> Itera
 
 
 def _before(found: RestartPoint) -> list[tuple[float, float]]:
-    """Machine points from the one before the work to that of the line."""
+    """Return the machine points from the one outside the part to that of the line."""
     goal = found.checkpoint.machine
     modal = found.checkpoint.modal
     hops = [(hop.x + modal.base_x, hop.z + modal.base_z) for hop in found.back.legs]
@@ -266,28 +272,28 @@ def _leg(x: float, z: float, to_x: float, to_z: float, choices: Choices, *, rapi
 
 
 def _near(angle: float, now: float) -> float:
-    """The machine angle that stands for ``angle`` and is the nearest to where C is."""
+    """Return the machine angle equivalent to ``angle`` that is nearest to the present angle."""
     return angle + round((now - angle) / _TURN) * _TURN
 
 
 # --- on a mill -----------------------------------------------------------------------------------------
 
 
-SHORT_OF_LIMIT = 0.01  # mm that the way stays away from the software limits
-_SLOWLY_OUT = 50.0  # mm along the tool that a tool may stand in the work
-_SLOWLY_IN = 5.0  # mm before the place
+SHORT_OF_LIMIT = 0.01  # mm; distance of the path from the software limits
+_SLOWLY_OUT = 50.0  # mm along the tool axis; maximum depth of a tool in the part
+_SLOWLY_IN = 5.0  # mm before the target
 _SLIDES = "XYZ"
 
 
 @dataclass(slots=True)
 class _Way:
-    """The legs so far, and where they have led: machine positions by axis."""
+    """The moves so far, and their end in machine positions by axis."""
 
     machine: Kinematics
     at: dict[str, float]
 
     def to(self, goal: dict[str, float], feed: float | None) -> Iterator[AxesLeg]:
-        """A leg of the axes that are not there yet."""
+        """Yield a move of the axes that are not yet at the target."""
         moving = {name: value for name, value in goal.items() if abs(value - self.at[name]) > _SAME}
         self.at |= moving
         if moving:
@@ -302,7 +308,10 @@ class _Way:
         return self.machine.tool_axis(self.at)
 
     def room(self, start: Vector) -> float:
-        """How far a slide can go from ``start`` away from the work along the tool, mm; inf: no limit."""
+        """Return the possible travel from ``start`` along the tool axis away from the part, in mm.
+
+        It is inf without limits.
+        """
         ways = [inf]
         for slide, at, share in zip(self.machine.slides, start, self.tool_axis, strict=True):
             if abs(share) > _SAME:
@@ -310,12 +319,12 @@ class _Way:
         return min(ways) - SHORT_OF_LIMIT
 
     def along(self, start: Vector, length: float) -> dict[str, float]:
-        """The place so far from ``start`` along the tool."""
+        """Return the position at this distance from ``start`` along the tool."""
         return dict(zip(_SLIDES, plus(start, scaled(self.tool_axis, length)), strict=True))
 
 
 def begin_on_mill(found: RestartPoint, now: MachineNow, choices: Choices, machine: Kinematics) -> Begin:
-    """The beginning of a pass that goes on from the line."""
+    """Return the start of a pass at the line on a mill."""
     point, modal = found.checkpoint, found.checkpoint.modal
     modal = modal._replace(coolant=modal.coolant and choices.coolant)
     steps = tuple(_steps(found, now, choices, machine))
@@ -323,12 +332,12 @@ def begin_on_mill(found: RestartPoint, now: MachineNow, choices: Choices, machin
 
 
 def why_no_way(machine: Kinematics) -> str:
-    """Why no way can be planned on this machine; empty where one can."""
+    """Return why no path can be planned on this machine; empty if it is possible."""
     return "" if all(slide.high < inf for slide in machine.slides) else ("the axes have no software limits")
 
 
 def goal_of(found: RestartPoint, now: MachineNow, machine: Kinematics) -> dict[str, float]:
-    """Where the line begins: an axis that the program has never moved stays where it stands."""
+    """Return the start position of the line; an axis that the program has not moved remains."""
     places = zip(machine.names, found.axes, now.at, strict=True)
     return {name: at if wanted is None else wanted for name, wanted, at in places}
 
@@ -361,7 +370,7 @@ def _steps(
 
 
 def _out(way: _Way, choices: Choices) -> Iterator[AxesLeg]:
-    """Out of the work along the tool, slowly first, and then Z to its top."""
+    """Yield the retract along the tool, slow at first, and then Z to its upper limit."""
     start = way.slides
     room = max(way.room(start), 0.0)
     slowly = min(_SLOWLY_OUT, room)

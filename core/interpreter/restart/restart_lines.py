@@ -1,4 +1,4 @@
-"""Lines from which a program can be restarted: what its text says of each."""
+"""Lines from which a program can be restarted, as far as its text determines them."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ _NOSE_ON, _NOSE_OFF = frozenset({41, 42}), 40
 class LineRange(NamedTuple):
     """Lines ``first`` to ``last``, counted from 1.
 
-    If a program cannot be restarted from these lines, ``reason`` is the template of the sentence that
-    states why. Its values are ``line``, the line of the restart, and ``begin``, the line on which the
-    contour, corner or other section begins.
+    If a program cannot be restarted from these lines, ``reason`` is the template of the message. Its
+    placeholders are ``line``, the line of the restart, and ``begin``, the line on which the contour, corner
+    or other section begins.
     """
 
     first: int
@@ -34,7 +34,7 @@ class LineRange(NamedTuple):
 
 
 class RestartLines:
-    """What the text of a program says about each of its lines."""
+    """Suitability of each line of a program for a restart, determined from its text."""
 
     def __init__(self, program: Program) -> None:
         self._steps = program.ready
@@ -46,7 +46,7 @@ class RestartLines:
         self._calls = _calls(program)
 
     def why_not(self, line: int) -> str:
-        """Why no program can go on from this line; empty when its text has nothing against it."""
+        """Return why a restart from this line is not possible; empty if the text allows it."""
         if not 1 <= line <= self.count:
             return Message(
                 "Line {line} does not exist; the last line of the program is {lines_count}.",
@@ -59,13 +59,17 @@ class RestartLines:
         return "" if self._steps[line - 1] is not None else Message("Line {line} is empty.", line=line)
 
     def repeats(self, line: int) -> bool:
-        """Whether the run may come to it more than once, or never: within a loop or a subroutine."""
+        """Return whether a line is in a loop or subroutine.
+
+        Such a line may be executed repeatedly or never.
+        """
         return any(each.first <= line <= each.last for each in self.repeated)
 
     def nearest(self, line: int, way: int) -> int:
-        """The nearest line below it (``way`` 1) or above it (-1) that is good by its text; 0: none is.
+        """Return the nearest suitable line below (``way`` 1) or above (-1), or 0 without one.
 
-        Loops and subroutines are passed by; from inside a subroutine the way up leads to its first call.
+        Loops and subroutines are skipped. From inside a subroutine, the search upward continues at its first
+        call.
         """
         if way < 0:
             line = self._called_from(line)
@@ -81,15 +85,15 @@ class RestartLines:
         return 0
 
     def _called_from(self, line: int) -> int:
-        """The line behind the call that leads to this one; the line itself where it is in no subroutine."""
+        """Return the line after the call of the subroutine with this line; otherwise the line itself."""
         at = line
-        for _ in self._calls:  # a call may stand in a subroutine itself
+        for _ in self._calls:  # a call may be in another subroutine
             at = next((call for first, last, call in self._calls if first <= at <= last), at)
         return line if at == line else at + 1
 
 
 def _calls(program: Program) -> list[tuple[int, int, int]]:
-    """First line, last line and first call from outside of each subroutine that is called."""
+    """Return first line, last line and first external call of each called subroutine."""
     calls = [
         (number, call_target(step))
         for number, step in enumerate(program.ready, start=1)
@@ -104,7 +108,10 @@ def _calls(program: Program) -> list[tuple[int, int, int]]:
 
 
 def _structured(program: Program) -> Iterator[LineRange]:
-    """Contours, and what no call can reach: their first lines are good, what is inside is not."""
+    """Yield contours and unreachable lines.
+
+    The first line of a contour is suitable for a restart; its other lines are not.
+    """
     structure = program.structure
     for start, end in structure.contours.items():
         reason = "Line {line} is part of the contour that begins on line {begin}."
@@ -118,7 +125,7 @@ def _structured(program: Program) -> Iterator[LineRange]:
 
 
 def _repeated(program: Program) -> Iterator[LineRange]:
-    """Loops behind their LS, and subroutines."""
+    """Yield loops after their LS, and subroutines."""
     for start, end in program.structure.loop_ends.items():
         yield LineRange(start + 2, end + 1)
     for start, end, _number in _subroutines(program):
@@ -126,14 +133,14 @@ def _repeated(program: Program) -> Iterator[LineRange]:
 
 
 def _subroutines(program: Program) -> Iterator[tuple[int, int, int]]:
-    """First line, last line and number of each."""
+    """Yield first line, last line and number of each subroutine."""
     structure = program.structure
     for number, start in structure.subroutines.items():
         yield start + 1, structure.subroutine_ends.get(number, len(program.ready) - 1) + 1, number
 
 
 def _open(steps: ReadyLines) -> Iterator[LineRange]:
-    """Plane switching, nose compensation and corners: from the line after the one that begins them."""
+    """Yield sections of plane switching, nose compensation and corners, from the line after their start."""
     plane = nose = corner = 0
     for number, step in enumerate(steps, start=1):
         if not isinstance(step, Statement):
@@ -160,7 +167,7 @@ def _open(steps: ReadyLines) -> Iterator[LineRange]:
 
 
 def _plane(step: Statement, number: int, begun: int) -> tuple[int, int]:
-    """(line on which plane switching begins or 0, line on which one that ends here began or 0)."""
+    """Return the start line of active plane switching or 0, and the start line of one that ends here or 0."""
     name = step.plane.name if step.plane is not None else ""
     if name == "END":
         return 0, begun

@@ -1,4 +1,4 @@
-"""What the search for a line of a restart answers: the line in one of its passes, or why it cannot be."""
+"""Results of the search for a restart line: the restart point, or why it is not possible."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from core.interpreter.shared.checkpoint import Checkpoint
 
 
 class LoopPass(NamedTuple):
-    """One pass of a loop; ``first`` and ``last`` are its lines, LS and LF."""
+    """One pass of a loop; ``first`` and ``last`` are the lines of LS and LF."""
 
     first: int
     last: int
@@ -20,14 +20,14 @@ class LoopPass(NamedTuple):
 
 
 class Called(NamedTuple):
-    """A call under way: the line that calls, and the number of the subroutine."""
+    """An active call: the line of the call, and the number of the subroutine."""
 
     line: int
     subroutine: int
 
 
 class LineVisit(NamedTuple):
-    """The ``number``-th time, of ``of`` in the whole run, that the program comes to a line, and in what."""
+    """The ``number``-th of ``of`` executions of a line in the whole run, with its loop passes and calls."""
 
     number: int = 1
     of: int = 1
@@ -35,9 +35,10 @@ class LineVisit(NamedTuple):
 
 
 class Interruption(NamedTuple):
-    """Where the program was interrupted: elementary block, machine point, mm; blocks begun without a gap.
+    """Point of interruption of a program: elementary block, tool, and machine point in mm.
 
-    ``stale``: the control was cut off, so that the tool may have gone on for a second behind that.
+    All blocks up to ``begun`` were begun. ``stale`` means that the control lost power, so that the tool may
+    have moved for up to a second after this point.
     """
 
     block: int
@@ -48,15 +49,15 @@ class Interruption(NamedTuple):
 
     @property
     def done(self) -> int:
-        """Up to this block the material is known to be cut."""
+        """Last block whose cut is known to be complete."""
         return max(self.begun, self.block) if self.block <= self.begun + 1 else self.begun
 
 
 @dataclass(frozen=True, slots=True)
 class RestartPoint:
-    """A good line in one of its passes, what it inherits, and the way back from its place out of the work.
+    """A suitable line in one of its passes, with its inherited state and the retract from its start.
 
-    ``left_out``: lines that were not cut and would be left out, as (first, last); (0, 0): none.
+    ``left_out`` are the first and last line of cuts that would be skipped, or (0, 0).
     """
 
     line: int
@@ -64,14 +65,14 @@ class RestartPoint:
     back: Retract = field(default_factory=lambda: Retract(ToolPlace.CLEAR))
     cut: CutRecord | None = None
     visit: LineVisit = field(default_factory=LineVisit)
-    was: LineVisit | None = None  # the pass that was interrupted, where the line is run more than once
+    was: LineVisit | None = None  # the interrupted pass if the line is executed more than once
     left_out: tuple[int, int] = (0, 0)
-    axes: tuple[float | None, ...] = ()  # of a mill: where its axes stand there; None: one that never moved
+    axes: tuple[float | None, ...] = ()  # axis positions of a mill, with None for an axis that never moved
 
 
 @dataclass(frozen=True, slots=True)
 class NoRestart:
-    """Why a program cannot go on from a line, and the nearest lines from which it can; 0: there is none."""
+    """Reason why a restart at a line is not possible, and the nearest suitable lines (0 for none)."""
 
     line: int
     why: str

@@ -1,8 +1,8 @@
-"""How a tool is retracted from the work, and by the same way brought back to it: legs that cross no metal.
+"""Retract of a tool from the part and, reversed, its approach, along moves that do not cross material.
 
-Known to be free is where this tool has been since the collet was last opened, and what lies over the largest
-radius that the program cuts or before its face. Beyond that a leg is sure only where the program itself takes
-the tool off so. The rules, and what was taken from nobody's guess: docs/decisions/0021-restart.md.
+Known free space is where this tool has been since the collet was last opened, outside the largest cut radius,
+and in front of the face. Other moves are safe only if the program itself makes the same retract. The rules
+are in docs/decisions/0021-restart.md.
 """
 
 from __future__ import annotations
@@ -28,32 +28,33 @@ from core.interpreter.restart.cut_record import (
     Floats,
 )
 
-NEAR = 0.1  # mm: no farther from the path a tool stands on it
-_END = 0.005  # mm: nearer to its end a row is done
-_ASIDE = 0.01  # mm: a cut that leaves a radius or a Z by less stays on it
-_BETWEEN = 1.1  # mm: no tool is narrower, so that nothing is left between passes nearer to each other
+NEAR = 0.1  # mm; a tool within this distance of a path is on the path
+_END = 0.005  # mm; a row is complete within this distance of its end
+_ASIDE = 0.01  # mm; a cut within this distance of a radius or Z counts as parallel to it
+_BETWEEN = 1.1  # mm; minimum tool width, so that closer passes leave no material between them
 _BACK_A_LITTLE = 0.25  # mm
-_FROM_A_SHOULDER = 0.1  # mm: no nearer to a face that is still to be cut
-_ON_CENTRE = 0.05  # mm of radius; a tool there drills or taps
-_AHEAD, _BACK, _LEGS = 400, 400, 60  # rows looked at; legs that an operator can still follow
-_FAR = 100_000  # rows in which the next way off the part is looked for
-_TRIED = 24  # rows back from which the program's own way is tried
+_FROM_A_SHOULDER = 0.1  # mm; minimum distance from a face that is not cut yet
+_ON_CENTRE = 0.05  # mm of radius; a tool within it drills or taps
+# maximum rows to examine ahead and back, and maximum moves that an operator can follow
+_AHEAD, _BACK, _LEGS = 400, 400, 60
+_FAR = 100_000  # maximum rows in which the next retract is searched
+_TRIED = 24  # maximum rows back from which the retract of the program is tried
 
 
 class ToolPlace(Enum):
-    """How a tool stands: clear of the work or in it, and in what of it that has a way of its own out."""
+    """Situation of a tool: clear of the part, or in the part, and how it can leave."""
 
     CLEAR = "clear"
     WORK = "work"
     THREAD = "thread"
     TAP = "tap"
-    MILL = "mill"  # C is held
-    TURNED = "turned"  # a mill whose part has been turned since
+    MILL = "mill"  # C is locked
+    TURNED = "turned"  # a mill in a part that has turned since
     UNKNOWN = "unknown"
 
 
 class RetractLeg(NamedTuple):
-    """A straight way to a point of the tip, mm."""
+    """A straight move of the tip to a point, in mm."""
 
     x: float
     z: float
@@ -61,9 +62,10 @@ class RetractLeg(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Retract:
-    """``legs`` lead from where the tool stands to where no metal can be; without, but for ``CLEAR``, none do.
+    """Retract of a tool. ``legs`` lead from its position out of the material; empty if clear or not known.
 
-    ``away`` is how the tool leaves in any case: the signs of (x, z) of the first leg; (0, 0): nobody knows.
+    ``away`` is the direction in which the tool leaves in any case, as the signs of (x, z) of the first move;
+    (0, 0) if unknown.
     """
 
     tool_place: ToolPlace
@@ -72,12 +74,12 @@ class Retract:
 
     @property
     def known(self) -> bool:
-        """Whether the tool is clear, or its way out of the work is known."""
+        """Whether the tool is clear, or its path out of the part is known."""
         return self.tool_place is ToolPlace.CLEAR or bool(self.legs)
 
 
 class Place(NamedTuple):
-    """Where a program was or will be: behind ``block``, or within it, the tip of ``tool`` at (x, z)."""
+    """Position in a program: at or within ``block``, with the tip of ``tool`` at (x, z)."""
 
     block: int
     tool: int
@@ -99,7 +101,7 @@ class _Segment(NamedTuple):
 
 
 def retract(cut: CutRecord, place: Place, done: int) -> Retract:
-    """The way from this place to where no metal can be; what was cut are the blocks up to ``done``."""
+    """Return the retract from this position; the blocks up to ``done`` have been cut."""
     row = cut.row_behind(place.block)
     if row >= 0 and int(cut.tool[row]) == place.tool:
         row, on = _on_row(cut, row, place)
@@ -113,14 +115,14 @@ def _clear(cut: CutRecord, place: Place) -> bool:
 
 
 def _on_row(cut: CutRecord, row: int, place: Place) -> tuple[int, bool]:
-    """The row of the block on which the tool stands, and whether it does; the end of a block comes first."""
+    """Return the row of the block that is nearest to the tool, and whether the tool is on it."""
     rows = range(cut.first_row(row), row + 1)
     best = min(rows, key=lambda each: (round(off_row(cut, each, place.x, place.z), 4), -each))
     return best, off_row(cut, best, place.x, place.z) <= NEAR
 
 
 def off_row(cut: CutRecord, row: int, x: float, z: float) -> float:
-    """How far a point lies off a row, mm."""
+    """Return the distance of a point from a row, in mm."""
     x0, z0, x1, z1 = cut.ends(row)
     if isnan(x0) or isnan(z0):
         return hypot(x - x1, z - z1)
@@ -128,20 +130,20 @@ def off_row(cut: CutRecord, row: int, x: float, z: float) -> float:
 
 
 def nearest(cut: CutRecord, row: int, x: float, z: float) -> tuple[float, float] | None:
-    """The point of a row that is nearest to (x, z), mm; None where it is not known whence the row comes."""
+    """Return the point of a row that is nearest to (x, z), in mm; None if the start of the row is unknown."""
     x0, z0, x1, z1 = cut.ends(row)
     length = hypot(x1 - x0, z1 - z0)
     return None if isnan(length) or not length else _foot(x0, z0, x1, z1, x, z)
 
 
 def off_line(x0: float, z0: float, x1: float, z1: float, x: float, z: float) -> float:
-    """How far a point lies off the straight piece from (x0, z0) to (x1, z1), mm."""
+    """Return the distance of a point from the straight piece (x0, z0) to (x1, z1), in mm."""
     foot_x, foot_z = _foot(x0, z0, x1, z1, x, z)
     return hypot(foot_x - x, foot_z - z)
 
 
 def _foot(x0: float, z0: float, x1: float, z1: float, x: float, z: float) -> tuple[float, float]:
-    """The point of a straight piece that is nearest to (x, z)."""
+    """Return the point of a straight piece that is nearest to (x, z)."""
     dx, dz = x1 - x0, z1 - z0
     size = dx * dx + dz * dz
     share = max(0.0, min(1.0, ((x - x0) * dx + (z - z0) * dz) / size)) if size > 0.0 else 0.0
@@ -149,14 +151,15 @@ def _foot(x0: float, z0: float, x1: float, z1: float, x: float, z: float) -> tup
 
 
 class _Search:
-    """From one place on one row."""
+    """Search for a retract from one position on one row."""
 
     def __init__(self, cut: CutRecord, place: Place, row: int, done: int) -> None:
         self.cut, self.place, self.row, self.done = cut, place, row, done
         self.x, self.z = place.x, place.z
         self.how = int(cut.how[row])
         left = hypot(float(cut.x[row]) - self.x, float(cut.z[row]) - self.z)
-        self.within = left > _END and place.block <= int(cut.n[row])  # and not at its end
+        # the tool is within the row and not at its end
+        self.within = left > _END and place.block <= int(cut.n[row])
 
     def retract_there(self) -> Retract:  # noqa: PLR0911 - one answer for each way of standing in the work
         how = self.how
@@ -180,10 +183,10 @@ class _Search:
             return Retract(ToolPlace.THREAD, away=self._thread_away())
         return self._as_it_came()
 
-    # --- as the program takes it off ----------------------------------------------------------------------
+    # --- retract as in the program ------------------------------------------------------------------------
 
     def _ahead(self) -> Iterator[_Segment]:
-        """What comes next with this tool and this bar, the rest of the row first."""
+        """Yield the next segments with this tool and this bar, beginning with the rest of the row."""
         cut, row = self.cut, self.row
         if self.within:
             yield _Segment(self.x, self.z, float(cut.x[row]), float(cut.z[row]), self.how, row)
@@ -197,7 +200,7 @@ class _Search:
         return _Segment(*self.cut.ends(row), int(self.cut.how[row]), row)
 
     def _going_on(self) -> Retract | None:
-        """The rapids that the program would make next from here, where they lead out of the work."""
+        """Return the next rapids of the program as a retract if they lead out of the part; otherwise None."""
         legs: list[RetractLeg] = []
         for segment in self._ahead():
             if segment.how & FEED or len(legs) >= _LEGS:
@@ -208,9 +211,9 @@ class _Search:
         return None
 
     def _as_the_program_does(self) -> Retract | None:
-        """Along X to where the program next goes by rapid towards Z+ past this Z, and out with it.
+        """Return a move along X to the program's next rapid toward Z+, and that rapid; or None.
 
-        None where cuts come before that may still have to make room for it.
+        The result is None if earlier cuts may still have to make room for this rapid.
         """
         level, first = self.z + _ASIDE, self.row + 1
         grew = shrank = False
@@ -237,14 +240,17 @@ class _Search:
         return self._out_with(self._segment(crossing), steps, grew=grew, shrank=shrank)
 
     def _rest_of_the_cut(self, level: float) -> float | None:
-        """How far outwards the rest of this row goes, mm, 0 in a thread; None: it is in the way itself."""
+        """Return the outward travel of the rest of this row in mm, 0 in a thread.
+
+        The result is None if the rest of the row is itself an obstacle.
+        """
         x, z = float(self.cut.x[self.row]), float(self.cut.z[self.row])
         sideways = 0.0 if self.how & THREAD else abs(x) - abs(self.x)
         here = z > self.z - _FROM_A_SHOULDER and abs(sideways) > _ASIDE
         return None if here or z > level else sideways
 
     def _with_this_tool(self, first: int) -> slice:
-        """The rows from here on that this tool makes on this bar, no more than are looked at."""
+        """Return the rows from here on with this tool and this bar, up to a limit."""
         cut = self.cut
         far = slice(first, first + _FAR)
         other = (cut.tool[far] != cut.tool[self.row]) | (cut.bar[far] != cut.bar[self.row])
@@ -252,7 +258,7 @@ class _Search:
         return slice(first, first + (int(ends[0]) if len(ends) else len(other)))
 
     def _in_the_way(self, rows: slice, level: float) -> bool:
-        """Whether a cut among these rows comes up to this Z, or goes along X at it."""
+        """Return whether a cut among these rows reaches this Z or moves along X at it."""
         cut = self.cut
         feeds = (cut.how[rows] & FEED) != 0
         upper = np.maximum(cut.z[rows], cut.z0[rows])
@@ -261,7 +267,7 @@ class _Search:
         return bool((feeds & ((upper > level) | here | held)).any())
 
     def _sideways(self, rows: slice) -> Floats:
-        """How far each cut among these rows goes outwards, mm; threads, and rapids, are none."""
+        """Return the outward travel of each cut among these rows in mm; 0 for threads and rapids."""
         cut = self.cut
         out = np.abs(cut.x[rows]) - np.abs(cut.x0[rows])
         return np.where((cut.how[rows] & (FEED | THREAD)) == FEED, out, 0.0)
@@ -287,13 +293,13 @@ class _Search:
         return self._made(legs)
 
     def _out(self, leg: RetractLeg) -> bool:
-        """Whether a rapid of the program that ends here has left the work."""
+        """Return whether a rapid that ends here has left the part."""
         return leg.z >= self.cut.begins - SAME or self.cut.outside(leg.x, leg.z, self.place.tool)
 
     def _swept(self, end: float) -> bool:
-        """Whether passes of this tool that are done have left nothing between here and this radius.
+        """Return whether completed passes of this tool have cleared the material up to this radius.
 
-        Neighbouring ones nearer to each other than any tool is wide; and what a pass was drawn off through.
+        Adjacent passes must be closer than the tool width, or a pass must have retracted through the gap.
         """
         cut, z, side = self.cut, self.z, -1.0 if self.x < 0.0 else 1.0
         low, high = np.minimum(cut.z0, cut.z), np.maximum(cut.z0, cut.z)
@@ -314,19 +320,22 @@ class _Search:
         return False
 
     def _drawn_off_from(self, row: int, side: float) -> float:
-        """The radius from which the cut before this rapid came out to its level; inf: none did."""
+        """Return the radius from which the cut before this rapid moved out to its level.
+
+        The result is inf if no such cut exists.
+        """
         cut = self.cut
         before = row - 1
         if before < 0 or cut.how[row] & FEED or not cut.how[before] & FEED or cut.z[row] < cut.z0[row]:
             return inf
         return side * float(cut.x0[before]) if abs(cut.z[before] - cut.z0[before]) <= _ASIDE else inf
 
-    # --- as it came ---------------------------------------------------------------------------------------
+    # --- retract along the entry path ---------------------------------------------------------------------
 
     def _as_it_came(self) -> Retract:
-        """Back along its own path until the program's own way out is sure, or until it is out.
+        """Return the retract along the entry path, until the program's retract is safe or the tool is clear.
 
-        None through a thread, nor past an opened collet or another tool.
+        It does not pass through a thread, an opened collet or another tool.
         """
         points = [RetractLeg(self.x, self.z)]
         for segment in self._back():
@@ -342,7 +351,7 @@ class _Search:
         return self._lost()
 
     def _back(self) -> Iterator[_Segment]:
-        """What led here with this tool and this bar, the last row first."""
+        """Yield the earlier segments with this tool and this bar, the last one first."""
         cut, row = self.cut, self.row
         tool, bar = int(cut.tool[row]), int(cut.bar[row])
         before: _Segment | None = None
@@ -358,7 +367,10 @@ class _Search:
             before = segment
 
     def _from(self, segment: _Segment, at: RetractLeg) -> tuple[RetractLeg, tuple[RetractLeg, ...]] | None:
-        """A little way back along a cut towards Z-, and from there as the program does; None: not sure."""
+        """Return a short move back along a cut toward Z-, and the program's retract from there.
+
+        The result is None if this is not safe.
+        """
         length = hypot(segment.x0 - at.x, segment.z0 - at.z)
         if not segment.how & FEED or at.z >= segment.z0 - _ASIDE or length <= _ASIDE:
             return None
@@ -369,7 +381,7 @@ class _Search:
         return None if found is None or not found.legs else (leg, found.legs)
 
     def _brings_it(self, row: int) -> bool:
-        """Whether the row is the rapid with which the tool comes to its work after its T, from beyond it."""
+        """Return whether the row is the rapid that brings the tool to the part after its T, from outside."""
         cut = self.cut
         if row < 0 or cut.how[row] & FEED or isnan(cut.x[row]) or isnan(cut.z[row]):
             return False
@@ -380,7 +392,7 @@ class _Search:
         return first and cut.beyond(float(cut.x[row]), float(cut.z[row]))
 
     def _lost(self) -> Retract:
-        """Only where it would leave to is known: as its next rapid does, or back as it came."""
+        """Return a retract with only the direction, from the next rapid or from the entry path."""
         cut, row = self.cut, self.row
         rapids = (segment for segment in self._ahead() if not segment.how & FEED)
         ways = [(segment.x - segment.x0, segment.z - segment.z0) for segment in rapids]
@@ -391,7 +403,7 @@ class _Search:
     # --- threads, taps, mills -----------------------------------------------------------------------------
 
     def _tap(self) -> bool:
-        """Whether it stands in a hole out of which the program feeds it with the spindle turned round."""
+        """Return whether the tool is in a hole from which the program feeds with the spindle reversed."""
         if abs(self.x) > _ON_CENTRE or not self.how & PER_REV or _clear(self.cut, self.place):
             return False
         turns = self.how & REVERSE
@@ -404,14 +416,14 @@ class _Search:
         )  # fmt: skip
 
     def _thread_away(self) -> tuple[int, int]:
-        """Away from the thread: to where the next rapid takes it along X."""
+        """Return the direction away from the thread, from the next rapid along X."""
         for segment in self._ahead():
             if abs(segment.x - self.x) > _ASIDE and not segment.how & FEED:
                 return _sign(segment.x - self.x), 0
         return 0, 0
 
     def _off_the_mill(self, axis: int) -> Retract:
-        """A mill leaves along its own axis: on the face along Z, on the side along X."""
+        """Return the retract of a mill along its axis: along Z on the face, along X on the side."""
         low, high = self.cut.reach[self.place.tool]
         offset = self.cut.offsets[self.place.tool][0]
         far = low - offset if self.x < 0.0 else high - offset
@@ -425,7 +437,7 @@ class _Search:
         return face if face < inf else float(np.nanmax(self.cut.z[own]))
 
     def _axis_of_the_mill(self) -> int:
-        """FACE or SIDE as its plane switching says, as its next rapid takes it off, or as it has gone in."""
+        """Return FACE or SIDE, from the plane switching, from the next rapid or from the entry."""
         cut, row = self.cut, self.row
         near = slice(max(0, row - _BACK), row + _AHEAD)
         own = cut.how[near][cut.tool[near] == self.place.tool]
@@ -455,7 +467,7 @@ def _sign(value: float) -> int:
 
 
 def _shortest(points: list[RetractLeg]) -> list[RetractLeg]:
-    """A path without its detours: where it comes back to itself, what lies between is left out."""
+    """Return a path without detours, in which sections that return to the path are removed."""
     kept, at = [points[0]], 0
     while at < len(points) - 1:
         start, end = points[at], points[at + 1]

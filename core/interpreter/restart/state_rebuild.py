@@ -1,7 +1,7 @@
-"""The state in which a line of a program begins: the program gone through up to that line, and no further.
+"""Rebuilding of the state at a program line by interpreting the program up to that line.
 
-Where the slides stood at Cycle Start and what inputs answered is not known. A second pass, from another start
-and with other answers, goes beside the first until both agree; while they differ, no line is good.
+The positions at Cycle Start and the inputs of the run are unknown. A second pass with another start position
+and other inputs runs in parallel until both agree. While they differ, no line is suitable for a restart.
 """
 
 from __future__ import annotations
@@ -27,17 +27,17 @@ from core.message import Message
 
 Watch = Callable[[float], None]
 
-_ELSEWHERE = (7.3, -11.9, 0.0)  # mm: the other start; no program's words fall together with it
+_ELSEWHERE = (7.3, -11.9, 0.0)  # mm; shift of the second start position, which no program positions by chance
 _SAME = 1e-7  # mm
-_WATCHED = 2000  # blocks between two looks at whether the work is still wanted
-_NEAR = 64  # lines looked at one by one for the place from which positions are known
-_UP, _DOWN = 3, 100  # lines tried
+_WATCHED = 2000  # number of blocks between two calls of ``watch``
+_NEAR = 64  # number of lines after each of which the passes are compared
+_UP, _DOWN = 3, 100  # number of lines that are tried upward and downward
 
 
 class StateRebuild:
-    """One program under fixed circumstances; a later line goes on from where an earlier one was found.
+    """Search in one OmniTurn program with a fixed setup; a later line continues from an earlier one.
 
-    ``watch`` is told how many blocks have passed and may raise to give the work up.
+    ``watch`` receives the number of blocks and may raise an exception to cancel the search.
     """
 
     def __init__(self, source: Source, setup: Setup, watch: Watch) -> None:
@@ -52,7 +52,7 @@ class StateRebuild:
 
     @property
     def cut(self) -> CutRecord:
-        """All that the program cuts; gone through once."""
+        """Record of all cuts of the program, calculated on first use."""
         if self._cut is None:
             self._cut = record_cuts(
                 Interpreter(self._program, replace(self._setup, start=_ELSEWHERE)).series(), self.watch
@@ -60,9 +60,10 @@ class StateRebuild:
         return self._cut
 
     def find(self, line: int, visit: int = 0, broken: Interruption | None = None) -> RestartPoint | NoRestart:
-        """What line ``line`` inherits the ``visit``-th time, or why the program cannot go on from it.
+        """Return the restart point of a line at its ``visit``-th execution, or why a restart is not possible.
 
-        0: the pass that was interrupted, or the first. ``broken`` is where the program was interrupted.
+        A ``visit`` of 0 is the interrupted pass, or the first one. ``broken`` is the interruption of the
+        program.
         """
         found = self._search(line, visit, broken)
         if isinstance(found, RestartPoint):
@@ -99,7 +100,10 @@ class StateRebuild:
     def _within(
         self, line: int, anchor: int, nth: int, visit: LineVisit, broken: Interruption | None
     ) -> RestartPoint | str:
-        """From the line of the main program on, which is reached, to the pass that is wanted."""
+        """Return the restart point of a line in a loop or subroutine, or why it is not possible.
+
+        The search begins at the main program line that contains the visit.
+        """
         walks = [self._walk_from(self._walk, anchor)]
         if self._other is not None:
             walks.append(self._walk_from(self._other, anchor))
@@ -120,7 +124,10 @@ class StateRebuild:
         return PassToLine(self._program, setup)
 
     def _to_visit(self, walk: PassToLine, line: int, nth: int) -> tuple[str, bool]:
-        """Go to the ``nth`` visit of a line; why its state is not known, and whether an axis has moved."""
+        """Run to the ``nth`` visit of a line.
+
+        Return why its state is unknown (empty if known), and whether an axis has moved.
+        """
         moved = False
         for number in range(nth):
             for block in walk.once_more(line) if number else walk.before(line):
@@ -146,7 +153,10 @@ class StateRebuild:
         return found_on_lathe(line, walk.checkpoint, self.cut, visit, broken)
 
     def _nearest_good(self, line: int, way: int, broken: Interruption | None) -> int:
-        """The nearest line that the pass itself confirms; few upwards, where each costs a pass of its own."""
+        """Return the nearest line that a pass confirms, or 0.
+
+        Only a few lines are tried upward, because each needs another pass.
+        """
         for _ in range(_DOWN if way > 0 else _UP):
             line = self.lines.nearest(line, way)
             if not line or isinstance(self._search(line, 0, broken), RestartPoint):
@@ -157,15 +167,16 @@ class StateRebuild:
         self._at, self._count = 1, 0
         self._moved = False
         self._ended = 0
-        self._asked = 0  # line whose input the second pass answers differently
-        self._lost = ""  # why nothing is known any more
+        self._asked = 0  # line whose input has another state in the second pass
+        self._lost = ""  # reason why the state is unknown
         self._walk = PassToLine(self._program, self._setup)
         self._other: PassToLine | None = PassToLine(self._program, replace(self._setup, start=_ELSEWHERE))
 
     def _pass_to_line(self, line: int, *, position_known: bool = True) -> str:
-        """Go to the line; why it is not good, empty when it is.
+        """Run to the line, and return why it is unsuitable; empty if it is suitable.
 
-        Without ``position_known`` the position may still depend on the start: what follows may fix it.
+        Without ``position_known``, the position may still depend on the start, because later blocks may
+        determine it.
         """
         if line < self._at:
             self._begin_anew()
@@ -180,7 +191,7 @@ class StateRebuild:
         return self._why_not(line, self._walk, known=known, moved=self._moved)
 
     def _stop(self, line: int) -> int:
-        """Where both passes are compared next: behind each line while little is known, at each input."""
+        """Return the line of the next comparison: each line while the state is unknown, and each input."""
         near = self._at + (1 if self._at < _NEAR else self._at) if self._other is not None else line
         if self._at in self._asks:
             return self._at + 1
@@ -189,7 +200,7 @@ class StateRebuild:
         return min(line, near, ask)
 
     def _pass_to(self, line: int) -> None:
-        """Both passes to the line; the first one tells what is asked and how far out it goes."""
+        """Run both passes to the line, and record motion, program end and inputs of the first one."""
         asked, self._at = self._at, line
         for block in self._walk.before(line):
             self._count_block()
@@ -208,7 +219,7 @@ class StateRebuild:
                 pass
 
     def _ask(self) -> None:
-        """From here on the second pass is the one in which the input of this line answers otherwise."""
+        """Start a second pass in which the input of this line has the other state."""
         if self._other is not None:
             self._lost = Message(
                 "line {position} depends on an input, and the state of this input is unknown.",
@@ -286,7 +297,7 @@ class StateRebuild:
 def found_on_lathe(
     line: int, point: Checkpoint, cut: CutRecord, visit: LineVisit, broken: Interruption | None
 ) -> RestartPoint | str:
-    """The line with the way from its place out of the work; in words where no sure way leads there."""
+    """Return the restart point with the retract from its start; a message if no safe path exists."""
     done = _complete_blocks(cut, broken) if broken is not None else point.blocks
     back = _retract_from(cut, point)
     if back.tool_place is ToolPlace.CLEAR or (back.known and point.blocks <= done):
@@ -303,7 +314,7 @@ def found_on_lathe(
 
 
 def in_uncut_material(line: int, first: int, last: int) -> Message:
-    """Return why a program cannot go on from a line behind cuts that were left out, from ``first`` on."""
+    """Return the message that a line follows cuts that were skipped, from line ``first`` to ``last``."""
     which = (
         Message("line {line}", line=first)
         if first == last
@@ -319,9 +330,9 @@ def in_uncut_material(line: int, first: int, last: int) -> Message:
 def _complete_blocks(cut: CutRecord, broken: Interruption) -> int:
     """Return the last block whose cut is complete.
 
-    The interrupted block is complete only if the tool is at its end; otherwise, a restart behind that block
-    would leave the rest of its cut in the part. A milled block that is closed, such as a full circle,
-    never counts as complete: its place does not tell how far it was cut.
+    The interrupted block is complete only if the tool is at its end. Otherwise, a restart after that block
+    would leave the rest of its cut in the part. A closed milled block, such as a full circle, never counts as
+    complete, because its end does not show how far it was cut.
     """
     row = cut.row_behind(broken.block)
     off = cut.offsets.get(broken.tool)
@@ -343,7 +354,7 @@ _HOW = {
 
 
 def _retract_from(cut: CutRecord, point: Checkpoint) -> Retract:
-    """From the place of the line out of the work; a tool just called stands where the last one was taken."""
+    """Return the retract from the start of the line; a new tool starts where the previous tool stopped."""
     row = cut.row_behind(point.blocks)
     if row < 0:
         return Retract(ToolPlace.CLEAR)
@@ -363,14 +374,14 @@ def _left_out(cut: CutRecord, done: int, blocks: int) -> tuple[int, int]:
 
 
 def _asks(program: Program, lines: RestartLines) -> list[int]:
-    """Lines of the main program, loops apart, that ask an input; in order."""
+    """Return the lines of the main program, outside of loops, that read an input, in order."""
     steps = enumerate(program.ready, start=1)
     asking = [n for n, step in steps if isinstance(step, Statement) and step.flow in {"M95", "M97"}]
     return [number for number in asking if not lines.why_not(number)]
 
 
 def _same_state(one: PassToLine, other: PassToLine) -> bool:
-    """Whether both passes stand at one point in one state, so that what follows is the same."""
+    """Return whether both passes are at the same point with the same state, so that they continue equally."""
     a, b = one.checkpoint, other.checkpoint
     if one.next_line != other.next_line or one.holds_moves or other.holds_moves or a.modal != b.modal:
         return False
@@ -380,5 +391,5 @@ def _same_state(one: PassToLine, other: PassToLine) -> bool:
 
 
 def _rest(point: Checkpoint) -> Checkpoint:
-    """All but the place, and the count of what led there."""
+    """Return the checkpoint without position and block count."""
     return point._replace(x=0.0, z=0.0, c=0.0, px=0.0, pz=0.0, blocks=0)

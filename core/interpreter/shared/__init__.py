@@ -1,1 +1,1 @@
-"""What the interpreters of all dialects share: elementary blocks, modal state, one pass through a program."""
+"""Parts that the interpreters of all dialects share, such as elementary blocks and the modal state."""

@@ -1,4 +1,4 @@
-"""What a block does besides moving the slides: the payload of ``action`` and ``dwell`` blocks."""
+"""Actions of ``action`` and ``dwell`` blocks: everything that a block does other than move an axis."""
 
 from __future__ import annotations
 
@@ -7,7 +7,10 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class SpindleRun:
-    """M03, M04, S: turn at ``rpm``, negative for M04; with ``surface_speed`` (mm/s) the radius decides."""
+    """Run the spindle (M03, M04, S) at ``rpm``, which is negative for M04.
+
+    With ``surface_speed`` (mm/s), the rpm follows the radius of the cut.
+    """
 
     rpm: float
     surface_speed: float | None = None
@@ -15,23 +18,26 @@ class SpindleRun:
 
 @dataclass(frozen=True, slots=True)
 class SpindleStop:
-    """M05; with ``stands`` nothing goes on before the spindle is at rest."""
+    """Stop the spindle (M05). With ``stands``, the next block waits until the spindle is at rest."""
 
     stands: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class SpindleLock:
-    """M19, M89, G89: the spindle stops, and its drive holds it as axis C; after M19 it then turns to 0."""
+    """Stop the spindle and hold it as the C axis (M19, M89, G89).
+
+    With ``orient`` (M19), C then turns to 0.
+    """
 
     orient: bool
 
 
 @dataclass(frozen=True, slots=True)
 class SpindleOrient:
-    """M19 of Klartext, SPOS: the spindle stops, and its drive holds it at ``angle``, degrees from its index.
+    """Stop the spindle (M19 of Klartext, SPOS) and hold it at ``angle``, in degrees from its index.
 
-    ``sense``: 1 it turns there as M3 does, -1 as M4, 0 by the short way.
+    ``sense`` is the direction of rotation: 1 as for M3, -1 as for M4, 0 by the shorter distance.
     """
 
     angle: float
@@ -40,21 +46,21 @@ class SpindleOrient:
 
 @dataclass(frozen=True, slots=True)
 class Coolant:
-    """M08, M09."""
+    """Turn the coolant on (M08) or off (M09)."""
 
     on: bool
 
 
 @dataclass(frozen=True, slots=True)
 class Collet:
-    """M12 clamps, M13 unclamps."""
+    """Clamp (M12) or unclamp (M13) the collet."""
 
     closed: bool
 
 
 @dataclass(frozen=True, slots=True)
 class Output:
-    """An M function that the machine file assigns: M25/M26, M15/M16, …"""
+    """Switch the output that the machine file assigns to an M function, such as M25 or M26."""
 
     name: str
     on: bool
@@ -62,14 +68,14 @@ class Output:
 
 @dataclass(frozen=True, slots=True)
 class ToolChange:
-    """T: another offset becomes active; nothing moves."""
+    """Activate another tool offset (T). No axis moves."""
 
     tool: int
 
 
 @dataclass(frozen=True, slots=True)
 class WorkShift:
-    """G10: sums into the shift of the next T, mm."""
+    """Add to the work shift (G10) that the next T activates, in mm with X as a radius."""
 
     x: float
     z: float
@@ -77,7 +83,7 @@ class WorkShift:
 
 @dataclass(frozen=True, slots=True)
 class Preset:
-    """G92: the current point gets these program coordinates, mm."""
+    """Assign these program coordinates to the present position (G92), in mm with X as a radius."""
 
     x: float
     z: float
@@ -85,7 +91,7 @@ class Preset:
 
 @dataclass(frozen=True, slots=True)
 class ProgramStop:
-    """M00, and M01 when ``optional``: wait for Cycle Start, showing ``message`` large."""
+    """Wait for Cycle Start (M00, or M01 if ``optional``) and show ``message`` in large type."""
 
     optional: bool
     message: str = ""
@@ -93,19 +99,19 @@ class ProgramStop:
 
 @dataclass(frozen=True, slots=True)
 class ProgramEnd:
-    """M30 (``reset`` the M functions) or M02 (leave them)."""
+    """End the program: M30 resets the M functions (``reset``), and M02 leaves them as they are."""
 
     reset: bool
 
 
 @dataclass(frozen=True, slots=True)
 class RepeatOff:
-    """M31: cancels Cycle Repeat."""
+    """Cancel Cycle Repeat (M31)."""
 
 
 @dataclass(frozen=True, slots=True)
 class WaitInput:
-    """M91…M94: wait until the terminal is closed (True) or open (False)."""
+    """Wait until the terminal is closed (``closed`` is True) or open (M91 to M94)."""
 
     terminal: str
     closed: bool
@@ -113,14 +119,14 @@ class WaitInput:
 
 @dataclass(frozen=True, slots=True)
 class AskInput:
-    """M95, M97: the interpreter is about to ask this input; all motion before it must have ended."""
+    """Stop all motion, because the interpreter reads this input next (M95, M97)."""
 
     terminal: str
 
 
 @dataclass(frozen=True, slots=True)
 class Dwell:
-    """G04: seconds at rest."""
+    """Wait at rest for a number of seconds (G04)."""
 
     seconds: float
 

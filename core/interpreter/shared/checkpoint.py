@@ -1,7 +1,7 @@
-"""Where a pass begins: at the first line, or going on from a pass that was kept (MDI, restart, block search).
+"""State from which a pass begins: the first line, or a saved pass (MDI, restart, block search).
 
-What a language has in force lies in the parts of its interpreter. They are copied whole, so that nothing that
-a family of codes adds can be forgotten here.
+The state of a language is in the parts of its interpreter. A checkpoint copies these parts completely, so
+that it includes everything that a family of codes adds.
 """
 
 from __future__ import annotations
@@ -15,23 +15,25 @@ from core.interpreter.shared.actions import Action
 from core.interpreter.shared.modal_state import Modal
 
 Parts = TypeVar("Parts")
-_process = os.urandom(8).hex()  # a checkpoint may go to another process
+# The name of a checkpoint must be unique in all processes, because checkpoints are sent between them.
+_process = os.urandom(8).hex()
 _numbers = count(1)
 
 
 class StateLine(NamedTuple):
-    """One group of what is in force, in the words of the control; ``key`` names it for whoever shows it."""
+    """One line of the modal state in the terms of the control; ``key`` identifies its group."""
 
     key: str
     value: str
 
 
 class KeptPass(Generic[Parts]):
-    """The parts of an interpreter between two blocks. Its text tells it from others, in all processes.
+    """The state of an interpreter between two blocks.
 
-    It is equal to itself alone, and to what another process makes of it.
+    Each saved pass has a name that is unique in all processes.
 
-    ``shared`` are objects that are not copied: the circumstances, the log, texts that have been read.
+    It is equal only to itself and to its copies in other processes. ``shared`` are objects that are not
+    copied, such as the setup, the log and program texts.
     """
 
     def __init__(self, parts: Parts, shared: tuple[object, ...], lines: tuple[StateLine, ...] = ()) -> None:
@@ -50,16 +52,16 @@ class KeptPass(Generic[Parts]):
         return hash(self._name)
 
     def parts(self, *instead: object) -> Parts:
-        """A copy to go on with, in which ``instead`` take the places of the first shared objects."""
+        """Return a copy of the saved parts, in which ``instead`` replaces the first shared objects."""
         places = (*instead, *self._shared[len(instead) :])
         return deepcopy(self._parts, {id(old): new for old, new in zip(self._shared, places, strict=True)})
 
 
 class FlowLevel(NamedTuple):
-    """The main program or a subroutine being executed. Positions are indices of lines, from 0.
+    """The main program or one active subroutine. Positions are line indices from 0.
 
-    ``back`` is where it goes on after a call, or the line that comes next; ``loops`` are the LS of each loop
-    under way, outermost first, and how often its LF will yet go back.
+    ``back`` is the line at which execution continues after a call, or the next line. ``loops`` has a pair for
+    each active loop, the outermost first: the line of its LS and the number of repeats that remain.
     """
 
     back: int
@@ -72,9 +74,10 @@ FlowPlace = tuple[FlowLevel, ...]
 
 
 class Checkpoint(NamedTuple):
-    """Everything that a line inherits from the lines before it. mm, X a radius, degrees; program frame.
+    """Everything that a line inherits from earlier lines: mm, X as a radius, degrees, program frame.
 
-    ``x z c`` is the point reached, ``px pz`` the one programmed, which lacks the secondary offset.
+    ``x z c`` is the point reached. ``px pz`` is the programmed point, which does not include the secondary
+    offset.
     """
 
     modal: Modal
@@ -83,23 +86,27 @@ class Checkpoint(NamedTuple):
     c: float = 0.0
     px: float = 0.0
     pz: float = 0.0
-    first_feed: float | None = None  # F of the program's first line under G94, mm/s: it counts as a rapid
-    tool_line: int = 0  # line of a T whose move to X and Z is still to come; -1: it was an MDI line
-    title_rapid: int = 0  # line of a G00 (TITLE) after which no F has come
+    # F of the program's first line under G94, in mm/s; this F counts as a rapid
+    first_feed: float | None = None
+    tool_line: int = 0  # line of a T that no move of X and Z has followed yet; -1 for a line of MDI
+    title_rapid: int = 0  # line of a G00 (TITLE) that no F has followed yet
     coarse_at: tuple[float, float] | None = None  # machine point of the G35 in force
-    blocks: int = 0  # elementary blocks before it
-    flow: FlowPlace = ()  # the loops and calls in which it stands
-    kept: KeptPass[Any] | None = None  # of Klartext and SINUMERIK: all that they have in force
-    at: tuple[float, ...] = ()  # of a mill: machine positions of all axes
+    blocks: int = 0  # number of elementary blocks before this point
+    flow: FlowPlace = ()  # active loops and calls
+    kept: KeptPass[Any] | None = None  # complete state of a Klartext or SINUMERIK interpreter
+    at: tuple[float, ...] = ()  # machine positions of all axes of a mill
 
     @property
     def machine(self) -> tuple[float, float]:
-        """Machine X and Z of the point reached, mm."""
+        """Machine X (radius) and Z of the point reached, in mm."""
         return self.x + self.modal.offset_x, self.z + self.modal.offset_z
 
 
 class Leg(NamedTuple):
-    """A straight way to a machine point, mm; None: that axis stays. ``feed`` mm/s."""
+    """A straight move to a machine position in mm; an axis whose value is None does not move.
+
+    ``feed`` is in mm/s.
+    """
 
     x: float | None
     z: float | None
@@ -109,8 +116,10 @@ class Leg(NamedTuple):
 
 
 class AxesLeg(NamedTuple):
-    """A straight way of a mill to machine positions of some of its axes, mm and degrees; ``feed`` mm/s or
-    degrees/s, None in rapid."""
+    """A straight move of some axes of a mill to machine positions, in mm and degrees.
+
+    ``feed`` is in mm/s or degrees/s, and None for a rapid.
+    """
 
     goal: tuple[tuple[str, float], ...]
     feed: float | None
@@ -118,7 +127,7 @@ class AxesLeg(NamedTuple):
 
 
 class CTurn(NamedTuple):
-    """C alone turns to this machine angle, degrees, at ``speed`` degrees/s."""
+    """A move of the C axis alone to a machine angle in degrees, at ``speed`` degrees/s."""
 
     c: float
     speed: float
@@ -126,7 +135,7 @@ class CTurn(NamedTuple):
 
 
 class FunctionStep(NamedTuple):
-    """An M function of the approach: spindle, coolant, an output."""
+    """An M function of the approach, such as spindle, coolant or an output."""
 
     action: Action
     text: str
@@ -137,10 +146,10 @@ ApproachStep = Leg | AxesLeg | CTurn | FunctionStep
 
 
 class Begin(NamedTuple):
-    """Where and with what a pass begins. ``single``: the text is one line of MDI, not a program.
+    """The start of a pass. ``single`` means that the text is one line of MDI instead of a program.
 
-    ``approach`` comes before the line; it must end where the checkpoint stands. ``skips_cuts``: earlier cuts
-    of the part are incomplete, so the part is not counted.
+    The moves of ``approach`` come before the line and must end at the position of the checkpoint. With
+    ``skips_cuts``, the part is not counted, because earlier cuts are incomplete.
     """
 
     checkpoint: Checkpoint
@@ -151,7 +160,7 @@ class Begin(NamedTuple):
 
     @property
     def key(self) -> str:
-        """Text that is the same for two beginnings only if they are."""
+        """Text that is equal for two starts only if the starts are equal."""
         modal = self.checkpoint.modal
         whole = self._replace(checkpoint=self.checkpoint._replace(modal=modal._replace(outputs=frozenset())))
         return repr((whole, sorted(modal.outputs)))

@@ -1,4 +1,4 @@
-"""Passes of cycles: of equal depth, and parallel to an axis beside a contour, as the start point sees it."""
+"""Passes of canned cycles: passes of equal depth, and roughing passes along a contour."""
 
 from __future__ import annotations
 
@@ -10,21 +10,24 @@ from typing import NamedTuple
 from core.geometry.contour_offset import Area, Span
 from core.geometry.lines_and_arcs import Arc, Element, Line, Point, clearance, intersections
 
-_WHOLE = 1e-6  # of a pass: what a decimal fraction lacks in binary
+_WHOLE = 1e-6  # of a pass; tolerance for the rounding of decimal fractions
 
 
 def pass_count(whole: float, most: float) -> int:
-    """Return how many passes of ``most`` mm at most a depth of ``whole`` mm takes."""
+    """Return the number of passes, each at most ``most`` mm deep, for a total depth of ``whole`` mm."""
     return ceil(whole / most - _WHOLE)
 
 
 def equal_depths(whole: float, count: int) -> list[float]:
-    """Return the depths of equal passes, the whole depth last."""
+    """Return the depths of ``count`` equal passes in mm; the last depth is ``whole``."""
     return [whole * k / count for k in range(1, count + 1)]
 
 
 class Move(NamedTuple):
-    """One motion of a cycle to a point in the program's frame, mm; ``rapid`` (mm/s) or at the feed."""
+    """One motion of a cycle to a point in the program frame, in mm.
+
+    ``rapid`` is the rapid rate in mm/s, or None for a move at the feed.
+    """
 
     x: float
     z: float
@@ -33,27 +36,29 @@ class Move(NamedTuple):
     clockwise: bool = False
 
 
-# --- passes and the run along the contour, in depth and length as seen from the start point
+# --- passes and the finishing cut along the contour, in depth and length from the start point
 
 
 _SAME = 1e-6  # mm
-_NEARER = 0.002  # mm; what a way beside the contour may lack
-_TOUCHING = 0.02  # mm; where U is 0, the ways end on the contour
+_NEARER = 0.002  # mm; tolerance of the clearance between a move and the contour
+_TOUCHING = 0.02  # mm; tolerance at the ends of moves, which end on the contour if U is 0
 
 
 MOST_ELEMENTS = 2_000
-MOST_LOOKS = 200_000  # elements times passes: a few seconds
+MOST_LOOKS = 200_000  # elements times passes; takes a few seconds
 
 
 class StartNearError(Exception):
-    """On its way to the contour or back the tool would come nearer to it than it may."""
+    """The approach to the contour or the retract would come closer to the contour than permitted."""
 
 
 class Rougher:
-    """Collects ``moves``: passes of growing depth by ``cut``, then ``finish`` along the contour.
+    """Planner of roughing passes.
 
-    A stretch is entered at the feed from where the pass before it ended; between stretches the tool runs
-    ``lift`` mm above what is still there, at ``rapid`` mm/s.
+    ``cut`` adds passes of growing depth to ``moves``, and ``finish`` adds a cut along the contour.
+
+    The tool feeds into a span from the end of the previous pass. Between spans, it moves at ``rapid`` mm/s,
+    ``lift`` mm above the remaining material.
     """
 
     def __init__(self, area: Area, rapid: float, lift: float) -> None:
@@ -66,7 +71,7 @@ class Rougher:
         self._free = area.spans(0.0)
 
     def cut(self, depth: float) -> None:
-        """One pass at a depth greater than those before it, through all its stretches."""
+        """Add one pass through all spans at a depth in mm that exceeds the depth of all earlier passes."""
         spans = self._area.spans(depth)
         before = self._done[-1][0] if self._done else 0.0
         for start, end in spans:
@@ -78,12 +83,15 @@ class Rougher:
         self._done.append((depth, spans))
 
     def rough(self, count: int) -> None:
-        """So many equal passes, down to the deepest place."""
+        """Add ``count`` passes of equal depth, down to the deepest point of the area."""
         for depth in equal_depths(self._area.deepest, count):
             self.cut(depth)
 
     def finish(self, *, backwards: bool) -> None:
-        """Along the contour, then back to the start. Raises StartNearError."""
+        """Add a cut along the contour and the return to the start.
+
+        Raises StartNearError if the approach or the retract would come too close to the contour.
+        """
         path = self._area.path
         if backwards:
             path = [element.reversed() for element in reversed(path)]
@@ -97,13 +105,16 @@ class Rougher:
         self._check(here, self.moves[begun:])
 
     def _approach(self, to: Point, *, front: bool) -> None:
-        """To the start of the path: its front end is reached from ahead of the area, its back from above."""
+        """Add the moves to the start of the path.
+
+        The front end is reached from in front of the area, the back end from above.
+        """
         way = min(to[1], 0.0) if front else to[1]
         self._over(way)
         done = [depth for depth, spans in self._done if _covering(spans, way, to[1])]
         if self._done:
             self._sink(min(max(done, default=0.0), to[0]))
-        elif front:  # at its back end the tool would run into what may still be there
+        elif front:  # At the back end, the tool could hit remaining material.
             self._sink(to[0])
         self._feed(to[0], way)
         self._feed(*to)
@@ -118,14 +129,14 @@ class Rougher:
 
     def _leave(self, *, front: bool) -> None:
         if front:
-            self._feed(self._at[0], min(self._at[1], 0.0))  # no pass need have been so deep here
+            self._feed(self._at[0], min(self._at[1], 0.0))  # No pass may have reached this depth here.
         else:
             self._over(0.0)
         self._go(0.0, self._at[1])
         self._go(0.0, 0.0)
 
     def _over(self, way: float) -> None:
-        """Run to another place above all that is still there."""
+        """Add a move to another position above all remaining material."""
         if abs(way - self._at[1]) < _SAME:
             return
         level = min(self._clear(self._at[1], way), self._at[0])
@@ -133,12 +144,15 @@ class Rougher:
         self._go(level, way)
 
     def _sink(self, depth: float) -> None:
-        """Down to the lift above a depth that has been cut here."""
+        """Add a move down to ``lift`` above a depth that has already been cut here."""
         if depth - self._lift > self._at[0]:
             self._go(depth - self._lift, self._at[1])
 
     def _clear(self, a: float, b: float) -> float:
-        """The depth at which the tool may run between two places: the lift above the last pass that did."""
+        """Return the depth at which the tool can move between two positions.
+
+        It is ``lift`` above the deepest pass that covers the whole distance.
+        """
         low, high = min(a, b), max(a, b)
         for depth, spans in reversed(self._done):
             if _covering(spans, low, high):
@@ -161,7 +175,7 @@ class Rougher:
             here = there
 
     def _near(self, here: Point, there: Point) -> bool:
-        """Whether a way along one axis is nearer to the contour than it may be; where U is 0, crosses it."""
+        """Return whether a move along one axis comes too close to the contour, or crosses it if U is 0."""
         left, way = self._area.left, Line(here, there)
         if left > _NEARER:
             return any(clearance(way, element) < left - _NEARER for element in self._area.contour)
@@ -175,16 +189,19 @@ class Rougher:
 
 
 def _covering(spans: list[Span], low: float, high: float) -> bool:
-    """Whether one of the stretches holds the way from ``low`` to ``high``."""
+    """Return whether one span covers the whole range from ``low`` to ``high``."""
     at = bisect_left(spans, low + _SAME, key=lambda span: span[0]) - 1
     return at >= 0 and spans[at][1] >= high - _SAME
 
 
-# --- the contour as the start point sees it
+# --- the contour in the frame of the start point
 
 
 class ContourView(NamedTuple):
-    """``x`` and ``z`` are +1 or -1; ``backwards``: the tool is left of the contour as run from its end."""
+    """The frame of a contour, relative to the start point of the cycle.
+
+    ``x`` and ``z`` are +1 or -1. With ``backwards``, the tool is on the left of the reversed contour.
+    """
 
     start: Point
     x: float
@@ -192,12 +209,12 @@ class ContourView(NamedTuple):
     backwards: bool
 
     def from_start(self, contour: Sequence[Element]) -> list[Element]:
-        """The contour in depths and ways, so that the tool is on its left."""
+        """Return the contour in depth and length from the start point, with the tool on its left."""
         elements = [self._element(element) for element in contour]
         return [element.reversed() for element in reversed(elements)] if self.backwards else elements
 
     def placed(self, move: Move) -> Move:
-        """A motion in depth and way back in the program's frame."""
+        """Return a motion, given in depth and length, in the program frame."""
         centre = None if move.centre is None else self._out(move.centre)
         x, z = self._out((move.x, move.z))
         return Move(x, z, move.rapid, centre, move.clockwise == (self.x * self.z > 0) and centre is not None)
@@ -216,11 +233,11 @@ class ContourView(NamedTuple):
 
 
 def view_from(start: Point, first: Point, last: Point) -> ContourView:
-    """The view of a contour from ``first`` to ``last``, both in one quadrant of ``start``."""
+    """Return the view of a contour from ``first`` to ``last``, both in one quadrant of ``start``."""
     a, b = _off(start, first), _off(start, last)
     x = 1.0 if a[0] + b[0] > 0 else -1.0
     z = 1.0 if a[1] + b[1] > 0 else -1.0
-    # The tool is on the left of a contour whose first end is the nearer one to the X axis through the start.
+    # The tool is on the left of the contour if its first end is closer to the line along X through the start.
     cross = (a[0] * b[1] - a[1] * b[0]) * x * z
     return ContourView(start, x, z, backwards=cross < 0)
 

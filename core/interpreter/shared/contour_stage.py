@@ -1,7 +1,7 @@
-"""Between the moves of the lines and the blocks handed out: corners are cut, then the nose is compensated.
+"""Stages between the moves of the lines and the final blocks: corner rounding, then nose compensation.
 
-Every language whose moves are blocks uses it. It says what a corner is, where compensation begins and ends,
-and what it refuses; here moves are held back until no later one can change them.
+All languages whose moves are blocks use these stages. A language specifies its corners, the start and end of
+compensation, and its errors. A stage buffers moves until no later move can change them.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from core.language.diagnostics import ProgramError
 
 
 def element_of(block: Block) -> Element:
-    """The line or arc of a move, in the program's frame with the secondary offset in it."""
+    """Return the line or arc of a move in the program frame, including the secondary offset."""
     start, end = (block.x0, block.z0), (block.x, block.z)
     if block.kind is Kind.ARC:
         return arc_between(start, end, (block.cx, block.cz), clockwise=block.clockwise)
@@ -37,23 +37,23 @@ def element_of(block: Block) -> Element:
 
 
 class AdjustedMoves(ABC):
-    """How a language writes the blocks of such moves."""
+    """Factory of the blocks for adjusted moves, implemented by each language."""
 
     @property
     @abstractmethod
     def highest_rpm(self) -> float:
-        """The speed limit of the spindle."""
+        """The speed limit of the spindle in rpm."""
 
     @abstractmethod
     def along(self, block: Block, element: Element) -> Block:
-        """The block's own move along another element of its kind."""
+        """Return the block with its move along another element of the same kind."""
 
     @abstractmethod
     def inserted(self, block: Block, element: Element) -> Block:
-        """A move of its own after ``block``, of the same line, feed and state, along an element."""
+        """Return a new move along an element, to follow ``block`` with the same line, feed and state."""
 
     def standing(self, block: Block, point: Point) -> Block:
-        """A block in which nothing moves, at another point."""
+        """Return a block without motion at another point."""
         x, z = point
         rpm = self._rpm(block, x)
         action = block.action
@@ -91,7 +91,7 @@ M = TypeVar("M")
 
 @dataclass(slots=True)
 class HeldMove(Generic[C, M]):
-    """A move with a corner that waits for the next one, and what happens between them."""
+    """A buffered move with a corner, and the blocks between it and the next move."""
 
     block: Block
     corner: C
@@ -99,9 +99,9 @@ class HeldMove(Generic[C, M]):
 
 
 class CornerStage(ABC, Generic[C, M]):
-    """Holds a move with a corner C until the next one is known, and cuts both.
+    """Stage that buffers a move with a corner C until the next move is known, and then trims both moves.
 
-    Marks M may stand among the blocks; they pass with them.
+    Marks M may be among the blocks. They pass through unchanged.
     """
 
     def __init__(self, moves: AdjustedMoves) -> None:
@@ -110,15 +110,18 @@ class CornerStage(ABC, Generic[C, M]):
 
     @property
     def holds(self) -> bool:
-        """Whether a move is held back until the next one is known."""
+        """Whether a move is buffered until the next move is known."""
         return self._held is not None
 
     def drop(self) -> None:
-        """Forget the move that is held back, after an error."""
+        """Discard the buffered move after an error."""
         self._held = None
 
     def take(self, item: Block | M, corner: C | None) -> Iterator[Block | M]:
-        """Yields what no later item can change. Raises ProgramError where the corner cannot be made."""
+        """Accept a block or mark, and yield all items that no later item can change.
+
+        Raises ProgramError if the corner is not possible.
+        """
         held = self._held
         if held is None:
             if corner is None or not isinstance(item, Block):
@@ -132,7 +135,8 @@ class CornerStage(ABC, Generic[C, M]):
             yield from self._cut(held, item, corner)
 
     def _cut(self, held: HeldMove[C, M], after: Block, corner: C | None) -> Iterator[Block | M]:
-        # From the frame of the second move to that of the first: an offset may have changed between them.
+        # Convert the second move to the frame of the first move, because an offset may have changed between
+        # them.
         dx, dz = after.offset_x - held.block.offset_x, after.offset_z - held.block.offset_z
         made = self._made(held, after, shifted(element_of(after), dx, dz))
         if made is None:
@@ -164,40 +168,42 @@ class CornerStage(ABC, Generic[C, M]):
 
     @abstractmethod
     def _waits(self, held: HeldMove[C, M], item: Block | M) -> bool:
-        """Whether what comes is no move, so that the corner goes on waiting. Raises ProgramError."""
+        """Return whether the item is not a move, so that the corner remains open. Raises ProgramError."""
 
     @abstractmethod
     def _meets(self, held: HeldMove[C, M], after: Block) -> bool:
-        """Whether the next block makes the corner, or none is asked for. Raises ProgramError."""
+        """Return whether the next block forms the corner, or no corner is programmed. Raises ProgramError."""
 
     @abstractmethod
     def _elements(self, corner: C, first: Element, last: Element) -> Sequence[Element]:
-        """Both elements cut, and the corner between them. Raises CornerError."""
+        """Return the first element trimmed, the corner, and the last element trimmed. Raises CornerError."""
 
     @abstractmethod
     def _tell_straight(self, held: HeldMove[C, M], after: Block) -> None:
-        """Both moves go in one direction."""
+        """Report that both moves have the same direction."""
 
     @abstractmethod
     def _too_large(self, held: HeldMove[C, M], of: Block, needed: float) -> ProgramError:
-        """The corner needs so many mm of a move."""
+        """Return the error for a corner that needs ``needed`` mm of the move ``of``."""
 
     @abstractmethod
     def _impossible(self, held: HeldMove[C, M], after: Block, problem: CornerError) -> ProgramError:
-        """The corner cannot be made at all."""
+        """Return the error for a corner that is not possible."""
 
 
 # --- compensation
 
-# An approach of one nose radius along the first move itself passes its start at .71 of the radius.
+# An approach of one nose radius along the first move passes its start at 0.71 of the radius.
 _BESIDE = 0.5
 
 
 def cuts_in(way: Element, contour: Iterable[Element], radius: float) -> bool:
-    """Whether the centre of a nose of ``radius`` comes too near to the contour, its nearest element first.
+    """Return whether the center of a nose of ``radius`` mm comes too close to the contour.
 
-    Next to the contour's end it always comes nearer than R where it does not come square; there _BESIDE of R
-    is asked.
+    The elements of the contour begin with the nearest one.
+
+    Near the end of the contour, an approach that is not perpendicular always comes closer than the radius.
+    There, only ``_BESIDE`` times the radius is required.
     """
     if way.length < SAME_POINT:
         return False
@@ -212,16 +218,18 @@ def cuts_in(way: Element, contour: Iterable[Element], radius: float) -> bool:
 
 @dataclass(slots=True)
 class ContourMove:
-    """A programmed move and what stands still behind it."""
+    """A programmed move and the blocks without motion that follow the move."""
 
     block: Block
     after: list[Block] = field(default_factory=list)
 
 
 class ContourStage(ABC):
-    """One contour, and the way beside it: the centre of the nose ``left`` mm to its left.
+    """Stage that offsets one contour for the nose radius.
 
-    ``tip`` is where the tip, which the blocks lead, lies from the centre, mm.
+    The nose center is ``left`` mm to the left of the contour.
+
+    ``tip`` is the position in mm of the programmed tip relative to the center.
     """
 
     def __init__(self, moves: AdjustedMoves, approach: Block, left: float, tip: Point = (0.0, 0.0)) -> None:
@@ -231,18 +239,19 @@ class ContourStage(ABC):
         self.radius = abs(left)
         self._moves = moves
         self._offset = Offset(left)
-        self._held: dict[int, ContourMove] = {}  # moves of the contour by index, until they are handed out
-        self._index = 0  # of the move whose pieces are being handed out
-        self._at: Point | None = None  # of the tip, at the end of what has been handed out
+        # moves of the contour by index, until their blocks are yielded
+        self._held: dict[int, ContourMove] = {}
+        self._index = 0  # index of the move whose pieces are being yielded
+        self._at: Point | None = None  # position of the tip at the end of the yielded blocks
 
     def _follow(self, move: ContourMove, element: Element) -> list[Piece]:
-        """Takes one more move of the contour; the pieces that are sure by now. Raises ProgramError."""
+        """Add a move of the contour, and return the pieces that are final. Raises ProgramError."""
         self._held[self.count] = move
         self.count += 1
         return self._sure(self._offset.add(element))
 
     def _rest(self) -> list[Piece]:
-        """The pieces that are left where no move follows. Raises ProgramError."""
+        """Return the remaining pieces after the last move. Raises ProgramError."""
         return self._sure(self._offset.close())
 
     def _sure(self, pieces: Iterator[Piece]) -> list[Piece]:
@@ -252,7 +261,7 @@ class ContourStage(ABC):
             raise self._gouges(self._held[min(problem.index, self.count - 1)].block, problem.why) from None
 
     def _hand_out(self, pieces: Iterable[Piece]) -> Iterator[Block]:
-        """The blocks of these pieces, before the first of them the approach. Raises ProgramError."""
+        """Yield the blocks of these pieces, preceded by the approach at the start. Raises ProgramError."""
         for piece in pieces:
             if self._at is None:
                 way = self._way_in(piece.element.start)
@@ -267,7 +276,7 @@ class ContourStage(ABC):
                 yield self._arrived(make(block, shifted(element, *self.tip)))
 
     def _leave(self, move: ContourMove, way: Sequence[Element]) -> Iterator[Block]:
-        """The departure, behind what is left of the contour."""
+        """Yield the departure after the remaining blocks of the contour."""
         yield from self._standing(self._held.pop(self._index))
         yield from self._lead(move, way)
 
@@ -286,14 +295,14 @@ class ContourStage(ABC):
         return block
 
     def _corner(self, block: Block, element: Element) -> Sequence[Element]:
-        """The way round an outside corner, as an arc about it or otherwise."""
+        """Return the path around an outside corner, by default the given arc."""
         del block
         return [element]
 
     @abstractmethod
     def _way_in(self, to: Point) -> Sequence[Element]:
-        """The way of the centre to beside the contour. Raises ProgramError."""
+        """Return the path of the nose center from the approach to the contour. Raises ProgramError."""
 
     @abstractmethod
     def _gouges(self, block: Block, why: str) -> ProgramError:
-        """The nose does not fit beside a move."""
+        """Return the error for a move that the nose would gouge."""

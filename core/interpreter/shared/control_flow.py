@@ -1,4 +1,4 @@
-"""Where a program goes on: calls under way, repeats that are left, and loops that never end; all dialects."""
+"""Program flow for all dialects: active calls, remaining repeats, and detection of endless loops."""
 
 from __future__ import annotations
 
@@ -17,11 +17,12 @@ Routine = TypeVar("Routine")
 
 @dataclass(slots=True)
 class Frame(Generic[Routine]):
-    """The main program, or a subprogram that is being executed. Positions are indices of lines, from 0.
+    """The main program or an active subprogram. Positions are line indices from 0.
 
-    ``at`` is where it goes on when what it has called ends, ``end`` is one past its last line. ``left`` is
-    how often each repeat under way will yet go back, by its line, outermost first. A program of another file
-    has the ``file``'s name, and is shown at ``place``, the line of the main file that has called it.
+    ``at`` is the line at which execution continues after a call, and ``end`` is one past the last line.
+    ``left`` maps the line of each active repeat to the number of repeats that remain, the outermost first. A
+    program from another file has the name ``file``. Its lines are shown at ``place``, the line of the main
+    file with the call.
     """
 
     routine: Routine
@@ -33,7 +34,7 @@ class Frame(Generic[Routine]):
 
     @property
     def standing(self) -> tuple[object, ...]:
-        """Where it goes on and what is left of its repeats, to be compared."""
+        """The file, the next line and the remaining repeats, for comparison."""
         return self.file, self.at, tuple(sorted(self.left.items()))
 
 
@@ -41,51 +42,57 @@ AnyFrame = TypeVar("AnyFrame", bound=Frame[Any])
 
 
 class ControlFlow(Generic[AnyFrame]):
-    """The place in a program: ``at`` is the index of the line to execute next, ``end`` where it stops."""
+    """Position in a program.
+
+    ``at`` is the index of the next line, and ``end`` is the index at which execution ends.
+    """
 
     def __init__(self, main: AnyFrame) -> None:
         self.at, self.end = main.at, main.end
-        self.here = main  # what is being executed; its ``at`` is kept when it calls
+        self.here = main  # the active frame; its ``at`` is updated when it calls another frame
         self.frames = [main]
 
     @property
     def called(self) -> bool:
-        """Whether the place is in a subprogram."""
+        """Whether a subprogram is active."""
         return len(self.frames) > 1
 
     @property
     def outside(self) -> bool:
-        """Whether the place is in a program of another file."""
+        """Whether a program from another file is active."""
         return bool(self.here.place)
 
     def enter(self, frame: AnyFrame) -> None:
-        """Go on in a subprogram."""
+        """Continue in a subprogram."""
         self.here.at = self.at
         self.frames.append(frame)
         self.here, self.at, self.end = frame, frame.at, frame.end
 
     def leave(self) -> None:
-        """Go on behind the call of the subprogram."""
+        """Return from a subprogram to the line after its call."""
         self.frames.pop()
         self._go_on()
 
     def _go_on(self) -> None:
-        """In the last frame, where it stands."""
+        """Continue at the saved position of the last frame."""
         self.here = here = self.frames[-1]
         self.at, self.end = here.at, here.end
 
     def end_all(self) -> None:
-        """End the program: nothing comes any more."""
+        """End the program, including all active calls."""
         del self.frames[1:]
         self._go_on()
         self.at = self.end
 
     def shown_line(self, number: int) -> int:
-        """The line of the main file that stands for line ``number`` of the program under way."""
+        """Return the line of the main file at which line ``number`` of the active program is shown."""
         return self.here.place or number
 
     def located(self, found: Diagnostic) -> Diagnostic:
-        """A finding in a program of another file: told at its call, with file and line in its text."""
+        """Return a finding for the main file.
+
+        A finding in another file is moved to the line of the call, and its text states the file and the line.
+        """
         here = self.here
         if not here.place:
             return found
@@ -96,12 +103,12 @@ class ControlFlow(Generic[AnyFrame]):
 
 
 class LoopWatch:
-    """Compares what jumps go by whenever a program jumps back.
+    """Detector of endless loops, which compares the program state at each jump back.
 
-    A program does the same again from the same state. So when a jump back comes round with the same state as
-    an earlier time, the loop has no end. What is kept for comparison is renewed at the 1st, 2nd, 4th, 8th …
-    jump (Brent's cycle detection), so a round of any length is found within three of it at most, and a loop
-    that ends costs one comparison a jump, which stops at the first difference.
+    A program always does the same from the same state. If a jump back occurs in the same state as an earlier
+    jump, the loop is endless. The reference state is renewed at jumps 1, 2, 4, 8 and so on (Brent's cycle
+    detection), so that a loop of any length is detected within three rounds. Each jump of a normal loop costs
+    one comparison, which ends at the first difference.
     """
 
     def __init__(self) -> None:
@@ -110,9 +117,9 @@ class LoopWatch:
         self._kept: object = None
 
     def comes_round(self, flow: ControlFlow[AnyFrame], *held: object) -> bool:
-        """Whether a jump back meets what an earlier one met.
+        """Return whether a jump back occurs in the same state as an earlier jump.
 
-        ``held`` is all that later jumps may go by beside the place, compared by its values.
+        ``held`` are all values, other than the position, on which later jumps can depend.
         """
         flow.here.at = flow.at
         now = [each.standing for each in flow.frames], held

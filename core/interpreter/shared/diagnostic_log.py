@@ -1,4 +1,4 @@
-"""Diagnostics as they come up in a pass through a program, and the errors that end one."""
+"""Log of the diagnostics of one pass through a program."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _DIGITS = re.compile(r"[0-9.]+")
 
 
 def without_repeats(found: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """Findings in which what repeats is told at its first place, with its count."""
+    """Return the findings with each repeated finding only at its first location, with its count."""
     each_once = list(
         {(each.code, each.severity, each.line, each.column, each.message): each for each in found}.values()
     )
@@ -40,17 +40,20 @@ def without_repeats(found: Iterable[Diagnostic]) -> list[Diagnostic]:
 
 
 def _form(found: Diagnostic) -> object:
-    """What findings have in common that differ in place and numbers alone."""
+    """Return a key that is equal for findings that differ only in location and numbers."""
     text = "" if found.code in REPEATS else _DIGITS.sub("", found.message)
     return found.code, found.severity, text
 
 
 class Log:
-    """Keeps each finding once (by line, code and column), at most 100 errors and 100 others."""
+    """Log of findings.
+
+    Each combination of line, code and column is stored once, up to 100 errors and 100 others.
+    """
 
     def __init__(self, first: Iterable[Diagnostic] = ()) -> None:
         self.found: list[Diagnostic] = list(first)
-        self._repeated: dict[str, int] = {}  # code → place in what was found
+        self._repeated: dict[str, int] = {}  # code → index in ``found``
         self._counted = 0
         self.errors = [each for each in self.found if each.severity is Severity.ERROR]
         self._known = {(each.line, each.code, each.column) for each in self.found}
@@ -58,16 +61,16 @@ class Log:
 
     @property
     def full(self) -> bool:
-        """Whether there are so many errors that going on tells nothing more."""
+        """Whether the log has so many errors that the pass can end."""
         return len(self.errors) >= MOST_OF_A_KIND
 
     @property
     def silent(self) -> bool:
-        """Whether there are so many warnings and notes that no further one is kept or counted."""
+        """Whether the log has reached its limit of warnings and notes."""
         return self._others >= MOST_OF_A_KIND or self._counted >= MOST_COUNTED
 
     def add(self, found: Diagnostic) -> None:
-        """Keep a finding unless it is known or there are too many."""
+        """Store a finding, unless it is already in the log or the limit of its kind is reached."""
         key = (found.line, found.code, found.column)
         if key in self._known:
             return
@@ -97,7 +100,10 @@ class Log:
             self.found[at] = replace(self.found[at], count=self.found[at].count + 1)
 
     def again(self, found: Diagnostic) -> None:
-        """The same as has been told, at another place: it stays where it was, with a new text and count."""
+        """Replace the text and increase the count of the earlier finding with the same code.
+
+        The finding remains at its first location.
+        """
         key = (found.line, found.code, found.column)
         if key in self._known:
             return
@@ -110,6 +116,6 @@ class Log:
         self.found.append(found)
 
     def warn(self, line: int, column: int, code: str, text: str, hint: str = "", /, **values: object) -> None:
-        """Keep a warning; ``values`` fill the holes of ``text`` and ``hint``."""
+        """Store a warning; ``values`` are the values for the placeholders of ``text`` and ``hint``."""
         found = Diagnostic(line, column, Severity.WARNING, code, worded(text, values), worded(hint, values))
         self.add(found)

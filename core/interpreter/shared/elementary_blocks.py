@@ -1,8 +1,8 @@
-"""Elementary blocks: the one list that the runner executes, the prover checks and the screen draws.
+"""Elementary blocks, which the executor runs, the proof checks and the screen draws.
 
-Nearly all of a long program is straight moves under one state. As a ``Series`` they stand in columns, since a
-block of its own costs more than all that is done with it. ``SectionEnds`` tells before which blocks all comes
-to rest, in a run as in its forecast.
+Most blocks of a long program are straight moves with the same state. A ``Series`` stores them as arrays,
+because single objects would cost more than their processing. ``SectionEnds`` finds the blocks that start from
+a standstill, both in a run and in its forecast.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 class Kind(StrEnum):
-    """What an elementary block is; the words are part of the public JSON."""
+    """Kind of an elementary block. The values are part of the public JSON."""
 
     RAPID = "rapid"
     FEED = "feed"
@@ -38,7 +38,7 @@ class Kind(StrEnum):
     DWELL = "dwell"
     PLANE_LINE = "plane-line"
     PLANE_ARC = "plane-arc"
-    PLANE = "plane"  # a PLANE block of Klartext: rotary axes swivel
+    PLANE = "plane"  # a PLANE block of Klartext, which swivels the rotary axes
     ACTION = "action"
 
 
@@ -47,15 +47,17 @@ _MAY_BE_RAPID = frozenset({Kind.PLANE, Kind.PLANE_LINE})
 
 @dataclass(slots=True, eq=False)
 class Block:
-    """One elementary block, never changed once made. Lengths in mm, X a radius, C in degrees.
+    """One elementary block, which is never modified. Lengths are in mm, X is a radius, and C is in degrees.
 
-    ``x z c`` is the end point in the program's frame with secondary offset and nose compensation in it,
-    ``x0 z0 c0`` where the block starts, in that same frame; machine coordinates are ``offset_x offset_z``
-    further, machine C is ``modal.offset_c`` further. ``feed`` is mm/s, or mm/rev when ``per_rev``; a rapid's
-    feed is the rapid rate in mm/s, that of a turn of C alone degrees/s.
-    ``rpm`` is the commanded spindle speed at the block's end, negative under M04, 0 with the spindle stopped;
-    where C turns by its own speed it is that speed, signed.
-    ``modal`` is the state after the block: the checkpoint from which a restart can go on.
+    ``x z c`` is the end point in the program frame, including secondary offset and nose compensation. ``x0 z0
+    c0`` is the start in the same frame. Add ``offset_x``, ``offset_z`` and ``modal.offset_c`` for the machine
+    positions. ``feed`` is in mm/s, or in mm/rev with ``per_rev``. For a rapid, it is the rapid rate in mm/s;
+    for a move of C alone, it is in degrees/s.
+
+    ``rpm`` is the commanded spindle speed at the end of the block: negative under M04, and 0 if the spindle
+    is stopped. Where C turns at its own speed, it is that speed with its sign.
+
+    ``modal`` is the state after the block and the checkpoint for a restart.
     """
 
     n: int  # count from 1, in the order of execution
@@ -75,42 +77,43 @@ class Block:
     per_rev: bool = False
     rpm: float = 0.0
     css: float | None = None  # surface speed in force, mm/s
-    cx: float = 0.0  # arc centre, program frame
+    cx: float = 0.0  # arc center, program frame
     cz: float = 0.0
-    clockwise: bool = False  # seen from above: X+ down, Z+ right
+    clockwise: bool = False  # in the view from above, with X+ down and Z+ to the right
     action: Action | None = None
-    plane: PlaneMove | None = None  # the same way in the frame of the virtual mill
+    plane: PlaneMove | None = None  # the same move in the frame of the virtual mill
     travel: Travel | None = None  # all axes, on machines that have more than X, Z and C
-    swivel: Swivel | None = None  # where a mill's block stands in its working plane
-    growth: float = 0.0  # of a thread's lead, mm a revolution more with each; ``feed`` is then its mean
-    coupled: bool = False  # a tap: its feed follows the spindle alone, the feed override leaves it as it is
-    in_hole: bool = False  # behind it a tap is still in its hole: neither hold nor single block stops there
-    continues: bool = False  # a thread that goes on with that of the block before, in one pass
+    swivel: Swivel | None = None  # position of a mill's block in its working plane
+    growth: float = 0.0  # change of a thread's lead per revolution, mm/rev; ``feed`` is then the mean lead
+    coupled: bool = False  # tapping: the feed follows the spindle, and the feed override has no effect
+    # the tap remains in the hole at the end, so neither feed hold nor single block stops there
+    in_hole: bool = False
+    continues: bool = False  # a thread that continues the thread of the previous block in the same pass
 
     @property
     def mx(self) -> float:
-        """Machine X of the end, mm, radius."""
+        """Machine X of the end point, in mm as a radius."""
         return self.x + self.offset_x
 
     @property
     def mz(self) -> float:
-        """Machine Z of the end, mm."""
+        """Machine Z of the end point, in mm."""
         return self.z + self.offset_z
 
     @property
     def mc(self) -> float:
-        """Machine C of the end, degrees."""
+        """Machine C of the end point, in degrees."""
         return self.c + self.modal.offset_c
 
     @property
     def machine_end(self) -> tuple[float, ...]:
-        """Machine positions of all axes at the end, in the machine's order."""
+        """Machine positions of all axes at the end point, in the machine's axis order."""
         return (self.mx, self.mz, self.mc) if self.travel is None else self.travel.end
 
     def reach(self) -> tuple[float, float, float, float]:
-        """(least x, greatest x, least z, greatest z) of what the block goes to, its start left out.
+        """Return (min x, max x, min z, max z) of the block without its start, in mm in the program frame.
 
-        Program frame, mm. The start belongs to the block before; arcs and mill ways count all along.
+        The start belongs to the previous block. Arcs and moves of a mill include all points of their path.
         """
         if self.plane is not None:
             (low_x, low_z, _), (high_x, high_z, _) = (side.tolist() for side in self.plane.reach())
@@ -121,7 +124,7 @@ class Block:
         return self.x, self.x, self.z, self.z
 
     def machine_reach(self) -> tuple[tuple[float, float], ...]:
-        """Least and greatest machine position of each axis, in the machine's order; the start left out."""
+        """Return the (min, max) machine positions of each axis in the machine's order, without the start."""
         if self.travel is not None:
             low, high = (side.tolist() for side in self.travel.reach())
             return tuple(zip(low, high, strict=True))
@@ -131,7 +134,7 @@ class Block:
 
     @property
     def length(self) -> float:
-        """Length of the path that the feed counts, mm; degrees where only C or rotary axes turn."""
+        """Path length to which the feed applies, in mm; in degrees if only C or rotary axes move."""
         if self.travel is not None:
             return self.travel.length
         if self.kind is Kind.ARC:
@@ -142,12 +145,15 @@ class Block:
 
     @property
     def rapid(self) -> bool:
-        """Whether the rapid override counts for it, and no spindle has to be at its speed."""
+        """Whether the block is a rapid: the rapid override applies, and the spindle need not be at speed."""
         return self.kind is Kind.RAPID or (self.kind in _MAY_BE_RAPID and self.modal.rapid)
 
     @property
     def swivels(self) -> bool:
-        """Whether a mill's block counts degrees: its rotary axes turn alone, or lead the slides."""
+        """Whether the feed of a mill's block is in degrees.
+
+        This is so if only rotary axes move, or if they determine the time of the linear axes.
+        """
         travel = self.travel
         if travel is None or not self.moves:
             return False
@@ -155,7 +161,7 @@ class Block:
 
     @property
     def moves(self) -> bool:
-        """Whether the slides or the C axis move in this block."""
+        """Whether any axis moves in this block."""
         return self.action is None
 
 
@@ -164,11 +170,11 @@ Ints = npt.NDArray[np.int64]
 
 
 class Series(Sequence[Block]):
-    """m straight moves of X and Z, one from the end of the other.
+    """A sequence of m straight moves of X and Z, each of which starts at the end of the previous move.
 
-    ``n line x0 z0 x z`` (m,) are those of the blocks; everything else is the same in all and stands in
-    ``pattern``, a block such as each of them. Where F varies, ``feed`` (m,) has that of each block, else it
-    is None. ``texts`` are the lines of the program.
+    The arrays ``n line x0 z0 x z`` of shape (m,) have one value per block. All other values are common to the
+    blocks and are stored in the block ``pattern``. If F varies, ``feed`` of shape (m,) has the feed of each
+    block; otherwise it is None. ``texts`` are the lines of the program.
     """
 
     __slots__ = ("feed", "line", "n", "pattern", "texts", "x", "x0", "z", "z0")
@@ -208,16 +214,17 @@ class Series(Sequence[Block]):
             )  # fmt: skip
 
     def source_lines(self) -> Sequence[str]:
-        """The line of the program of each block."""
+        """Return the program line of each block."""
         if not len(self.line):
             return ()
         first, last = int(self.line[0]), int(self.line[-1])
-        if last - first + 1 == len(self.line):  # consecutive: passes of a loop are more than their lines
+        # The lines are consecutive. In a loop, there are more blocks than lines.
+        if last - first + 1 == len(self.line):
             return self.texts[first - 1 : last]
         return [self.texts[line - 1] for line in self.line.tolist()]
 
     def feeds(self) -> Iterator[tuple[Modal, float]]:
-        """The state and the feed of each block; endless where F does not vary."""
+        """Return an iterator of the state and feed of each block, which is endless if F does not vary."""
         modal, feed = self.pattern.modal, self.pattern.feed
         if self.feed is None:
             return repeat((modal, feed))
@@ -233,12 +240,12 @@ class Series(Sequence[Block]):
 
 
 def with_feed(modal: Modal, feed: float) -> Modal:
-    """The state after another F of a cut, mm/s or mm/rev."""
+    """Return the modal state with another cutting feed, in mm/s or mm/rev."""
     return modal._replace(feed=feed, cut_feed=feed)
 
 
 class TimedSeries(NamedTuple):
-    """Moves with the starts and ends (m,) of each on the program's clock, s."""
+    """A series of moves with the start and end times (m,) of the moves in program time, in seconds."""
 
     series: Series
     t0: Floats
@@ -246,31 +253,31 @@ class TimedSeries(NamedTuple):
 
 
 def needs_speed(block: Block) -> bool:
-    """Whether this block must not begin before the spindle is at its speed; rapids may."""
+    """Return whether the spindle must be at speed before this block begins; rapids do not wait."""
     return block.moves and not block.rapid
 
 
 class SectionEnds:
-    """Goes with the elementary blocks of one pass through a program, in their order.
+    """Detector of the ends of path sections in the elementary blocks of one pass, in their order.
 
-    A standstill is needed before every action, before the first block after a spindle command that must not
-    begin without its speed, and before and behind each thread pass, which is the thread or a chain of them,
-    and what pulls out of it. All other blocks are moved through without one: they are one path section.
+    A standstill is required before every action, before the first block that needs a new spindle speed, and
+    before and after each thread pass. A thread pass is a thread or a chain of threads with its pull-out. All
+    other blocks are executed without a standstill and form one path section.
     """
 
     def __init__(self) -> None:
-        self._new_speed = False  # a speed was commanded that no block has waited for yet
-        self._pass = 0  # of the thread pass under way: 1 in its threads, 2 in what pulls out of them
+        self._new_speed = False  # a spindle speed was commanded, and no block has waited for it yet
+        self._pass = 0  # phase of the active thread pass: 1 in its threads, 2 in its pull-out
 
     @property
     def in_thread(self) -> bool:
-        """Whether the block before belongs to a thread pass, which what comes next may end."""
+        """Whether the previous block belongs to a thread pass, which the next block may end."""
         return self._pass > 0
 
     def rests_before(self, block: Block) -> bool:
-        """Whether all has to be at rest before ``block``, which comes next.
+        """Return whether all axes must be at rest before the next block.
 
-        While it is waited for the answer stays the same, until ``rested``.
+        The result does not change until ``rested`` is called.
         """
         if block.action is not None:
             self._new_speed = self._new_speed or isinstance(block.action, SpindleRun)
@@ -281,12 +288,12 @@ class SectionEnds:
         return self._pass > 0 or block.kind is Kind.THREAD or (self._new_speed and needs_speed(block))
 
     def rested(self, block: Block) -> None:
-        """All is at rest, and ``block``, before which it had to be, begins."""
+        """Record that all axes are at rest and that ``block``, which required the standstill, begins."""
         if block.action is None:
             self._new_speed = self._new_speed and not needs_speed(block)
             self._pass = int(block.kind is Kind.THREAD)
 
 
 def _pulls_out(block: Block) -> bool:
-    """Behind a thread: its pull-out, or a rapid straight out."""
+    """Return whether a block after a thread is its pull-out or a rapid straight out in X."""
     return block.kind is Kind.THREAD or (block.kind is Kind.RAPID and block.z == block.z0)

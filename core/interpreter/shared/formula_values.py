@@ -1,4 +1,4 @@
-"""What a formula comes to: arithmetic in numbers, angles in degrees."""
+"""Evaluation of formulas in floating-point numbers. Angles are in degrees."""
 
 from __future__ import annotations
 
@@ -15,7 +15,10 @@ NoValue = Callable[[int, str], ProgramError]
 
 
 def worth(formula: Formula, parameter: Callable[[Parameter], float], no_value: NoValue) -> float:
-    """The value; ``parameter`` gives that of a parameter. Raises what ``no_value`` makes."""
+    """Return the value of a formula; ``parameter`` returns the value of a parameter.
+
+    Raises the error that ``no_value`` creates if an operation has no value.
+    """
     if isinstance(formula, Number):
         return formula.value
     if isinstance(formula, Parameter):
@@ -48,7 +51,7 @@ def _tangent(degrees: float) -> float:
 
 
 def _angle_of(opposite: float, adjacent: float) -> float:
-    """0 to under 360 degrees."""
+    """Return the angle of a vector, from 0 to less than 360 degrees."""
     return math.degrees(math.atan2(opposite, adjacent)) % 360.0
 
 
@@ -56,7 +59,7 @@ def _power(base: float, exponent: float) -> float:
     return math.pow(base, exponent)
 
 
-_TRUTH = 1e-12  # numbers that differ by less are equal
+_TRUTH = 1e-12  # numbers with a smaller difference are equal
 
 OPERATIONS: dict[str, Callable[..., float]] = {
     "plus": lambda a, b: a + b,

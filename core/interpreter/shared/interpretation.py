@@ -1,4 +1,4 @@
-"""One pass through a program in any language: what it is asked for, its lines, the way to its first."""
+"""One pass through a program in any language: its results, its lines and the approach to its first line."""
 
 from __future__ import annotations
 
@@ -29,19 +29,19 @@ DEEPEST_CALL = 16
 
 
 class ToolUse:
-    """Tool numbers asked for so far, in the order of first use, and those whose offset has never been set."""
+    """Tool numbers used so far, in the order of first use, and the used tools whose offset was never set."""
 
     def __init__(self) -> None:
         self.used: list[int] = []
         self.missing: list[int] = []
 
     def call(self, number: int) -> None:
-        """This tool is used from now on, whoever tells its measures."""
+        """Record the use of a tool whose dimensions may come from another source."""
         if number not in self.used:
             self.used.append(number)
 
     def offset(self, number: int, offsets: Mapping[int, ToolOffset]) -> ToolOffset | None:
-        """The offset of this tool, which is used from now on; None where it has never been set."""
+        """Record the use of a tool and return its offset, or None if its offset was never set."""
         self.call(number)
         if number not in offsets and number not in self.missing:
             self.missing.append(number)
@@ -49,79 +49,83 @@ class ToolUse:
 
 
 class Interpretation(ABC):
-    """One pass. It raises nothing at its user: what is wrong is in ``diagnostics``.
+    """One pass through a program. It raises no exceptions; all problems are in ``diagnostics``.
 
-    No block comes after an error, but the pass goes on as well as it can to find the other errors. All that
-    it reports grows while blocks are taken.
+    No block follows an error, but the pass continues as far as possible to find other errors. All results
+    grow while blocks are generated.
     """
 
     def __init__(self, log: Log) -> None:
         self._log = log
         self._tools = ToolUse()
         self._lacking: list[Need] = []
-        self._stopped = False  # an error has been met: no more blocks
-        self.stop_before: Callable[[int], bool] | None = None  # asked of each line of the main program
-        self.stopped_before = False  # a line is about to be executed at which the pass was asked to stop
+        self._stopped = False  # an error occurred, and no more blocks follow
+        # called with each line number of the main program
+        self.stop_before: Callable[[int], bool] | None = None
+        self.stopped_before = False  # the next line is a line at which ``stop_before`` requested a stop
 
     @abstractmethod
     def blocks(self, *, to_first_error: bool = False) -> Iterator[Block]:
-        """The elementary blocks, made as they are asked for. To be called once.
+        """Return an iterator that generates the elementary blocks. Call this method once.
 
-        At the first error the blocks end. What is left of the program is then still gone through for its
-        errors before the iterator ends, unless ``to_first_error`` (what runs a program wants no delay).
+        The blocks end at the first error. By default, the rest of the program is then checked for errors
+        before the iterator ends. With ``to_first_error``, the iterator ends without delay.
         """
 
     def series(self) -> Iterator[Block | Series]:
-        """The same, for whoever goes through all of a program: straight moves in series where there are."""
+        """Return the same blocks, with straight moves combined in series where possible."""
         return self.blocks()
 
     @property
     @abstractmethod
     def source_blocks(self) -> int:
-        """Lines that hold more than a comment."""
+        """Number of lines that contain more than a comment."""
 
     @property
     @abstractmethod
     def modal(self) -> Modal:
-        """The state after the last block that was taken."""
+        """Modal state after the last generated block."""
 
     @property
     def checkpoint(self) -> Checkpoint:
-        """What the line inherits that would be executed next: here the modal state alone."""
+        """State that the next line inherits; in this base class, only the modal state."""
         return Checkpoint(self.modal)
 
     @property
     def waits_for(self) -> str:
-        """Why no other pass can go on from here, in words: moves that wait for lines to come; empty."""
+        """Reason why no other pass can continue from here, or an empty text.
+
+        For example, some moves may wait for later lines.
+        """
         return ""
 
     @property
     def diagnostics(self) -> list[Diagnostic]:
-        """All findings so far, those of reading the program first."""
+        """All findings so far, beginning with the findings from reading the program."""
         return self._log.found
 
     @property
     def failed(self) -> bool:
-        """Whether there is an error among the findings so far."""
+        """Whether the findings so far include an error."""
         return bool(self._log.errors)
 
     @property
     def used_tools(self) -> list[int]:
-        """Tool numbers asked for so far, in the order of first use."""
+        """Tool numbers used so far, in the order of first use."""
         return self._tools.used
 
     @property
     def lacking(self) -> list[Need]:
-        """What the program asks of the machine's builder and nothing on this machine answers."""
+        """Functions of the machine builder that the program needs and this machine does not have."""
         return self._lacking
 
     @property
     def missing_tools(self) -> list[int]:
-        """Those of them whose offset has never been set."""
+        """Used tools whose offset was never set."""
         return self._tools.missing
 
     def _stop_endless(self, line: int, hint: str) -> None:
-        """A program that makes more than anybody runs ends at this line."""
+        """Report a program with too many blocks or lines and end the pass at this line."""
         self._stopped = True
         text = Message(
             "The program produces more than {most_blocks} blocks or executes more than {most_lines} lines.",
@@ -132,7 +136,7 @@ class Interpretation(ABC):
 
 
 class RefusedPass(Interpretation):
-    """A program that this machine cannot run at all: one finding, and no block."""
+    """Pass through a program that this machine cannot run at all: one finding and no blocks."""
 
     source_blocks = 0
     modal = Modal()
@@ -141,13 +145,13 @@ class RefusedPass(Interpretation):
         super().__init__(Log([refusal(0, 0, "machine-kind", why, hint)]))
 
     def blocks(self, *, to_first_error: bool = False) -> Iterator[Block]:
-        """None."""
+        """Return an empty iterator."""
         del to_first_error
         return iter(())
 
 
 class Numbered(Protocol):
-    """A line of a program; ``number`` from 1."""
+    """A line of a program with its ``number``, from 1."""
 
     @property
     def number(self) -> int: ...
@@ -157,25 +161,25 @@ Line = TypeVar("Line", bound=Numbered)
 
 
 class LinePass(Interpretation, Generic[Line]):
-    """The lines of a program in the order in which they are executed, up to the limits of a program."""
+    """The lines of a program in the order of execution, up to the limits of a program."""
 
     def __init__(self, log: Log) -> None:
         super().__init__(log)
         self._approach: Iterator[Block] = iter(())
-        self._taken: Line | None = None  # a line at which block search has stopped
+        self._taken: Line | None = None  # the line at which block search stopped
         self._left = MOST_LINES
-        self._made = 0  # blocks so far
+        self._made = 0  # number of blocks so far
 
     @abstractmethod
     def _can_stop(self, line: Line) -> bool:
-        """Whether block search may stop before this line: one of the main file that does something."""
+        """Return whether block search may stop before this line, a line with a function in the main file."""
 
     @abstractmethod
     def _never_ends(self, line: Line) -> None:
-        """Tell that more has been executed than any program is meant to."""
+        """Report that the program exceeds the maximum number of blocks or lines."""
 
     def _lines(self, take: Callable[[], Line | None]) -> Iterator[Line]:
-        """The lines as ``take`` gives them, until a stop of block search or more than anybody runs."""
+        """Yield the lines that ``take`` returns, until block search stops or a limit is exceeded."""
         idle = blocks = 0
         while True:
             line, self._taken = self._taken or take(), None
@@ -196,9 +200,10 @@ class LinePass(Interpretation, Generic[Line]):
 def approach_blocks(
     begin: Begin, modal: Modal, start: Sequence[float], rpm_at: Callable[[float], float]
 ) -> Iterator[Block]:
-    """The blocks of the way, numbered so that the first block of the line keeps its number of a full run.
+    """Yield the blocks of the approach, numbered so that later blocks have the same numbers as in a full run.
 
-    ``start`` is where the slides stand, ``rpm_at`` the speed commanded at a radius of the program's frame.
+    ``start`` is the present machine position. ``rpm_at`` returns the commanded spindle speed at a radius in
+    the program frame.
     """
     point, offsets = begin.checkpoint, (modal.offset_x, modal.offset_z, modal.offset_c)
     at = [value - offset for value, offset in zip(start, offsets, strict=False)]

@@ -1,4 +1,4 @@
-"""What a program asks of a machine beyond straight lines; one that cannot do it refuses before the start."""
+"""Functions other than straight moves that a program requires. A machine without them rejects the program."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from core.message import Message
 
 ARC = "arc"
 THREAD = "thread"
-PULL_OUT = "pull-out"  # of a thread, in step with the spindle
+PULL_OUT = "pull-out"  # pull-out of a thread, synchronized with the spindle
 THREAD_CHAIN = "thread-chain"
 SURFACE = "surface-speed"
 SURFACE_THREAD = "surface-thread"
@@ -49,27 +49,27 @@ _WORDS = {
 
 
 class Need(NamedTuple):
-    """Something that a program needs, and the first line that needs it."""
+    """A machine function that a program needs, and the first line that needs it."""
 
     what: str
     line: int
 
     @property
     def builders_m(self) -> int:
-        """The number of the M function that nothing answers; 0 for another need."""
+        """Number of the M function that this machine does not have; 0 for other needs."""
         number = self.what.removeprefix(BUILDERS_M)
         return int(number) if self.what != number and number.isdigit() else 0
 
     @property
     def words(self) -> str:
-        """The need in words for the operator, where it has any."""
+        """Description of the need for the operator."""
         if self.builders_m:
             return Message("{what}; {builders_m}", what=self.what, builders_m=how_bound(self.builders_m))
         return _WORDS.get(self.what, self.what)
 
 
 def how_bound(code: int) -> Message:
-    """The lines of a machine file that give a builder's M function its meaning."""
+    """Return the lines of a machine file that assign a function to a builder's M code."""
     return Message(
         'write {code} = {{ output = "NAME", on = true }} under [m_codes] in the machine '
         "file, where NAME is an output under [io.out], or {code2} = {{ ignored = true }} if "
@@ -80,14 +80,14 @@ def how_bound(code: int) -> Message:
 
 
 def needs_of(blocks: Iterable[Block], before: Block | None = None) -> Iterator[Need]:
-    """What these blocks need, once for each that needs it; ``before`` is the block in front of them."""
+    """Yield the needs of these blocks; ``before`` is the block that precedes the first one."""
     for block in blocks:
         yield from (Need(what, block.line) for what in _needs(block, before))
         before = block
 
 
 def first_needs(needs: Iterable[Need]) -> tuple[Need, ...]:
-    """Each need once, with its first line."""
+    """Return each need once, with the first line that needs it."""
     first: dict[str, Need] = {}
     for need in needs:
         first.setdefault(need.what, need)
@@ -118,7 +118,7 @@ def _needs(block: Block, before: Block | None) -> Iterator[str]:
 
 
 def _of_action(action: Action) -> Iterator[str]:
-    """Terminals, by name, and the spindle as an axis."""
+    """Yield the inputs, outputs and spindle functions that an action needs."""
     match action:
         case SpindleLock():
             yield C_AXIS

@@ -1,4 +1,4 @@
-"""The modal state of the control: everything that a line inherits from the lines before it."""
+"""Modal state of the control, which each line inherits from earlier lines."""
 
 from __future__ import annotations
 
@@ -12,8 +12,11 @@ if TYPE_CHECKING:
 
 
 class Mill(NamedTuple):
-    """The frame and the point reached in it; mm, Z a radius on the side of the part. ``theta`` (radians) is
-    the polar angle of the point, counted on; ``fresh`` holds until a move or an F: H may still be set."""
+    """Frame of the virtual mill and the point reached in it, in mm.
+
+    Z is a radius on the side of the part. ``theta`` is the continuous polar angle of the point in radians.
+    ``fresh`` is True until the first move or F; H is allowed only until then.
+    """
 
     frame: Face | Side
     x: float
@@ -24,13 +27,13 @@ class Mill(NamedTuple):
 
 
 class Modal(NamedTuple):
-    """State between two blocks. Lengths in mm, X as a radius, speeds in mm/s or rpm; see omniturn section 3.
+    """State between two blocks. Lengths are in mm with X as a radius, speeds in mm/s or rpm.
 
-    A new state is made with ``_replace``; blocks share a state until a word changes it, so that
-    carrying a checkpoint in every block costs one reference.
+    ``_replace`` creates a new state. Blocks share one state until a word changes it, so that each block
+    stores only a reference.
     """
 
-    absolute: bool | None = None  # G90 True, G91 False; None until the program says
+    absolute: bool | None = None  # True under G90, False under G91; None until the program selects one
     per_rev: bool = False  # G95
     rapid: bool = False  # the G00 flag
     metric: bool = False  # G71
@@ -39,7 +42,7 @@ class Modal(NamedTuple):
     nose_comp: int = 40  # 40, 41 or 42
     coarse: int = 0  # 0 G36, 1 G35, 2 G35F2
     feed: float | None = None  # F in force: mm/s under G94, mm/rev under G95
-    cut_feed: float | None = None  # what G01 goes back to
+    cut_feed: float | None = None  # feed that G01 restores
     cut_per_rev: bool = False
     rapid_rate: float = 100 * 25.4 / 60  # mm/s
     tool: int = 0  # T, 0 none
@@ -54,7 +57,7 @@ class Modal(NamedTuple):
     outputs: frozenset[str] = frozenset()  # M functions of the machine file that are on
     shift_x: float = 0.0  # G10 in force since the last T
     shift_z: float = 0.0
-    pending_shift_x: float = 0.0  # G10 summed up, in force at the next T
+    pending_shift_x: float = 0.0  # sum of G10, active from the next T
     pending_shift_z: float = 0.0
     tool_x: float = 0.0  # offset of the active tool, machine mm
     tool_z: float = 0.0
@@ -64,36 +67,38 @@ class Modal(NamedTuple):
     secondary_z: float = 0.0
     comment: str = ""
     c_locked: bool = False  # M19 or M89: C is an axis, and a C word turns it
-    oriented: float | None = None  # degrees from its index at which the spindle is held; None: it is not
-    c_rpm: float | None = None  # S beside M19 or a C word, unsigned
-    offset_c: float = 0.0  # machine C minus program C, whole turns: M19 begins to count again at 0
-    edge: int | None = None  # SINUMERIK: D in force, 0 without a tool offset; ``tool`` is then the edge's row
+    # oriented angle of the spindle from its index, degrees; None if the spindle is not oriented
+    oriented: float | None = None
+    c_rpm: float | None = None  # S in a line with M19 or a C word, unsigned
+    offset_c: float = 0.0  # machine C minus program C, whole revolutions; M19 starts again at 0
+    # SINUMERIK: active D, 0 without a tool offset; ``tool`` is then the row of the cutting edge
+    edge: int | None = None
     settable: int = 0  # SINUMERIK: 54 to 59, 0 under G500
-    settable_x: float = 0.0  # of it, mm; those of C are in offset_c
+    settable_x: float = 0.0  # settable offset, mm; the offset of C is in offset_c
     settable_z: float = 0.0
     zero_x: float = 0.0  # SINUMERIK: TRANS and ATRANS, mm
     zero_z: float = 0.0
-    linear_c: bool = False  # the third axis counts mm
-    wraps_c: bool = False  # C counts 0..<360 in this program: its display does too
+    linear_c: bool = False  # the third axis is in mm
+    wraps_c: bool = False  # C is shown from 0 to below 360 in this program
     mill: Mill | None = None  # between (~PLXC) or (~PLZC) and (END)
 
     def length_text(self, mm: float) -> str:
-        """A length as the program's reader knows it, in the unit in force."""
+        """Return a length (mm) as text in the active unit of the program."""
         return units.length(mm, metric=self.metric)
 
     def feed_text(self, value: float, *, per_rev: bool) -> str:
-        """A feed, mm/s or mm/rev, as the program's reader knows it, in the unit in force."""
+        """Return a feed (mm/s or mm/rev) as text in the active unit of the program."""
         return units.feed(value, per_rev=per_rev, metric=self.metric)
 
     @property
     def css_speed(self) -> float | None:
-        """The constant surface speed in force, mm/s; None under G97."""
+        """The active constant surface speed in mm/s; None under G97."""
         return self.surface_speed if self.css else None
 
     def surface_rpm_at(self, x: float, highest: float) -> float:
-        """Signed speed, rpm, at radius ``x`` (mm) under constant surface speed, within its limits.
+        """Return the signed speed in rpm at radius ``x`` (mm) under constant surface speed.
 
-        ``highest`` is the spindle's own.
+        The result is within the programmed limits and ``highest``, the speed limit of the spindle in rpm.
         """
         if self.css_max is not None:
             highest = min(highest, self.css_max)
@@ -101,20 +106,20 @@ class Modal(NamedTuple):
 
     @property
     def offset_x(self) -> float:
-        """Machine X minus program X, mm."""
+        """Machine X minus program X, in mm as a radius."""
         return self.base_x + self.shift_x + self.preset_x + self.zero_x
 
     @property
     def offset_z(self) -> float:
-        """Machine Z minus program Z, mm."""
+        """Machine Z minus program Z, in mm."""
         return self.base_z + self.shift_z + self.preset_z + self.zero_z
 
     @property
     def base_x(self) -> float:
-        """Machine X of the zero that is drawn from: tool offset and settable offset together, mm."""
+        """Machine X of the drawing's zero, in mm: the sum of tool offset and settable offset."""
         return self.settable_x if self.edge == 0 else self.tool_x + self.settable_x
 
     @property
     def base_z(self) -> float:
-        """Machine Z of it."""
+        """Machine Z of the drawing's zero, in mm: the sum of tool offset and settable offset."""
         return self.settable_z if self.edge == 0 else self.tool_z + self.settable_z

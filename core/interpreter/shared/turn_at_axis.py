@@ -1,4 +1,4 @@
-"""Standing on the axis of a virtual mill: C turns until the way leads out along X, in every language."""
+"""Turning of C at the axis of a virtual mill, until the path leads out along X, in all languages."""
 
 from __future__ import annotations
 
@@ -6,12 +6,15 @@ from math import degrees
 
 from core.interpreter.shared.diagnostic_log import Log
 
-_SAME = 1e-9  # degrees that are no turn
-_TOLD = 1.0  # degrees that C turns there without a word about it
+_SAME = 1e-9  # degrees; a smaller angle is not a turn
+_TOLD = 1.0  # degrees; C may turn by this angle without a warning
 
 
 def turns_at_axis(log: Log, line: int, turn: float) -> bool:
-    """Whether C turns there, by ``turn`` radians; a large turn is told, as the tool stands meanwhile."""
+    """Return whether C turns at the axis by ``turn`` radians.
+
+    A large turn is logged as a warning, because the tool does not move during the turn.
+    """
     angle = abs(degrees(turn))
     if angle > _TOLD:
         text = "The path passes through the spindle centerline, where C turns by {angle} degrees."

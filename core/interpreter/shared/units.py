@@ -1,4 +1,4 @@
-"""From the program's numbers to millimetres and back to what a message says."""
+"""Conversion between the units of the program, millimeters and message texts."""
 
 from __future__ import annotations
 
@@ -7,23 +7,23 @@ from core.message import Message
 MM_PER_INCH = 25.4
 FEET_PER_MINUTE = 12 * MM_PER_INCH / 60  # mm/s
 METRES_PER_MINUTE = 1000 / 60  # mm/s
-METRIC_STEP = 0.0001  # mm; the last place that the metric display shows
+METRIC_STEP = 0.0001  # mm; the last decimal place of the metric display
 
 
 def per_unit(*, metric: bool) -> float:
-    """Millimetres in one unit of the program."""
+    """Return the millimeters in one length unit of the program."""
     return 1.0 if metric else MM_PER_INCH
 
 
 def length(mm: float, *, metric: bool) -> str:
-    """A length as the program's reader knows it: five places in inch, four in metric."""
+    """Return a length (mm) as text with its unit: five decimal places in inches, four in millimeters."""
     return (
         Message("{unit} mm", unit=f"{mm:.4f}") if metric else Message("{mm} in", mm=f"{mm / MM_PER_INCH:.5f}")
     )
 
 
 def feed(value: float, *, per_rev: bool, metric: bool) -> str:
-    """A feed in mm/s or mm/rev as the program's reader knows it."""
+    """Return a feed (mm/s or mm/rev) as text in the program's unit."""
     number = value / per_unit(metric=metric) * (1 if per_rev else 60)
     digits = f"{number:.5f}".rstrip("0").rstrip(".")
     return Message(

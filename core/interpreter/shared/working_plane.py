@@ -1,4 +1,4 @@
-"""What a block of a mill says besides its axes: where it stands in its working plane."""
+"""Working plane data of a mill's block."""
 
 from __future__ import annotations
 
@@ -13,11 +13,14 @@ Angles = tuple[float | None, float | None, float | None]
 
 @dataclass(frozen=True, slots=True)
 class PlaneSystem:
-    """A working plane's system with a tool in it; blocks share it until one of both changes. mm, degrees.
+    """Coordinate system of a working plane with a tool, in mm and degrees.
 
-    ``place`` takes points of the system to machine X Y Z. ``frame`` (rows) and ``datum`` are its axes and
-    origin in the workpiece's system, ``tilted`` whether a PLANE block made it, ``line`` that block's line (0:
-    none). ``targets`` are Q120, Q121, Q122. ``blank``: corners of BLK FORM in the workpiece's system.
+    Blocks share it until either changes.
+
+    ``place`` converts points of the system to machine X Y Z. ``frame`` (rows) and ``datum`` are its axes and
+    origin in the workpiece system. ``tilted`` is True if a PLANE block defined it, and ``line`` is the line
+    of that block or 0. ``targets`` are Q120, Q121 and Q122. ``blank`` are corners of BLK FORM in the
+    workpiece system.
     """
 
     place: Place
@@ -32,11 +35,11 @@ class PlaneSystem:
 
     @property
     def level(self) -> bool:
-        """Whether it is the workpiece's own system: no plane, no datum shifted."""
+        """Whether this is the workpiece system, without a tilted plane or a datum shift."""
         return not self.tilted and self.datum == (0.0, 0.0, 0.0)
 
     def levelled(self) -> PlaneSystem:
-        """The workpiece's own system with the same tool: what is left when a program has been given up."""
+        """Return the workpiece system with the same tool, which applies after a program is canceled."""
         place = self.kinematics.place(
             self.kinematics.zero, self.kinematics.basic, tool_length=self.tool_length
         )
@@ -45,10 +48,11 @@ class PlaneSystem:
 
 @dataclass(frozen=True, slots=True)
 class Swivel:
-    """One block in the system that is in force at its end.
+    """Position of one block in the system that is active at the end of the block.
 
-    ``start end`` are points of that system, ``slides`` machine X Y Z of the end, mm; ``rotary`` A B C shown
-    (0 to 360 on a modulo axis), None for axes the machine lacks.
+    ``start end`` are points of that system, and ``slides`` is machine X Y Z of the end, in mm. ``rotary`` are
+    the displayed A B C (0 to 360 degrees on a modulo axis), with None for an axis that the machine does not
+    have.
     """
 
     start: Vector
@@ -58,7 +62,7 @@ class Swivel:
     system: PlaneSystem
 
     def levelled(self) -> Swivel:
-        """The same place in the workpiece's own system."""
+        """Return the same position in the workpiece system."""
         system = self.system.levelled()
         end = system.place.point(self.slides)
         return replace(self, start=end, end=end, system=system)

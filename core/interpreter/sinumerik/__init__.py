@@ -1,1 +1,1 @@
-"""The SINUMERIK turning dialect made into elementary blocks, with C as the third axis."""
+"""Interpreter of the SINUMERIK turning dialect, with C as the third axis."""

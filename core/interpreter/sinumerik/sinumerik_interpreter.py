@@ -1,4 +1,4 @@
-"""The interpreter of SINUMERIK turning programs: text and circumstances → elementary blocks, one by one."""
+"""Interpreter of SINUMERIK turning programs: generates the elementary blocks of a program for a setup."""
 
 from __future__ import annotations
 
@@ -66,8 +66,7 @@ from core.language.sinumerik.word_table import (
 from core.language.source import Source
 from core.message import Message
 
-# Codes of findings that follow from where the machine stands and what is in force: behind a bad block nobody
-# knows either.
+# Codes of findings that depend on position and modal state, which are unknown after an invalid block.
 _ENDS = frozenset({2, 17, 30})
 _NO_AXIS = re.compile(r"this lathe has no (?:axis )?([A-Z][0-9]?)\b")
 _ARC_IN_Y = re.compile(r": J: an arc in G18 uses I and K")
@@ -94,13 +93,13 @@ class Interpreter(LinePass[Line]):
         self._compensation = Compensation(self._state, self._log)
         self._flow = Flow(source, self._state)
         self._setup = setup
-        self._no_axis: set[str] = set()  # axes that this machine has not, as far as told
+        self._no_axis: set[str] = set()  # missing axes that were already reported
         if setup.begin is not None:
             self._go_on_from(setup.begin)
 
     @cached_property
     def source_blocks(self) -> int:
-        """Lines that hold more than a comment."""
+        """Number of lines that contain more than a comment."""
         return sum(
             bool(line.split(";", 1)[0].strip()) and HEADER.fullmatch(line) is None
             for line in self._source.lines
@@ -108,11 +107,11 @@ class Interpreter(LinePass[Line]):
 
     @property
     def modal(self) -> Modal:
-        """The state after the last block that was taken."""
+        """Modal state after the last generated block."""
         return self._state.modal
 
     def blocks(self, *, to_first_error: bool = False) -> Iterator[Block]:
-        """The elementary blocks, made as they are asked for. To be called once."""
+        """Return an iterator that generates the elementary blocks. Call this method once."""
         yield from self._approach
         for block in self._pass():
             if not self._stopped:
@@ -122,23 +121,24 @@ class Interpreter(LinePass[Line]):
             elif to_first_error:
                 return
 
-    # --- where a pass goes on: MDI and block search ---------------------------------------------------------
+    # --- start from a saved state: MDI and block search
+    # ------------------------------------------------------
 
     @property
     def checkpoint(self) -> Checkpoint:
-        """What the block inherits that would be executed next."""
+        """State that the next block inherits."""
         parts = Parts(self._state, self._corners, self._flow, self._taken)
         return checkpoint_of(parts, (self._setup, self._log, *self._flow.routines), self._made)
 
     @property
     def _transformed(self) -> Transformation | None:
-        """TRANSMIT or TRACYL, where one of them is on."""
+        """The active TRANSMIT or TRACYL, or None."""
         plane = self._state.transformation
         return plane if isinstance(plane, Transformation) else None
 
     @property
     def waits_for(self) -> str:
-        """Why no other pass can go on from here."""
+        """Reason why no other pass can continue from here; empty if one can."""
         if self._transformed is not None:
             where = Message(
                 "the line is part of a corner or a contour in {transformed}; start before the approach",
@@ -150,7 +150,7 @@ class Interpreter(LinePass[Line]):
         return "the previous block is part of an unfinished corner" if self._corners.holds else ""
 
     def _go_on_from(self, begin: Begin) -> None:
-        """Take up what the block of ``begin`` inherits."""
+        """Restore the state that the block of ``begin`` inherits."""
         kept = begin.checkpoint.kept
         if kept is not None:
             parts: Parts = kept.parts(self._setup, self._log)
@@ -186,7 +186,7 @@ class Interpreter(LinePass[Line]):
             yield from self._ended()
 
     def _line(self, line: Line) -> Iterator[Block]:
-        """The blocks of a line; an error is kept, and no block comes after it."""
+        """Yield the blocks of a line; no blocks follow an error."""
         for found in line.errors:
             self._refuse(found)
         if line.errors:
@@ -207,7 +207,7 @@ class Interpreter(LinePass[Line]):
         except ProgramError as problem:
             if (
                 problem.diagnostic.code != ENDLESS or not self._stopped
-            ):  # else it may come of the error before
+            ):  # otherwise, it may be a consequence of an earlier error
                 self._refuse(problem.diagnostic)
             ends = False
             if problem.diagnostic.code in {"recursion", ENDLESS}:
@@ -215,7 +215,7 @@ class Interpreter(LinePass[Line]):
         self._steer(line, ends=ends)
 
     def _check_control(self, line: Line) -> None:
-        """Raises ProgramError for what the control of the machine file has not."""
+        """Raise ProgramError for a function that the control of the machine file lacks."""
         control = self._setup.limits.control
         if found := lacking(control, line):
             name, column = found
@@ -228,7 +228,10 @@ class Interpreter(LinePass[Line]):
             raise line.refuse(column, "not-in-control", text, hint)
 
     def _call(self, line: Line, *, modal: bool = False) -> Iterator[Block]:
-        """A subprogram, or a cycle; MCALL keeps it for the moves that come. Raises ProgramError."""
+        """Yield the blocks of a cycle, or enter a subprogram.
+
+        MCALL only stores the call. Raises ProgramError.
+        """
         if line.modal_call and not modal:
             self._state.modal_call = line if line.call else None
             return
@@ -246,7 +249,10 @@ class Interpreter(LinePass[Line]):
             yield from self._through(block if place == line.number else replace(block, line=place), None)
 
     def _taken_cycle(self, line: Line) -> None:
-        """A cycle that changes nothing here; said once. Raises ProgramError where it asks for more."""
+        """Note once that a cycle has no effect here.
+
+        Raises ProgramError if its parameters are not supported.
+        """
         if line.call == SWIVELS and any(each.given for each in line.arguments or ()):
             text = "CYCLE800: this lathe has no swivel head."
             raise line.refuse(line.call_column, "not-in-subset", text, "Remove this text from the program.")
@@ -257,7 +263,7 @@ class Interpreter(LinePass[Line]):
             self._log.add(replace(found, severity=Severity.NOTE))
 
     def _pattern(self, line: Line) -> Iterator[Block]:
-        """HOLES1, HOLES2: the cycle of MCALL at each of its places. Raises ProgramError."""
+        """Yield the blocks of HOLES1 or HOLES2: the cycle of MCALL at each position. Raises ProgramError."""
         state, called = self._state, self._state.modal_call
         if called is None or called.call not in CYCLES or self._flow.knows(called.call):
             raise no_cycle(line)
@@ -267,18 +273,18 @@ class Interpreter(LinePass[Line]):
             yield from self._call(called, modal=True)
 
     def _modal_call(self, statement: Statement) -> Line | None:
-        """The line of MCALL that acts behind this block; None where there is none or nothing moves."""
+        """Return the line of MCALL that acts after this block; None without MCALL or without a motion."""
         return None if self._flow.by_modal_call or not statement.axes else self._state.modal_call
 
     def _steer(self, line: Line, *, ends: bool) -> None:
-        """M2, M17 and M30, behind everything else of their block."""
+        """Execute M2, M17 and M30 after all other words of their block."""
         if ends:
             self._flow.end_all()
         elif self._flow.called and any(word.name == "M" and word.value in _ENDS for word in line.words):
             self._flow.back()
 
     def _with_corners(self, statement: Statement) -> Iterator[Block]:
-        """The blocks of a statement, with the corners cut that are known by now."""
+        """Yield the blocks of a statement, with all corners that are complete."""
         number = statement.line.number
         place = self._flow.shown_line(number)
         if TRANSFORMATION in statement.g:
@@ -290,7 +296,7 @@ class Interpreter(LinePass[Line]):
             yield from self._through(block if place == number else replace(block, line=place), corner)
 
     def _through(self, block: Block, corner: Corner | None) -> Iterator[Block]:
-        """A block past the corners and the compensation of the plane that is in force."""
+        """Yield the results of a block after the corner and compensation stages of the active plane."""
         if self._transformed is not None:
             yield from self._transformed.take(block, corner)
             return
@@ -298,7 +304,7 @@ class Interpreter(LinePass[Line]):
             yield from self._compensation.take(cut)
 
     def _nothing_held(self) -> Iterator[Block]:
-        """What waits for a move that would make its corner; none follows."""
+        """Yield the buffered blocks, because no move follows for their corner."""
         if self._transformed is not None:
             yield from self._transformed.settle()
             return
@@ -306,7 +312,7 @@ class Interpreter(LinePass[Line]):
             yield from self._compensation.take(cut)
 
     def _blocks(self, statement: Statement) -> Iterator[Block]:
-        """What a block does, in the order in which it does it: states, tool, spindle, motion, stops."""
+        """Yield the blocks of a statement in the order of execution: modes, tool, spindle, motion, stops."""
         state = self._state
         _set_parameters(state, statement)
         check_y(state, statement)
@@ -339,7 +345,7 @@ class Interpreter(LinePass[Line]):
             yield from self._stops(statement)
 
     def _motion(self, statement: Statement) -> Iterator[Block]:
-        """The move of a block."""
+        """Yield the move of a statement."""
         state = self._state
         if TRANSFORMATION in statement.g:
             yield from transform(state, self._log, statement)
@@ -349,7 +355,7 @@ class Interpreter(LinePass[Line]):
             yield from self._of_slides(statement)
 
     def _of_slides(self, statement: Statement) -> Iterator[Block]:
-        """The move of a block on the lathe's own axes."""
+        """Yield the move of a statement with the lathe's axes, without a transformation."""
         state = self._state
         if frame_block(state, statement):
             return
@@ -387,7 +393,7 @@ class Interpreter(LinePass[Line]):
             yield arc(state, statement) if state.motion in ARCS else straight(state, statement)
 
     def _stops(self, statement: Statement) -> Iterator[Block]:
-        """M0, M1, and the end."""
+        """Yield the blocks of M0, M1 and the program end."""
         state, line = self._state, statement.line
         for code in (0, 1):
             if code in statement.m:
@@ -399,7 +405,7 @@ class Interpreter(LinePass[Line]):
             yield state.action(line.number, f"M{code}", ProgramEnd(reset=True))
 
     def _ended(self) -> Iterator[Block]:
-        """No line comes any more."""
+        """Yield the last blocks after the last line."""
         try:
             yield from self._nothing_held()
             if self._transformed is not None:
@@ -409,7 +415,7 @@ class Interpreter(LinePass[Line]):
             self._refuse(problem.diagnostic)
 
     def _refuse(self, found: Diagnostic) -> None:
-        """Keep the error; what may come of it says nothing new."""
+        """Log the error, unless it is only a consequence of an earlier error."""
         follows = found.code in _BY_STATE or found.code.startswith("comp-")
         if not (self._stopped and follows) and not self._axis_is_told(found):
             self._log.add(self._flow.located(found))
@@ -421,9 +427,9 @@ class Interpreter(LinePass[Line]):
             self._transformed.drop()
 
     def _axis_is_told(self, found: Diagnostic) -> bool:
-        """Whether it was said before that this machine has no such axis: a mill's program names it all along.
+        """Return whether a finding reports a missing axis that was already reported.
 
-        J is a word of arcs in Y.
+        A program for a mill names this axis in many lines. J belongs to arcs in Y.
         """
         match = _NO_AXIS.search(found.message)
         axis = "Y" if _ARC_IN_Y.search(found.message) else match[1] if match else ""
@@ -435,7 +441,7 @@ class Interpreter(LinePass[Line]):
 
     def _never_ends(self, line: Line) -> None:
         if self._stopped and self._left < 0:
-            return  # a loop whose condition has no value ends nowhere, which says nothing new
+            return  # A loop with an invalid condition does not end, and its error is already reported.
         text = Message(
             "the program exceeds the limit of {most_blocks} blocks or {most_lines} executed lines.",
             most_blocks=f"{MOST_BLOCKS:,}",
@@ -446,7 +452,7 @@ class Interpreter(LinePass[Line]):
 
 
 def _set_parameters(state: State, statement: Statement) -> None:
-    """R parameters and variables that the block sets. Raises ProgramError for a name that no DEF has told."""
+    """Set the R parameters and variables of a block. Raises ProgramError for an undefined name."""
     for word in statement.sets:
         name = _place(state, statement, word)
         if word.values is not None:
@@ -467,7 +473,7 @@ def _no_place(state: State, statement: Statement, word: Word, name: str) -> Prog
 
 
 def _fill(state: State, statement: Statement, word: Word, name: str) -> None:
-    """SET and REP: elements from this place on. Raises ProgramError where the array is too short."""
+    """Execute SET and REP from an element on. Raises ProgramError if the array is too short."""
     letters = "R" if word.name == "R0" else word.name
     if name not in state.variables.scope.numbers and letters != "R":
         raise _no_place(state, statement, word, name)
@@ -483,7 +489,7 @@ def _fill(state: State, statement: Statement, word: Word, name: str) -> None:
 
 
 def _place(state: State, statement: Statement, word: Word) -> str:
-    """What the word sets: R7, LENGTH, or an element of an array."""
+    """Return the name that the word assigns: R7, LENGTH, or an element of an array."""
     if word.element is None:
         return word.name
     refuse = partial(statement.refuse, word)

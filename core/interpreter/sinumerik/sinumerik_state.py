@@ -1,4 +1,4 @@
-"""What is in force between two blocks of a SINUMERIK program, and where the machine stands."""
+"""State between two blocks of a SINUMERIK program: modal functions and positions."""
 
 from __future__ import annotations
 
@@ -24,34 +24,34 @@ from core.message import Message
 
 
 class PlaneInForce(Protocol):
-    """The plane of a transformation; see ``transformed_plane``."""
+    """Plane of an active transformation; see ``transformed_plane``."""
 
     @property
     def name(self) -> str:
-        """The word that has begun it."""
+        """Word that started the transformation."""
         ...
 
     @property
     def along_z(self) -> bool:
-        """Whether the depth is Z, along which drilling cycles drill."""
+        """Whether the depth is along Z, so that drilling cycles are allowed."""
         ...
 
     @property
     def plane(self) -> int:
-        """G17 or G19, in which its arcs and its compensation lie."""
+        """Plane of its arcs and compensation: 17 or 19, for G17 or G19."""
         ...
 
     @property
     def depth(self) -> float:
-        """Where the tool stands square to the plane, as the program counts: mm."""
+        """Position of the tool perpendicular to the plane in the program frame, in mm."""
         ...
 
     def down_to(self, statement: Statement, depth: float, feed: float | None, text: str) -> Block:
-        """A move square to the plane to a depth as the program counts it, in mm; feed None is a rapid."""
+        """Return a move to a depth in the program frame, in mm; without a feed, it is a rapid."""
         ...
 
     def over(self, statement: Statement, x: float, y: float, text: str) -> Block:
-        """A rapid to a place of the plane, mm."""
+        """Return a rapid to a point of the plane, in mm."""
         ...
 
 
@@ -60,7 +60,7 @@ NO_FRAME = ProgrammedFrame()
 
 
 class Motion(IntEnum):
-    """How an axis word moves: the G code of group 1, and two that have a name."""
+    """Kind of motion of the axis words: the number of the G code, or a value for CIP and CT."""
 
     RAPID = 0
     LINE = 1
@@ -76,7 +76,7 @@ class Motion(IntEnum):
 
 
 def motion_name(motion: int) -> str:
-    """What a program writes for it."""
+    """Return the word of a motion in a program, such as G1 or CIP."""
     return {Motion.THROUGH: "CIP", Motion.TANGENT: "CT"}.get(Motion(motion), f"G{int(motion)}")
 
 
@@ -87,10 +87,10 @@ TAPS = frozenset({Motion.TAP, Motion.TAP_OUT})
 
 
 class State:
-    """Position in machine coordinates: mm, X a radius, C in degrees counting on over its turns.
+    """Machine position in mm and degrees, with X as a radius and continuous C, and modal functions.
 
-    ``modal`` is what blocks carry; ``motion`` is that of group 1 and ``plane`` the G code of the plane;
-    ``programmed`` is the frame of TRANS, ROT, SCALE and MIRROR, ``edge`` the row of T and D.
+    ``modal`` is stored in the blocks. ``motion`` is the function of group 1, ``plane`` is the G code of the
+    plane, ``programmed`` is the frame of TRANS, ROT, SCALE and MIRROR, and ``edge`` is the row of T and D.
     """
 
     def __init__(self, setup: Setup, log: Log) -> None:
@@ -102,7 +102,7 @@ class State:
         self.settable = NO_OFFSET
         self.programmed = NO_FRAME
         self.edge = ToolOffset()
-        self.moved_by_tool: set[str] = set()  # slides whose place has changed with T or D since they moved
+        self.moved_by_tool: set[str] = set()  # axes whose position changed with T or D since their last move
         self.distance_is_radius = False  # DIAM90
         self.feed_in_inches = False  # G700
         self.override = 1.0  # OVR
@@ -110,26 +110,28 @@ class State:
         self.rounding = 0.0  # RNDM, mm
         self.corner_feed: float | None = None  # FRCM, as modal.feed
         self.pole = (0.0, 0.0)  # X, Z of G110 to G112, in the program's frame
-        self.polar: tuple[float, float] | None = None  # RP in mm and AP in degrees, as programmed last
-        self.direction: tuple[float, float] | None = None  # of the path at its end, X and Z
-        self.lowest, self.highest = 0.0, setup.limits.max_rpm  # G25 and G26 beside the spindle's own
+        self.polar: tuple[float, float] | None = None  # last programmed RP in mm and AP in degrees
+        self.direction: tuple[float, float] | None = None  # direction of the path at its end, X and Z
+        # limits of G25 and G26, within the limit of the spindle
+        self.lowest, self.highest = 0.0, setup.limits.max_rpm
         self.area: dict[tuple[str, bool], float] = {}  # G25 (False) and G26 (True), by axis: mm
         self.area_on = True  # WALIMON
-        self.rounded = True  # G450; G451 goes by the intersection
-        self.round_ends = False  # KONT; NORM goes straight
-        self.threads: tuple[Block, ...] = ()  # of the chain of thread blocks under way
+        self.rounded = True  # G450; G451 uses the intersection
+        self.round_ends = False  # KONT; NORM approaches in a straight line
+        self.threads: tuple[Block, ...] = ()  # blocks of the active thread chain
         self.tap_lead = 0.0  # K of G331, mm
         self.lead_change, self.end_lead, self.start_turns = 0.0, 0.0, 0.0  # of G34, G35 and SF
-        self.names: list[str] = []  # of tools that the table does not have, by their order
-        self.behind_stop = self.place_assumed = False  # a place was read behind a stop, where a hand may move
-        self.told: set[str] = set()  # functions without effect that have been told
+        self.names: list[str] = []  # names of tools that are not in the table, in order of use
+        # a position was read after a program stop, at which the operator may move the axes
+        self.behind_stop = self.place_assumed = False
+        self.told: set[str] = set()  # functions whose notes and warnings were already logged
         self.variables = Variables()
         self.variables.r.update((f"R{number}", value) for number, value in setup.r.items())
         self.modal_call: Line | None = None  # of MCALL
         self.transformation: PlaneInForce | None = None  # TRANSMIT or TRACYL
-        self.master = 1  # SETMS: 2 is the live tool, whose S, M3 and G95 are meant then
+        self.master = 1  # SETMS: with 2, S, M3 and G95 apply to the live tool
         self.live_speed = 0.0  # S of the live tool, rpm
-        self.live_rpm = 0.0  # by which it turns, signed
+        self.live_rpm = 0.0  # signed speed of the live tool
         wraps = setup.limits.c_enabled and setup.limits.c_modulo
         slide = setup.limits.c_enabled and setup.limits.c_linear
         self.modal = Modal(
@@ -137,12 +139,12 @@ class State:
         )
 
     def adopt(self, modal: Modal) -> None:
-        """Make ``modal`` the state in force; where it says nothing new, blocks go on sharing the old one."""
+        """Set the modal state; if it is equal to the present one, blocks continue to share that object."""
         if modal != self.modal:
             self.modal = modal
 
     def derive_offsets(self) -> None:
-        """The offsets in force: of the edge, settable and programmed ones."""
+        """Set the offsets in the modal state from the edge, the settable offset and the frame."""
         one, other, edge = self.settable, self.programmed, self.edge
         self.adopt(
             self.modal._replace(
@@ -152,22 +154,22 @@ class State:
         )  # fmt: skip
 
     def length(self, statement: Statement, word: Word) -> float:
-        """A length in mm: as written under G71, inches under G70."""
+        """Return a length in mm: as written under G71, converted from inches under G70."""
         return self.number(statement, word) * (1.0 if self.modal.metric else MM_PER_INCH)
 
     def third(self, statement: Statement, word: Word) -> float:
-        """The value of a word of the third axis: degrees, or of a slide mm."""
+        """Return the value of a word of the third axis: degrees, or mm for a linear axis."""
         return self.length(statement, word) if self.modal.linear_c else self.number(statement, word)
 
     def number(self, statement: Statement, word: Word) -> float:
-        """The number of a word, or what its formula comes to. Raises ProgramError where that has no value."""
+        """Return the number or the formula value of a word. Raises ProgramError without a value."""
         if word.value is not None:
             return word.value
         assert word.formula is not None
         return self.worth(word.formula, lambda code, text, hint: statement.refuse(word, code, text, hint))
 
     def worth(self, formula: Formula, refuse: Refuse) -> float:
-        """What a formula comes to. ``refuse`` makes the error to raise of its code, text and hint."""
+        """Return the value of a formula. ``refuse`` creates the error from a code, a text and a hint."""
 
         def parameter(asked: Parameter) -> float:
             if asked.letters.startswith("$"):
@@ -191,13 +193,16 @@ class State:
         return worth(formula, parameter, no_value)
 
     def _tell_unset(self, found: Diagnostic) -> None:
-        """Say once of each R parameter that it counts as 0."""
-        if found.hint not in self.told:  # it names the parameter, whatever line asks for it
+        """Warn once for each R parameter without a value, which is treated as 0."""
+        if found.hint not in self.told:  # the hint identifies the parameter, independent of the line
             self.told.add(found.hint)
             self.log.add(replace(found, severity=Severity.WARNING))
 
     def rpm_at(self, x: float) -> float:
-        """Commanded speed with the tip at radius ``x`` of the program; signed, 0 with the spindle stopped."""
+        """Return the commanded signed speed in rpm with the tip at radius ``x`` of the program.
+
+        The speed is 0 if the spindle is stopped.
+        """
         modal = self.modal
         if not modal.spindle:
             return 0.0
@@ -208,9 +213,9 @@ class State:
         return modal.spindle * max(min(modal.rpm, most), self.lowest if modal.rpm else 0.0)
 
     def position(self, axis: str) -> float | None:
-        """Where an axis stands as the program counts it, X as DIAMON says, C 0 to 360 on a modulo axis.
+        """Return the position of an axis in the program frame: X by DIAMON, C from 0 to 360 if modulo.
 
-        None where no number would be right: in TRANSMIT and TRACYL, under G70, and for no axis of this lathe.
+        Returns None if the position is not known: in TRANSMIT and TRACYL, under G70, and for other axes.
         """
         modal = self.modal
         if self.transformation is not None or not modal.metric:
@@ -223,17 +228,17 @@ class State:
 
     @property
     def rpm(self) -> float:
-        """Commanded spindle speed where the tip stands; signed."""
+        """Commanded signed spindle speed at the present position, in rpm."""
         return self.rpm_at(self.x - self.modal.offset_x)
 
     @property
     def css(self) -> float | None:
-        """Surface speed by which the spindle turns, mm/s; None while it stands or has another rule."""
+        """Active surface speed of the spindle in mm/s; None if the spindle is stopped or not under G96."""
         modal = self.modal
         return modal.surface_speed if modal.css and modal.spindle and modal.surface_speed else None
 
     def action(self, line: int, text: str, action: Action) -> Block:
-        """A block in which no axis moves."""
+        """Return a block without motion."""
         self.behind_stop = self.behind_stop or isinstance(action, ProgramStop)
         modal = self.modal
         x, z, c = self.x - modal.offset_x, self.z - modal.offset_z, self.c - modal.offset_c
@@ -245,7 +250,7 @@ class State:
 
 
 def positive(statement: Statement, word: Word, value: float, what: str) -> float:
-    """A number that must be over 0. Raises ProgramError."""
+    """Return a number that must be above 0. Raises ProgramError otherwise."""
     if value > 0.0:
         return value
     raise statement.refuse(

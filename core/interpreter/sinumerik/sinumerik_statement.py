@@ -1,4 +1,4 @@
-"""Words of a block made ready: sorted, and refused where they may not stand together."""
+"""Statements: the words of a block, sorted by function and checked for conflicts."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ _ENDS = frozenset({2, 17, 30})
 
 @dataclass(slots=True)
 class Statement:
-    """One block. ``g`` are its G functions by group, ``words`` the others by name, ``sets`` its R parameters.
+    """One block. ``g`` are its G functions by group, ``words`` other words by name, ``sets`` the assignments.
 
-    ``keys`` are those that a name says, by their name.
+    ``keys`` are the functions with a name, by their name.
     """
 
     line: Line
@@ -30,49 +30,49 @@ class Statement:
     words: dict[str, Word] = field(default_factory=dict)
     sets: list[Word] = field(default_factory=list)
     keys: dict[str, Word] = field(default_factory=dict)
-    live: list[Word] = field(default_factory=list)  # of spindle 2, the live tool
+    live: list[Word] = field(default_factory=list)  # words of spindle 2, the live tool
 
     def code(self, group: str) -> int | None:
-        """The G code of this group that the block holds; None without one, or where a name says it."""
+        """Return the G code of this group, or None if the block has none or has a named function."""
         word = self.g.get(group)
         return None if word is None or word.value is None else int(word.value)
 
     def key(self, group: str) -> str:
-        """The name that says this group; empty without one."""
+        """Return the named function of this group; empty without one."""
         word = self.g.get(group)
         return "" if word is None or word.value is not None else word.name
 
     @property
     def axes(self) -> list[str]:
-        """The axes that have a word in it."""
+        """Names of the axes with a word in the block."""
         return [name for name in known.AXES if name in self.words]
 
     @property
     def frame_key(self) -> Word | None:
-        """The word TRANS, ROT, SCALE, MIRROR of the block, or what adds to them; None without one."""
+        """The word TRANS, ROT, SCALE or MIRROR of the block, or its A form; None without one."""
         return next((word for name, word in self.keys.items() if name in known.FRAMES), None)
 
     @property
     def moves(self) -> bool:
-        """Whether the block names a place."""
+        """Whether the block has a position word."""
         return bool(known.PLACES & self.words.keys())
 
     @property
     def corner(self) -> Word | None:
-        """The word CHF, CHR or RND of the block; None without one."""
+        """The word CHF, CHR or RND of the block, or None."""
         return next((self.words[name] for name in sorted(known.CORNERS) if name in self.words), None)
 
     @property
     def ends(self) -> bool:
-        """Whether the block holds M2, M17 or M30."""
+        """Whether the block has M2, M17 or M30."""
         return bool(_ENDS & self.m.keys())
 
     def refuse(
         self, word: Word | None, code: int | str, text: str, hint: str, /, **values: object
     ) -> ProgramError:
-        """An error at this word, to be raised: an alarm of the control by its number, or one of ours.
+        """Return the error to raise at this word, with an alarm number of the control or a TurnDesk code.
 
-        ``values`` fill the holes of ``text`` and ``hint``.
+        ``values`` are the values for the placeholders of ``text`` and ``hint``.
         """
         text, hint = worded(text, values), worded(hint, values)
         line, column = self.line, word.column if word else 1
@@ -82,22 +82,22 @@ class Statement:
     def check(
         self, ok: object, word: Word | None, code: int | str, text: str, hint: str, /, **values: object
     ) -> None:
-        """Raise the error of ``refuse`` unless a condition holds."""
+        """Raise the error of ``refuse`` unless the condition ``ok`` is true."""
         if not ok:
             raise self.refuse(word, code, text, hint, **values)
 
     def warning(self, word: Word | None, code: str, text: str, hint: str) -> Diagnostic:
-        """The same that is no error."""
+        """Return the diagnostic of ``refuse`` as a warning."""
         return replace(self.refuse(word, code, text, hint).diagnostic, severity=Severity.WARNING)
 
 
 def _axis(word: Word) -> str:
-    """The axis of a word as it is written: Q1 of Q1=30."""
+    """Return the axis of a word as written, such as Q1 for Q1=30."""
     return word.text.partition("=")[0] if "=" in word.text else word.text[:1]
 
 
 def statement_of(line: Line) -> Statement:
-    """The block made ready. Raises ProgramError for what may not stand in one block."""
+    """Return the statement of a block. Raises ProgramError if its words exclude each other."""
     statement = Statement(line)
     for word in line.words:
         _sort(statement, word)
@@ -194,7 +194,7 @@ def _check_m(statement: Statement) -> None:
 
 
 def _check_alone(statement: Statement) -> None:
-    """G4, TRANS and ATRANS have a block of their own."""
+    """Check that G4, TRANS and the other frame words are in a separate block."""
     dwell, key = statement.g.get(table.DWELL), statement.frame_key
     if dwell is not None:
         others = (

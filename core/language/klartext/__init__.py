@@ -1,4 +1,4 @@
-"""The Klartext dialect as text: lines, their words, and what is wrong with them."""
+"""Reader of the Klartext dialect: lines, words and syntax errors."""
 
 from core.language.klartext.klartext_line import read_line
 

@@ -1,4 +1,4 @@
-"""A line of Klartext written as the control writes it: signs, order of words, one blank between them."""
+"""Klartext lines in the notation of the control: signs, order of words and single blanks."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ _FEEDS = {"max": "FMAX", "auto": "F AUTO"}
 
 
 def written(line: nodes.KlartextLine) -> str:
-    """The block of a line without its number and comment; empty where there is none."""
+    """Return the block of a line without its number and comment; empty if the line has no block."""
     return "" if line.node is None else _block(line.node) or line.code
 
 
@@ -103,7 +103,7 @@ def _value(value: nodes.Value, *, plus: bool = True) -> str:
 
 
 def name_text(name: int | str) -> str:
-    """The number of a label or a tool, or its name in quotes."""
+    """Return the number of a label or tool, or its name in quotation marks."""
     return f'"{name}"' if isinstance(name, str) else str(name)
 
 

@@ -1,6 +1,7 @@
-"""CYCL DEF and CYCL CALL: cycles from 200 on with Q parameters, older ones line by line; what they work on.
+"""Readers of CYCL DEF, CYCL CALL, CONTOUR DEF and PATTERN DEF.
 
-That are the contours of CONTOUR DEF and the machining points of PATTERN DEF.
+Cycles from 200 on have Q parameters. Older cycles have numbered lines. Contours and machining points are the
+data that cycles use.
 """
 
 from __future__ import annotations
@@ -33,9 +34,9 @@ from core.message import Message
 _NUMBER = re.compile(r"([0-9]{1,3})(?:\s*\.([0-9]{1,2}))?(?![0-9.])")
 _TEXT_VALUE = re.compile(r"QS\s*[0-9]+\s*=")
 _Q_VALUE = re.compile(r"Q\s*[0-9]+\s*=")
-_NEW = 200  # cycles from here on are told by Q parameters,
-_OF_CONTOURS = frozenset(range(20, 30)) | {39}  # and those of contours
-_BY_TEXT = frozenset({12, 14})  # their lines name a program, labels
+_NEW = 200  # cycles from this number on have Q parameters
+_OF_CONTOURS = frozenset(range(20, 30)) | {39}  # contour cycles, which also have Q parameters
+_BY_TEXT = frozenset({12, 14})  # cycles whose lines name a program or labels
 _PRESET, _PRESET_NUMBER = 247, 339
 PREDEFINED = "PREDEF"
 """What a parameter of a cycle holds that GLOBAL DEF has told."""
@@ -43,7 +44,10 @@ _DATUM, _MIRROR, _ROTATION, _SCALE = 7, 8, 10, 11
 
 
 def cycle(cursor: Cursor, column: int) -> Node:
-    """Behind ``CYCL DEF``. Raises ProgramError for what is none; which are run is said when they are."""
+    """Read the block after ``CYCL DEF``. Raises ProgramError for a syntax error.
+
+    Whether the control supports the cycle is checked when the cycle is called.
+    """
     match = cursor.take(_NUMBER)
     if match is None:
         raise cursor.expected("CYCL DEF needs a cycle number")
@@ -63,7 +67,7 @@ def cycle(cursor: Cursor, column: int) -> Node:
 
 
 def call(cursor: Cursor, column: int) -> CycleCall:
-    """Behind ``CYCL CALL``."""
+    """Read the block after ``CYCL CALL``. Raises ProgramError for a syntax error."""
     if cursor.keyword("PAT"):
         speed = feed(cursor)
         return CycleCall((), speed, codes_to_the_end(cursor), column, pattern=True)
@@ -77,7 +81,7 @@ _SELECTED = re.compile(r"#")
 
 
 def global_definition(cursor: Cursor, column: int) -> GlobalDef:
-    """Behind ``GLOBAL DEF``: its number, which groups the parameters for the operator, and they."""
+    """Read the block after ``GLOBAL DEF``: a group number without effect, and the parameters."""
     match = cursor.take(_NUMBER)
     if match is None:
         raise cursor.expected("GLOBAL DEF needs a number")
@@ -85,7 +89,7 @@ def global_definition(cursor: Cursor, column: int) -> GlobalDef:
 
 
 def preset(cursor: Cursor, column: int) -> Cycle:
-    """``PRESET SELECT #3``, which is cycle 247. Raises ProgramError for what keeps transformations."""
+    """Read ``PRESET SELECT #3``, which is cycle 247. Raises ProgramError for other options."""
     if cursor.take(_SELECTED) is None:
         raise unsupported(cursor.line, column, "PRESET SELECT with a name")
     at, row = cursor.column, cursor.value("#")
@@ -97,7 +101,7 @@ def preset(cursor: Cursor, column: int) -> Cycle:
 
 
 def _values(cursor: Cursor, of: str) -> tuple[CycleValue, ...]:
-    """The Q parameters behind the cycle's name, which says nothing."""
+    """Read the Q parameters that follow the cycle name. The name itself has no effect."""
     if text := _TEXT_VALUE.search(cursor.upper, cursor.at):
         raise unsupported(
             cursor.line, text.start() + 1, Message("{total} with a string parameter (QS)", total=of)
@@ -145,7 +149,7 @@ _SCL = re.compile(r"SCL(?![A-Z])")
 
 
 def _transform(cursor: Cursor, number: int, column: int) -> Transform:
-    """``CYCL DEF 8.1 X Y``, ``10.1 ROT+35``, ``11.1 SCL 0.99``."""
+    """Read a line of the cycles 8, 10 and 11, such as ``8.1 X Y`` or ``10.1 ROT+35``."""
     if number == _MIRROR:
         return Transform("MIRROR", axes=mirrored_axes(cursor), column=column)
     if number == _ROTATION:
@@ -154,7 +158,7 @@ def _transform(cursor: Cursor, number: int, column: int) -> Transform:
 
 
 def mirrored_axes(cursor: Cursor) -> str:
-    """Letters of axes to the end of the line; none ends the mirroring."""
+    """Read the letters of mirrored axes to the end of the line. An empty result cancels mirroring."""
     axes = ""
     while match := cursor.take(_LETTERS):
         axes += match.group()
@@ -163,7 +167,7 @@ def mirrored_axes(cursor: Cursor) -> str:
 
 
 def rotation(cursor: Cursor, column: int) -> Transform:
-    """``ROT+35`` or ``IROT+5``."""
+    """Read ``ROT+35`` or ``IROT+5``. Raises ProgramError for a syntax error."""
     match = cursor.take(_ROT)
     if match is None:
         raise cursor.expected("A rotation needs ROT and an angle")
@@ -173,7 +177,7 @@ def rotation(cursor: Cursor, column: int) -> Transform:
 
 
 def scale(cursor: Cursor, column: int) -> Transform:
-    """``SCL0.95``."""
+    """Read ``SCL0.95``. Raises ProgramError for a syntax error."""
     if cursor.take(_SCL) is None:
         raise cursor.expected("Scaling needs SCL and its factor")
     made = Transform("SCALE", cursor.value("SCL"), column=column)
@@ -187,7 +191,7 @@ _TEXT = re.compile(r"[^\s+\-0-9]+|[+-](?!\s*[0-9.Q])")
 
 
 def _line(cursor: Cursor, number: int, part: int, column: int) -> CycleLine:
-    """A line of a cycle under 200: its words say little, its numbers and their order say what is meant."""
+    """Read one line of a cycle below 200, in which the order of the numbers determines their meaning."""
     words: list[AxisWord] = []
     text: list[str] = []
     speed: Feed | None = None
@@ -229,7 +233,7 @@ _LABEL = re.compile(r'/?\s*(?:([0-9]+)|"([^"]*)")\s*')
 
 
 def contour_labels(text: str) -> tuple[int | str, ...]:
-    """Labels in a line of cycle 14, behind whatever its name is in the language of the control."""
+    """Return the labels in a line of cycle 14, without the text that precedes them."""
     first = re.search(r'[0-9"]', text)
     return tuple(
         int(match.group(1)) if match.group(1) else match.group(2)
@@ -243,7 +247,10 @@ _QC = re.compile(r"QC\s*[0-9]")
 
 
 def contour_definition(cursor: Cursor, column: int) -> ContourDef:
-    """Behind ``CONTOUR DEF``: ``P1 = LBL 1 I2 = "ISLE.H"``; one depth for all is what is milled."""
+    """Read the block after ``CONTOUR DEF``, such as ``P1 = LBL 1 I2 = "ISLE.H"``.
+
+    Raises ProgramError for a syntax error and for contours with separate depths.
+    """
     parts: list[ContourPart] = []
     while not cursor.done:
         match = cursor.take(_CONTOUR)
@@ -263,7 +270,7 @@ def contour_definition(cursor: Cursor, column: int) -> ContourDef:
 
 
 def _where(cursor: Cursor) -> ContourPart:
-    """A subprogram, or a program of its own."""
+    """Read the source of a contour: a subprogram label or a separate program."""
     if cursor.keyword("LBL"):
         return ContourPart(cursor.name("LBL", q_parameters.MOST_LABEL), None)
     if file := cursor.quoted():
@@ -289,7 +296,7 @@ NEEDS = {
 
 
 def pattern(cursor: Cursor, column: int) -> PatternDef:
-    """Behind ``PATTERN DEF``. Raises ProgramError for what is missing, unknown or doubled."""
+    """Read the block after ``PATTERN DEF``. Raises ProgramError if a word is missing, unknown or repeated."""
     parts = []
     while not cursor.done:
         at, match = cursor.column, cursor.take(_KIND)

@@ -1,4 +1,4 @@
-"""The parts of a line of Klartext by kind; what cannot be read is marked by the reader that runs it."""
+"""Syntax coloring of Klartext lines. The reader of the interpreter marks the errors."""
 
 from __future__ import annotations
 
@@ -36,10 +36,10 @@ BLOCK_GOES_ON, COMMENT_GOES_ON = 1, 2
 
 
 def spans(text: str, before: int = PLAIN) -> tuple[list[Span], int]:
-    """The coloured parts of a line, a fault last so that it is seen, and the state for the next line.
+    """Return the colored spans of a line, with an error last, and the state for the next line.
 
-    A block of several lines (~) is one block: a part of it is no fault because it is none of its own. What is
-    wrong in it is told where the program is checked.
+    Lines that end with ~ belong to one block, so a single line of this block is not marked as an error.
+    Errors in such a block are reported when the program is checked.
     """
     goes_on = text.rstrip().endswith(CONTINUED)
     end = comment_start(text)

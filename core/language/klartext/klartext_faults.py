@@ -1,6 +1,6 @@
-"""Errors of Klartext, and the codes that are refused by name, with what to use instead.
+"""Klartext errors, and the codes that are rejected by name with an alternative.
 
-``code`` is the name of the control's message where one is known.
+``code`` is the message name of the original control if it is known.
 """
 
 from __future__ import annotations
@@ -46,13 +46,13 @@ NO_TABLE = "Datum table missing"
 
 
 def fault(line: int, column: int, code: str, message: str, hint: str = "") -> ProgramError:
-    """The error to raise; the message begins with the code, which is what the control would show."""
+    """Return the error to raise. Its message starts with the code, which is the message of the control."""
     text = message if message.startswith(code) else Message("{code}: {message}", code=code, message=message)
     return program_error(line, column, code, text, hint)
 
 
 class MissingValueError(ProgramError):
-    """A parameter that nothing has given a value: its kind (Q, QL, QR) and number."""
+    """Read access to a parameter without a value. ``parameter`` is its kind (Q, QL or QR) and number."""
 
     def __init__(self, line: int, column: int, parameter: tuple[str, int]) -> None:
         name = f"{parameter[0]}{parameter[1]}"
@@ -68,19 +68,19 @@ class MissingValueError(ProgramError):
 
 
 def syntax(line: int, column: int, message: str, hint: str = "") -> ProgramError:
-    """What cannot be read, or is missing, by line and column."""
+    """Return the error for text that is missing or cannot be read."""
     return fault(line, column, SYNTAX, message, hint)
 
 
 def unsupported(line: int, column: int, what: str, instead: str = "") -> ProgramError:
-    """What the control may know and this one does not, by name."""
+    """Return the error for a function of the original control that TurnDesk does not support."""
     hint = "Use L moves and PLANE instead, or run the program on a control that supports this function."
     text = Message("{what} is not supported on this control.", what=what)
     return fault(line, column, NOT_SUPPORTED, text, instead or hint)
 
 
 class Refused(NamedTuple):
-    """Codes that are told together, once for a program: their name, and what does the same."""
+    """Unsupported codes that are reported together, once per program, with their name and an alternative."""
 
     name: str
     instead: str

@@ -1,4 +1,4 @@
-"""One line of Klartext: number, skip sign, block and comment."""
+"""Reader of one Klartext line: number, skip character, block and comment."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from core.language.klartext.line_cursor import Cursor
 from core.language.line_reading import comment_start
 from core.message import Message
 
-# --- L moves of plain numbers: nearly all lines of a long program, read by two patterns
+# --- L moves with plain numbers: nearly all lines of a long program, read by two patterns
 
 
 _NUMBER = r"[+-]?[0-9]{1,6}(?:\.[0-9]{1,9})?"
@@ -34,7 +34,7 @@ _WORD = re.compile(rf"(I?)([XYZABC])({_NUMBER})")
 
 
 def read_plain(number: int, text: str) -> KlartextLine | None:
-    """The move of a line that holds nothing else; None for every other line."""
+    """Return the line if it contains only an L move with plain numbers; None for any other line."""
     match = _MOVE.fullmatch(text)
     if match is None:
         return None
@@ -68,13 +68,14 @@ _FN = re.compile(r"FN\s*([0-9]+)\s*")
 
 
 def _any_of(names: Iterable[str], end: str) -> re.Pattern[str]:
-    """Return a pattern of the first of these names, with any blanks between its words, before ``end``."""
+    """Return a pattern for the first of these names, with any blanks between its words, before ``end``."""
     return re.compile("|".join(r"\s+".join(name.split()) + end for name in names))
 
 
 _PATHS = _any_of(sorted(path_block.FORMS, key=len, reverse=True), r"(?![A-Z0-9])")
 
-# Blocks of the control that are not read here: the longest name first where one begins another.
+# Blocks of the original control that are not supported. A longer name precedes a shorter name with the same
+# start.
 _OUTSIDE = (
     *("TCH PROBE", "POLARKIN", "LT", "FPOL", "FSELECT", "FLT", "FCT", "FL", "FC"),
     *("SPL", "WHILE", "IF", "STRAIGHT", "SQL", "TABDATA", "CALL SELECTED CYCLE"),
@@ -86,12 +87,12 @@ _TOGETHER = {
     **dict.fromkeys(("FPOL", "FSELECT", "FLT", "FCT", "FL", "FC"), _FREE),
     **dict.fromkeys(("SEL CONTOUR", "DECLARE CONTOUR", "QC"), CONTOUR_FORMULA),
     **dict.fromkeys(("DECLARE STRING", "QS"), STRING),
-}  # told as one
+}  # reported together
 _OUTSIDE_STARTS = _any_of(_OUTSIDE, r"(?![A-Z])")
 
 
 def read_line(number: int, text: str) -> KlartextLine:
-    """What line ``number`` says. Never raises: an error is in the line."""
+    """Read line ``number``. This function never raises an exception; the returned line contains any error."""
     if (plain := read_plain(number, text)) is not None:
         return plain
     if len(text) > LONGEST_LINE:
@@ -105,7 +106,7 @@ def read_line(number: int, text: str) -> KlartextLine:
     end = comment_start(text)
     code, comment = text[:end], text[end + 1 :].strip() if end < len(text) else None
     head = _HEAD.match(code)
-    assert head is not None  # every part of it may be missing
+    assert head is not None  # The pattern always matches, because all its parts are optional.
     block, skip = head.group(2), bool(head.group(1) or head.group(3))
     number_of_block = int(block) if block is not None and len(block) <= 9 else None
     code = code.rstrip().removesuffix(CONTINUED).rstrip()
@@ -114,7 +115,7 @@ def read_line(number: int, text: str) -> KlartextLine:
         node = _node(Cursor(number, code, head.end()))
     except ProgramError as problem:
         return KlartextLine(number, None, number_of_block, skip, comment, problem.diagnostic, shown)
-    # A path is written anew from its words; every other block is shown as it was written.
+    # A path function is formatted again from its words. Any other block is shown as it was written.
     return KlartextLine(
         number, node, number_of_block, skip, comment, code="" if isinstance(node, Move) else shown
     )
@@ -179,7 +180,7 @@ _KEYWORDS: dict[str, Callable[[Cursor, int], Node]] = {
 }
 
 
-_SYNONYMS = {"CYCLE DEF": "CYCL DEF", "CYCLE CALL": "CYCL CALL"}  # as some posts write them
+_SYNONYMS = {"CYCLE DEF": "CYCL DEF", "CYCLE CALL": "CYCL CALL"}  # variants that some postprocessors write
 _STARTS = _any_of((*_SYNONYMS, *_KEYWORDS), r"(?![A-Z])")
 
 
@@ -197,7 +198,7 @@ def _by_letter(cursor: Cursor) -> Node:
 
 
 def _no_block(cursor: Cursor) -> ProgramError:
-    """What begins no block that is read here, by its name where the control knows it."""
+    """Return the error for a text that cannot begin a block, with the function's name if it is known."""
     column = cursor.column
     if match := _OUTSIDE_STARTS.match(cursor.upper, cursor.at):
         name = " ".join(match.group().split())

@@ -1,4 +1,4 @@
-"""What a line of Klartext holds, once read. Numbers as written: the program's unit, F as programmed."""
+"""Parsed Klartext blocks. Numbers are as written, in the program's unit; F is as programmed."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from core.language.formulas import Formula, Number, Operation, Parameter
 
 
 class Value(NamedTuple):
-    """A number, or the content of a parameter Q, QL or QR. ``column`` is where it stands, from 1."""
+    """A number, or a reference to a parameter Q, QL or QR. ``column`` is its position, from 1."""
 
     number: float
     q: int | None = None
@@ -20,7 +20,7 @@ class Value(NamedTuple):
 
     @property
     def formula(self) -> Formula:
-        """The same as a formula."""
+        """The value as a formula."""
         if self.q is None:
             return Number(self.number)
         made = Parameter(self.kind, self.q, self.column)
@@ -28,7 +28,7 @@ class Value(NamedTuple):
 
 
 class AxisWord(NamedTuple):
-    """``X+10`` or ``IX+10``."""
+    """An axis word such as ``X+10`` or ``IX+10``."""
 
     axis: str
     value: Value
@@ -37,7 +37,10 @@ class AxisWord(NamedTuple):
 
 
 class Feed(NamedTuple):
-    """``F200``, ``FQ5``, ``FMAX`` or ``F AUTO``; ``FU0.1`` and ``FZ0.05`` count a revolution or a tooth."""
+    """A feed such as ``F200``, ``FQ5``, ``FMAX`` or ``F AUTO``.
+
+    ``FU0.1`` is a feed per revolution, and ``FZ0.05`` is a feed per tooth.
+    """
 
     kind: str  # "value", "max" or "auto"
     value: Value | None = None
@@ -46,14 +49,14 @@ class Feed(NamedTuple):
 
 
 class Retract(NamedTuple):
-    """``MB50`` or ``MB MAX`` (None)."""
+    """A retract distance ``MB50``, or ``MB MAX`` with the distance None."""
 
     distance: Value | None = None
     column: int = 0
 
 
 class MCode(NamedTuple):
-    """``M3``; M128 may carry a feed, M103 its factor, M140 carries its way and may carry a feed."""
+    """An M function such as ``M3``. M128 can have a feed, M103 a factor, and M140 a retract and a feed."""
 
     number: int
     column: int = 0
@@ -63,7 +66,7 @@ class MCode(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Begin:
-    """``BEGIN PGM name MM``."""
+    """The block ``BEGIN PGM name MM``."""
 
     name: str
     inch: bool
@@ -71,7 +74,7 @@ class Begin:
 
 @dataclass(frozen=True, slots=True)
 class End:
-    """``END PGM name MM``."""
+    """The block ``END PGM name MM``."""
 
     name: str
     inch: bool
@@ -79,7 +82,10 @@ class End:
 
 @dataclass(frozen=True, slots=True)
 class BlankForm:
-    """``BLK FORM 0.1 Z X Y Z`` (the least corner, with the tool axis) or ``0.2`` (the greatest)."""
+    """One corner of a rectangular blank.
+
+    ``BLK FORM 0.1 Z X Y Z`` is the minimum corner with the tool axis. ``BLK FORM 0.2`` is the maximum corner.
+    """
 
     part: int
     corner: tuple[AxisWord, ...]
@@ -88,7 +94,7 @@ class BlankForm:
 
 @dataclass(frozen=True, slots=True)
 class RoundBlank:
-    """``BLK FORM CYLINDER Z R50 L100 DIST+5``: ``above`` is how far it reaches over the datum."""
+    """The block ``BLK FORM CYLINDER Z R50 L100 DIST+5``; ``above`` is its height above the datum."""
 
     tool_axis: str
     radius: Value
@@ -98,9 +104,9 @@ class RoundBlank:
 
 @dataclass(frozen=True, slots=True)
 class ToolCall:
-    """``TOOL CALL 1 Z S3000 F500 DL+0.1``; a call without a tool changes speed or feed only."""
+    """The block ``TOOL CALL 1 Z S3000 F500 DL+0.1``; without a tool, only speed or feed changes."""
 
-    tool: int | str | Value | None = None  # a Value: the number is in a Q parameter
+    tool: int | str | Value | None = None  # a Value if the number is in a Q parameter
     tool_axis: str = ""
     speed: Value | None = None
     feed: Value | None = None
@@ -113,9 +119,9 @@ class ToolCall:
 
 @dataclass(frozen=True, slots=True)
 class Move:
-    """A path function: ``L X+10 IY-5 R0 F200 M3``, ``CR X+10 Y+0 R+5 DR-``, ``APPR CT X+0 Y+0 CCA90 R+5 RL``.
+    """A path function such as ``L X+10 IY-5 R0 F200 M3`` or ``APPR CT X+0 Y+0 CCA90 R+5 RL``.
 
-    ``words`` are those besides axes, by name: PR and PA (a pole's radius and angle), R, CCA, LEN.
+    ``words`` are the other words by name: PR and PA (polar radius and angle), R, CCA and LEN.
     """
 
     axes: tuple[AxisWord, ...] = ()
@@ -128,13 +134,13 @@ class Move:
     column: int = 1
 
     def word(self, name: str) -> AxisWord | None:
-        """The axis or other word of this name."""
+        """Return the axis word or other word with this name, or None."""
         return next((word for word in (*self.axes, *self.words) if word.axis == name), None)
 
 
 @dataclass(frozen=True, slots=True)
 class Pole:
-    """``CC X+50 Y+50``; without axes the point where the tool stands."""
+    """The block ``CC X+50 Y+50``; without axes, the pole is the current position."""
 
     axes: tuple[AxisWord, ...] = ()
     column: int = 1
@@ -142,7 +148,7 @@ class Pole:
 
 @dataclass(frozen=True, slots=True)
 class Corner:
-    """``RND R5 F100`` or ``CHF 2``: the corner between the path before and the one behind."""
+    """The block ``RND R5 F100`` or ``CHF 2``: a corner between the previous and the next path element."""
 
     form: str  # RND or CHF
     size: Value
@@ -152,14 +158,14 @@ class Corner:
 
 @dataclass(frozen=True, slots=True)
 class Codes:
-    """A block of M functions alone."""
+    """A block with only M functions."""
 
     codes: tuple[MCode, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class Datum:
-    """``TRANS DATUM AXIS …``, ``TRANS DATUM RESET`` (no axes), or a block of cycle 7."""
+    """The block ``TRANS DATUM AXIS …``, ``TRANS DATUM RESET`` (no axes), or a block of cycle 7."""
 
     axes: tuple[AxisWord, ...] = ()
     reset: bool = False
@@ -167,12 +173,12 @@ class Datum:
     text: str = ""  # of CYCL DEF 7.0
     row: Value | None = None  # of the datum table
     column: int = 0
-    table: str = ""  # its file, where the block names one
+    table: str = ""  # file of the datum table, if specified in the block
 
 
 @dataclass(frozen=True, slots=True)
 class Label:
-    """``LBL 1``, ``LBL "NAME"``; ``LBL 0`` ends a subprogram."""
+    """A label such as ``LBL 1`` or ``LBL "NAME"``; ``LBL 0`` ends a subprogram."""
 
     name: int | str
     column: int = 0
@@ -180,7 +186,7 @@ class Label:
 
 @dataclass(frozen=True, slots=True)
 class Call:
-    """``CALL LBL 1``, with ``REP n`` a repeat of the section behind the label."""
+    """The block ``CALL LBL 1``; with ``REP n``, it repeats the section that follows the label."""
 
     name: int | str
     repeat: Value | None = None
@@ -189,7 +195,7 @@ class Call:
 
 @dataclass(frozen=True, slots=True)
 class Assign:
-    """``Q5 = +10``, ``Q5 = Q1 * SIN 30``, ``FN 3: Q5 = +Q1 * +2``."""
+    """An assignment such as ``Q5 = +10``, ``Q5 = Q1 * SIN 30`` or ``FN 3: Q5 = +Q1 * +2``."""
 
     q: int
     formula: Formula
@@ -199,7 +205,7 @@ class Assign:
 
 @dataclass(frozen=True, slots=True)
 class Jump:
-    """``FN 9: IF +Q1 EQU +5 GOTO LBL 3``; ``condition`` is the whole comparison."""
+    """A jump such as ``FN 9: IF +Q1 EQU +5 GOTO LBL 3``; ``condition`` is the complete comparison."""
 
     condition: Formula
     name: int | str
@@ -208,7 +214,10 @@ class Jump:
 
 @dataclass(frozen=True, slots=True)
 class SystemRead:
-    """``FN 18: SYSREAD Q5 = ID50 NR1 IDX5``: group, number and index of a figure of the control."""
+    """The block ``FN 18: SYSREAD Q5 = ID50 NR1 IDX5``, which reads a system value.
+
+    ``group``, ``number`` and ``index`` identify the value.
+    """
 
     q: int
     group: Formula
@@ -220,7 +229,7 @@ class SystemRead:
 
 @dataclass(frozen=True, slots=True)
 class SystemWrite:
-    """``FN 17: SYSWRITE ID50 NR4 IDX5 = +0``: what is to stand there from now on."""
+    """The block ``FN 17: SYSWRITE ID50 NR4 IDX5 = +0``, which sets a system value."""
 
     group: Formula
     number: Formula
@@ -231,7 +240,7 @@ class SystemWrite:
 
 @dataclass(frozen=True, slots=True)
 class ErrorMessage:
-    """``FN 14: ERROR = 1000``: the program itself tells a fault, and stops."""
+    """The block ``FN 14: ERROR = 1000``, in which the program itself raises an error and stops."""
 
     number: int
     column: int = 0
@@ -239,14 +248,14 @@ class ErrorMessage:
 
 @dataclass(frozen=True, slots=True)
 class Unheeded:
-    """A block that steers nothing here, such as ``FN 16: F-PRINT``; ``what`` names it."""
+    """A block that has no effect here, such as ``FN 16: F-PRINT``; ``what`` is its name."""
 
     what: str
     column: int = 0
 
 
 class CycleValue(NamedTuple):
-    """``Q200=+2``, or a part ``Q`` 0 of an old cycle's line with the word before it."""
+    """A cycle parameter such as ``Q200=+2``. In a cycle below 200, ``q`` is 0."""
 
     q: int
     formula: Formula
@@ -255,7 +264,7 @@ class CycleValue(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Cycle:
-    """``CYCL DEF 200 DRILLING Q200=+2 …``: a cycle from 200 on with its parameters."""
+    """The definition of a cycle from 200 on with its parameters: ``CYCL DEF 200 DRILLING Q200=+2 …``."""
 
     number: int
     values: tuple[CycleValue, ...] = ()
@@ -264,7 +273,10 @@ class Cycle:
 
 @dataclass(frozen=True, slots=True)
 class GlobalDef:
-    """``GLOBAL DEF 100 GENERAL Q200=+2 …``: what ``Q200=PREDEF`` of a cycle behind it means."""
+    """The block ``GLOBAL DEF 100 GENERAL Q200=+2 …``.
+
+    It sets the values for ``Q200=PREDEF`` in later cycles.
+    """
 
     values: tuple[CycleValue, ...]
     column: int = 0
@@ -272,20 +284,23 @@ class GlobalDef:
 
 @dataclass(frozen=True, slots=True)
 class CycleLine:
-    """``CYCL DEF 1.2 DEPTH-15``: line ``part`` of a cycle under 200, with its words and numbers in order."""
+    """One line of a cycle below 200, such as ``CYCL DEF 1.2 DEPTH-15``.
+
+    ``part`` is the number after the point. The words and numbers are in their order.
+    """
 
     number: int
     part: int
     words: tuple[AxisWord, ...] = ()
     feed: Feed | None = None
     turn: str = ""  # + or - of DR
-    text: str = ""  # what is no number
+    text: str = ""  # text that is not a number
     column: int = 0
 
 
 @dataclass(frozen=True, slots=True)
 class CycleCall:
-    """``CYCL CALL M3``, ``CYCL CALL POS X+10 Y+10 Z+0 F500``."""
+    """A cycle call such as ``CYCL CALL M3`` or ``CYCL CALL POS X+10 Y+10 Z+0 F500``."""
 
     axes: tuple[AxisWord, ...] = ()
     feed: Feed | None = None
@@ -295,7 +310,7 @@ class CycleCall:
 
 
 class PatternPart(NamedTuple):
-    """``ROW1 (X+10 Y+0 D+8 NUM5 ROT+0 Z+0)``."""
+    """One part of a pattern, such as ``ROW1 (X+10 Y+0 D+8 NUM5 ROT+0 Z+0)``."""
 
     form: str  # POS ROW PAT FRAME CIRC PITCHCIRC
     words: tuple[AxisWord, ...]
@@ -304,23 +319,29 @@ class PatternPart(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class PatternDef:
-    """``PATTERN DEF`` with its parts: where CYCL CALL PAT runs the cycle."""
+    """The block ``PATTERN DEF`` with its parts, which are the points of CYCL CALL PAT."""
 
     parts: tuple[PatternPart, ...]
     column: int = 0
 
 
 class ContourPart(NamedTuple):
-    """The subprogram of a contour; ``pocket`` False is an island, None is said by RL and RR (cycle 14)."""
+    """The subprogram of one contour. ``pocket`` is False for an island.
+
+    With cycle 14, ``pocket`` is None, because RL or RR determines whether the contour is a pocket.
+    """
 
     label: int | str
     pocket: bool | None
-    file: str = ""  # a program of its own instead of a subprogram
+    file: str = ""  # separate program instead of a subprogram
 
 
 @dataclass(frozen=True, slots=True)
 class ContourDef:
-    """``CONTOUR DEF P1 = LBL 1 I2 = LBL 2``: what cycle 14 does, with pockets and islands said."""
+    """The block ``CONTOUR DEF P1 = LBL 1 I2 = LBL 2``.
+
+    It is like cycle 14, but specifies which contours are pockets and which are islands.
+    """
 
     parts: tuple[ContourPart, ...]
     column: int = 0
@@ -328,7 +349,7 @@ class ContourDef:
 
 @dataclass(frozen=True, slots=True)
 class Selection:
-    """``SEL TABLE "N.D"``, ``SEL PATTERN "P.PNT"``, ``SEL PGM "A.H"``: ``kind`` is the word behind SEL."""
+    """A block such as ``SEL TABLE "N.D"`` or ``SEL PGM "A.H"``; ``kind`` is the word that follows SEL."""
 
     kind: str
     name: str
@@ -337,7 +358,7 @@ class Selection:
 
 @dataclass(frozen=True, slots=True)
 class ProgramCall:
-    """``CALL PGM name``; without a name the one of SEL PGM (``CALL SELECTED PGM``)."""
+    """The block ``CALL PGM name``; without a name, it calls the program of SEL PGM."""
 
     name: str
     column: int = 0
@@ -345,7 +366,7 @@ class ProgramCall:
 
 @dataclass(frozen=True, slots=True)
 class ToolDef:
-    """``TOOL DEF 5 L+10 R+5`` in the program's unit; without both a tool to be got ready."""
+    """The block ``TOOL DEF 5 L+10 R+5`` in the program's unit; without L and R, it only prepares the tool."""
 
     tool: int | str
     length: Value | None = None
@@ -355,9 +376,9 @@ class ToolDef:
 
 @dataclass(frozen=True, slots=True)
 class Transform:
-    """``TRANS MIRROR AXIS X``, ``TRANS ROTATION ROT+30``, ``TRANS SCALE SCL0.5``, RESET, cycles 8 10 11.
+    """A transformation with TRANS MIRROR, TRANS ROTATION, TRANS SCALE or one of the cycles 8, 10 and 11.
 
-    ``value`` is the angle or the factor; None with no ``axes`` ends it.
+    ``value`` is the angle or the factor. Without a value and without ``axes``, the transformation is reset.
     """
 
     form: str  # MIRROR, ROTATION or SCALE
@@ -369,7 +390,7 @@ class Transform:
 
 @dataclass(frozen=True, slots=True)
 class TipControl:
-    """``FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS`` and ``FUNCTION RESET TCPM``."""
+    """The block ``FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS`` or ``FUNCTION RESET TCPM``."""
 
     on: bool
     column: int = 0
@@ -377,21 +398,21 @@ class TipControl:
 
 @dataclass(frozen=True, slots=True)
 class Stop:
-    """``STOP``, with M functions where there are."""
+    """The block ``STOP``, with optional M functions."""
 
     codes: tuple[MCode, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
 class Heading:
-    """``* text``: structures the program and does nothing."""
+    """A comment line ``* text`` that structures the program and has no effect."""
 
     text: str
 
 
 @dataclass(frozen=True, slots=True)
 class Positioning:
-    """How the rotary axes are brought to a plane, and which of two ways to stand is asked for."""
+    """How a PLANE block positions the rotary axes, and which of the two solutions it selects."""
 
     way: str = ""  # MOVE, TURN or STAY
     distance: Value | None = None  # DIST
@@ -403,7 +424,10 @@ class Positioning:
 
 @dataclass(frozen=True, slots=True)
 class Plane:
-    """A PLANE block. ``words`` by name: axes (AXIAL), P1X… (POINTS), SPA… (SPATIAL, RELATIV), RESET none."""
+    """A PLANE block with its words by name.
+
+    The words are axis words (AXIAL), P1X… (POINTS) or SPA… (SPATIAL and RELATIV). RESET has no words.
+    """
 
     form: str  # AXIAL POINTS SPATIAL RELATIV RESET
     words: tuple[AxisWord, ...] = ()
@@ -448,11 +472,14 @@ Node = (
 
 
 class KlartextLine(NamedTuple):
-    """One line. ``node`` is None where there is nothing to do, or ``error`` says why it cannot be read."""
+    """One line of a Klartext program.
+
+    ``node`` is None if the line has nothing to execute, or if ``error`` reports a syntax error.
+    """
 
     number: int
     node: Node | None = None
-    block: int | None = None  # its own number, as written
+    block: int | None = None  # block number, as written
     skip: bool = False
     comment: str | None = None
     error: Diagnostic | None = None

@@ -1,4 +1,7 @@
-"""A place on a line, and the words that can be taken from there. Case-blind; columns count from 1."""
+"""Cursor of a Klartext line, and readers of the words at the cursor.
+
+Case is ignored. Columns count from 1.
+"""
 
 from __future__ import annotations
 
@@ -24,12 +27,15 @@ _HIGHEST_Q = 1999
 
 @lru_cache(maxsize=256)
 def _keyword(words: str) -> re.Pattern[str]:
-    """``TRANS DATUM`` with any blanks between, and no letter behind."""
+    """Return a pattern for a keyword such as ``TRANS DATUM``.
+
+    Any blanks may separate its words, and no letter may follow the last word.
+    """
     return re.compile(r"\s+".join(map(re.escape, words.split())) + r"(?![A-Z])")
 
 
 class Cursor(LineReader):
-    """Reads one line from left to right; ``upper`` is the line in capitals, of the same length."""
+    """Reader of one line from left to right; ``upper`` is the line in capitals, with the same length."""
 
     def __init__(self, line: int, text: str, at: int = 0) -> None:
         super().__init__(ascii_upper(text), at)
@@ -39,42 +45,48 @@ class Cursor(LineReader):
 
     @property
     def column(self) -> int:
-        """Column of what comes next."""
+        """Column of the next character."""
         return self.at + 1
 
     @property
     def done(self) -> bool:
-        """Whether nothing is left."""
+        """Whether the end of the line is reached."""
         return self.at >= len(self.upper)
 
     @property
     def next_word(self) -> str:
-        """What comes next up to a blank, as written."""
+        """The text from here to the next blank, as written."""
         match = _WORD.match(self.text, self.at)
         return match.group() if match else ""
 
     def take(self, pattern: re.Pattern[str]) -> re.Match[str] | None:
-        """Return what the pattern matches here, and move to what follows; None without a match."""
+        """Return the match of the pattern at the cursor, or None without a match.
+
+        After a match, the cursor is past the match and the blanks after it.
+        """
         match = pattern.match(self.upper, self.at)
         if match is not None:
             self.at = after_blanks(self.upper, match.end())
         return match
 
     def keyword(self, *choices: str) -> str | None:
-        """The first of the keywords that stands here; go behind it."""
+        """Read the first of these keywords that is at the cursor; return None without a match."""
         for words in choices:
             if self.take(_keyword(words)):
                 return words
         return None
 
     def rest(self) -> str:
-        """All that is left, as written."""
+        """Read the rest of the line, as written."""
         text = self.text[self.at :].strip()
         self.at = len(self.upper)
         return text
 
     def value(self, what: str) -> Value:
-        """A signed number or Q parameter. Raises ProgramError naming ``what`` lacks one."""
+        """Read a signed number or a Q parameter. Raises ProgramError if it is missing.
+
+        The message names ``what``.
+        """
         column, match = self.column, self.take(_VALUE)
         if match is None:
             raise self.expected(
@@ -87,14 +99,17 @@ class Cursor(LineReader):
         return Value(_number(sign, number), column=column)
 
     def number(self, what: str) -> Value:
-        """A number; no Q parameter here."""
+        """Read a number, but not a Q parameter. Raises ProgramError if it is missing.
+
+        The message names ``what``.
+        """
         column, match = self.column, self.take(_PLAIN)
         if match is None:
             raise self.expected(Message("{what} has no number", what=what), "Enter a number.")
         return Value(_number(*match.groups()), column=column)
 
     def whole(self, what: str, most: int) -> int:
-        """A whole number without a sign, up to ``most``."""
+        """Read an unsigned whole number up to ``most``. Raises ProgramError if it is missing or too large."""
         column, match = self.column, self.take(_WHOLE)
         if match is None:
             raise self.expected(Message("{what} needs a whole number", what=what))
@@ -105,7 +120,7 @@ class Cursor(LineReader):
         return int(digits)
 
     def name(self, what: str, most: int) -> int | str:
-        """A number, or a name in quotes."""
+        """Read a number or a name in quotation marks. Raises ProgramError if it is missing or invalid."""
         self._demand_no_text()
         start = self.at
         match = self.take(_QUOTED)
@@ -119,23 +134,26 @@ class Cursor(LineReader):
         return name
 
     def file(self) -> str:
-        """All that is left as the name of a file, in quotes or not; empty where nothing is."""
+        """Read the rest of the line as a file name, without quotation marks.
+
+        The result is empty if nothing remains.
+        """
         self._demand_no_text()
         return self.rest().strip('"')
 
     def _demand_no_text(self) -> None:
-        """Raises ProgramError for a text parameter that is to hold a name."""
+        """Raise ProgramError if a string parameter is used as a name."""
         if _TEXT_PARAMETER.match(self.upper, self.at):
             raise STRING.error(self.line, self.column)
 
     def quoted(self) -> str | None:
-        """What stands in quotes here; None where nothing does."""
+        """Read a text in quotation marks; return None if the cursor is not at a quotation mark."""
         start = self.at
         match = self.take(_QUOTED)
         return None if match is None else self.text[start + 1 : start + len(match.group(1)) + 1]
 
     def expected(self, message: str, hint: str = "") -> ProgramError:
-        """A syntax error here, saying what stands in the place."""
+        """Return a syntax error at the cursor, with the text found there."""
         here = (
             Message("; found '{next_word}'", next_word=self.next_word)
             if not self.done
@@ -149,12 +167,12 @@ class Cursor(LineReader):
         )
 
     def demand_end(self, message: str, hint: str = "") -> None:
-        """Raise ProgramError with this message where anything follows."""
+        """Raise ProgramError with this message if anything follows."""
         if not self.done:
             raise self.expected(message, hint)
 
     def advice(self, hint: str) -> str:
-        """A hint, and what to do where text or a typographic character stands in the place."""
+        """Return the hint, or a better hint if the cursor is at plain text or at a typographic character."""
         word = "" if self.done else self.next_word
         instead = next(filter(None, map(typed, word)), None)
         if instead is not None:
@@ -177,7 +195,7 @@ def _number(sign: str, digits: str) -> float:
     return -number if sign == "-" and number else number
 
 
-# --- words that several blocks share: feeds, retracts, axis words
+# --- words of several blocks: feeds, retracts, axis words
 
 
 _FEED = re.compile(r"F\s*(MAX|AUTO)(?![A-Z0-9])")
@@ -188,7 +206,10 @@ _RETRACT = re.compile(r"MB(?![A-Z])|MB(?=MAX)")
 
 
 def feed(cursor: Cursor) -> Feed | None:
-    """``F200``, ``FQ5``, ``FU0.1``, ``FZ0.05``, ``FMAX``, ``F AUTO`` where one stands here."""
+    """Read a feed such as ``F200``, ``FQ5``, ``FU0.1``, ``FMAX`` or ``F AUTO``.
+
+    Returns None without F. Raises ProgramError for a feed that is invalid or not supported.
+    """
     column = cursor.column
     fixed = cursor.take(_FEED)
     if fixed is not None:
@@ -203,7 +224,7 @@ def feed(cursor: Cursor) -> Feed | None:
 
 
 def retract(cursor: Cursor) -> Retract | None:
-    """``MB50``, ``MB 50``, ``MB MAX`` where one stands here."""
+    """Read ``MB50``, ``MB 50`` or ``MB MAX``; return None without MB."""
     column = cursor.column
     if cursor.take(_RETRACT) is None:
         return None
@@ -218,7 +239,7 @@ def _axis_word(letters: str, incremental: bool) -> re.Pattern[str]:
 
 
 def axis_words(cursor: Cursor, letters: str, *, incremental: bool = True) -> tuple[AxisWord, ...]:
-    """All axis words that stand here, each letter once. Raises ProgramError for a doubled one."""
+    """Read all axis words at the cursor. Raises ProgramError if a letter is repeated."""
     pattern = _axis_word(letters, incremental)
     found: list[AxisWord] = []
     while True:
@@ -232,9 +253,9 @@ def axis_words(cursor: Cursor, letters: str, *, incremental: bool = True) -> tup
 
 
 def words_once(cursor: Cursor, pattern: re.Pattern[str]) -> dict[str, AxisWord]:
-    """Return all words that are here, by name, each once; the group of the pattern is the name.
+    """Read all words at the cursor, and return them by name, which is the group of the pattern.
 
-    Raises ProgramError for a word that is here twice.
+    Raises ProgramError if a word is repeated.
     """
     found: dict[str, AxisWord] = {}
     while True:
@@ -247,7 +268,7 @@ def words_once(cursor: Cursor, pattern: re.Pattern[str]) -> dict[str, AxisWord]:
 
 
 def demand_once(cursor: Cursor, column: int, known: object, what: str) -> None:
-    """Raise ProgramError for a word that the block already has."""
+    """Raise ProgramError if the block already has the word."""
     if known:
         raise doubled(cursor, column, what)
 

@@ -1,7 +1,7 @@
-"""Files that a Klartext program names: other programs, and tables of datums (.D) and points (.PNT).
+"""Files that a Klartext program names: other programs, datum tables (.D) and point tables (.PNT).
 
-A table has ``BEGIN NAME.D MM``, a line with the names of the columns, a line a row below their names, and
-``[END]``. A cell stands from under its column's name to the next one; an empty one tells nothing.
+A table has ``BEGIN NAME.D MM``, a line with the column names, one line per row, and ``[END]``. A cell extends
+from the start of its column's name to the start of the next name. An empty cell has no value.
 """
 
 from __future__ import annotations
@@ -19,12 +19,15 @@ Row = dict[str, float]
 
 
 def is_table(name: str) -> bool:
-    """Whether a file of this name is a table and no program."""
+    """Return whether the file name is that of a table."""
     return name.upper().endswith(ENDINGS)
 
 
 def table_rows(source: Source) -> dict[int, Row]:
-    """Rows by number, in the file's order: columns by name, lengths in mm; without those that FADE hides."""
+    """Return the rows by number in file order, with values by column name and lengths in mm.
+
+    Rows that FADE hides are left out. The result is empty if the file has no column names.
+    """
     lines = source.lines
     head = next((at for at, text in enumerate(lines) if text.strip().upper().startswith("NR")), None)
     if head is None:
@@ -45,7 +48,10 @@ def table_rows(source: Source) -> dict[int, Row]:
 
 
 def _cells(text: str, columns: Sequence[tuple[str, int]]) -> dict[str, str]:
-    """The cells of a row that hold something; a row number may begin before its column's name."""
+    """Return the cells of a row that have a value.
+
+    A row number may start to the left of its column's name.
+    """
     if len(split := text.split()) == len(columns):
         return {name: cell for (name, _), cell in zip(columns, split, strict=True)}
     ends = [start for _, start in columns[1:]] + [len(text)]
@@ -66,14 +72,14 @@ _CALL = re.compile(
     r"(?:CALL\s+PGM|SEL\s+(?:PGM|TABLE|PATTERN))\s+(.+)|CYCL\s+DEF\s+12\.1\s+(?:PGM\s*|%\s*)?(.+)",
     re.IGNORECASE,
 )
-_IN_TEXT = re.compile(r'"([^"]*\.(?:H|D|PNT))"', re.IGNORECASE)  # of a text that may name a file
+_IN_TEXT = re.compile(r'"([^"]*\.(?:H|D|PNT))"', re.IGNORECASE)  # string that may contain a file name
 _OF_CONTOURS = re.compile(r"CONTOUR\s+DEF\s", re.IGNORECASE)
 _QUOTED = re.compile(r'"([^"]+)"')
 _HINTS = ("PGM", "TABLE", "PATTERN", "12.1", "CONTOUR")
 
 
 def called_programs(source: Source) -> Iterator[str]:
-    """Names of the files that the program calls or selects, in capitals."""
+    """Yield the names, in capitals, of the files that the program calls or selects."""
     for text in source.lines:
         if not any(hint in text.upper() for hint in _HINTS):
             continue
@@ -88,6 +94,6 @@ def called_programs(source: Source) -> Iterator[str]:
 
 
 def file_name(named: str) -> str:
-    r"""The file of a name as written: ``TNC:\PARTS\HOLE`` is HOLE.H."""
+    r"""Return the file name in capitals: ``TNC:\PARTS\HOLE`` is HOLE.H."""
     name = named.strip().strip('"').replace("\\", "/").rsplit("/", 1)[-1].rsplit(":", 1)[-1].strip().upper()
     return name if "." in name else name + ENDING

@@ -1,4 +1,4 @@
-"""Path functions L, C, CR, CT, LP, CP, CTP, CC, RND, CHF, APPR and DEP, and M functions."""
+"""Readers of the path functions L, C, CR, CT, LP, CP, CTP, CC, RND, CHF, APPR and DEP, and of M functions."""
 
 from __future__ import annotations
 
@@ -13,21 +13,25 @@ from core.message import Message
 
 MOST_CODES = 4
 AXES = "XYZABCUVW"
-_NOT_PROGRAMMED = re.compile(r"F(?=\s+M\s*(?:[0-9]|$))|M(?=\s*$)")  # older controls write R F M for nothing
+# older controls write R, F and M without values
+_NOT_PROGRAMMED = re.compile(r"F(?=\s+M\s*(?:[0-9]|$))|M(?=\s*$)")
 _COMPENSATION = re.compile(
     r"R(?:([0LR]?)(?![A-Z0-9]|\s*[+\-.,0-9])|([+-])(?!\s*[0-9.,Q]))"
-)  # a bare R leaves it as it is
+)  # R without a letter leaves the compensation unchanged
 _M = re.compile(r"M(?=\s*[0-9])")
 _AXIS_ALONE = re.compile(r"I?[XYZABCUVW](?=\s*$)")
 TURN = re.compile(r"DR\s*([+-])(?![0-9Q])")
 
 
 class _Form(NamedTuple):
-    """What a path function takes besides axes, compensation, feed and M functions; ``needs`` all at once."""
+    """Words of a path function other than axes, compensation, feed and M functions.
+
+    The words ``needs`` are required.
+    """
 
     takes: tuple[str, ...] = ()
     needs: tuple[str, ...] = ()
-    turn: bool = False  # DR has to be there
+    turn: bool = False  # DR is required
 
 
 _POLAR = ("PR", "PA")
@@ -61,7 +65,7 @@ _KNOWN_WORDS = re.compile(r"(I?P[RA]|LEN|CCA|[NT][XYZ]|R)(?=\s*[+\-0-9.,Q])")
 
 
 def move(cursor: Cursor, form: str, column: int) -> Move:
-    """Behind the words of a path function. Raises ProgramError for a word too many or one that is missing."""
+    """Read the words of a path function. Raises ProgramError for an unexpected or missing word."""
     axes: tuple[AxisWord, ...] = ()
     words: dict[str, AxisWord] = {}
     compensation, turn, speed = "", "", None
@@ -99,7 +103,7 @@ def move(cursor: Cursor, form: str, column: int) -> Move:
 
 
 def paraxial(cursor: Cursor, column: int) -> Move:
-    """A block of one axis without the L before it: ``Z+100 R0 FMAX M3``. Raises ProgramError."""
+    """Read a block with one axis and without L, such as ``Z+100 R0 FMAX M3``. Raises ProgramError."""
     made = move(cursor, "L", column)
     if len(made.axes) > 1:
         text = "A block without L can move only one axis."
@@ -108,7 +112,10 @@ def paraxial(cursor: Cursor, column: int) -> Move:
 
 
 def _demand_paraxial(cursor: Cursor, column: int, kind: str, axes: tuple[AxisWord, ...]) -> None:
-    """R+ and R- make a move along one axis longer or shorter by the tool's radius."""
+    """Raise ProgramError if a block with R+ or R- does not have exactly one axis.
+
+    R+ and R- change the length of a move along one axis by the tool radius.
+    """
     if kind in {"+", "-"} and len(axes) != 1:
         text = Message("R{kind} is allowed only in a block that moves one axis.", kind=kind)
         raise syntax(cursor.line, column, text, "For a contour, write RL or RR.")
@@ -140,7 +147,7 @@ def _demand_whole(cursor: Cursor, made: Move) -> None:
 
 
 def pole(cursor: Cursor, column: int) -> Pole:
-    """The axes behind ``CC``."""
+    """Read the axes after ``CC``."""
     made = Pole(axis_words(cursor, "XYZ"), column)
     cursor.demand_end("CC accepts only two axes")
     return made
@@ -150,7 +157,7 @@ _SIZE = re.compile(r"R(?=\s*[+\-0-9.,Q])")
 
 
 def corner(cursor: Cursor, form: str, column: int) -> Corner:
-    """Behind ``RND`` or ``CHF``: its size, and a feed of its own."""
+    """Read the size and optional feed after ``RND`` or ``CHF``."""
     cursor.take(_SIZE)
     size = cursor.value(form)
     speed = feed(cursor)
@@ -159,12 +166,12 @@ def corner(cursor: Cursor, form: str, column: int) -> Corner:
 
 
 def codes_alone(cursor: Cursor) -> Codes:
-    """A block of M functions."""
+    """Read a block of M functions."""
     return Codes(codes_to_the_end(cursor))
 
 
 def codes_to_the_end(cursor: Cursor) -> tuple[MCode, ...]:
-    """M functions and nothing else to the end of the line."""
+    """Read M functions to the end of the line. Raises ProgramError for any other word."""
     codes: list[MCode] = []
     while not cursor.done:
         code = m_code(cursor)
@@ -183,7 +190,7 @@ _WITH_WORDS = {
 
 
 def m_code(cursor: Cursor) -> MCode | None:
-    """One M function where it stands here."""
+    """Read one M function; return None if the cursor is not at an M function."""
     column = cursor.column
     if cursor.take(_M) is None:
         return None
@@ -203,7 +210,7 @@ def m_code(cursor: Cursor) -> MCode | None:
 
 
 def _factor(cursor: Cursor) -> Feed | None:
-    """The factor of M103, percent, written as F; without it M103 ends."""
+    """Read the factor of M103, in percent and written as F; without it, M103 is canceled."""
     found = feed(cursor)
     if found is not None and (found.kind != "value" or found.per):
         text = "M103 accepts its factor only as F with a number."

@@ -1,4 +1,4 @@
-"""PLANE blocks: how the plane is told, and how the rotary axes are brought to it."""
+"""Reader of PLANE blocks: the definition of the plane and the positioning of the rotary axes."""
 
 from __future__ import annotations
 
@@ -27,7 +27,10 @@ _ROTATION = re.compile(r"(COORD|TABLE)\s+ROT(?![A-Z])")
 
 
 def plane(cursor: Cursor, column: int) -> Plane:
-    """Behind ``PLANE``. Raises ProgramError for what is missing, unknown, doubled or out of the subset."""
+    """Read the block after ``PLANE``.
+
+    Raises ProgramError if a word is missing, unknown, repeated or not supported.
+    """
     form = cursor.keyword(*FORMS)
     if form is None:
         raise cursor.expected(
@@ -65,7 +68,7 @@ _WORDS: dict[str, Callable[[Cursor], tuple[AxisWord, ...]]] = {
 
 
 def _all_of(cursor: Cursor, names: tuple[str, ...], pattern: re.Pattern[str]) -> tuple[AxisWord, ...]:
-    """The words in the order of the manual; every one must be there."""
+    """Return the words in the order of the manual. Raises ProgramError if a word is missing."""
     found = words_once(cursor, pattern)
     missing = [name for name in names if name not in found]
     if missing:
@@ -93,7 +96,7 @@ def _positioning(cursor: Cursor, form: str) -> Positioning:
 
 
 def _with_word(cursor: Cursor, form: str, made: Positioning) -> Positioning:
-    """The next word behind the way of positioning."""
+    """Read the next word after the kind of positioning."""
     column = cursor.column
     if form != "RESET" and (side := cursor.take(_SIDE)):
         demand_once(cursor, column, made.side, "SYM or SEQ")
@@ -101,7 +104,7 @@ def _with_word(cursor: Cursor, form: str, made: Positioning) -> Positioning:
     if form != "RESET" and (rotation := cursor.take(_ROTATION)):
         demand_once(cursor, column, made.rotation, "COORD ROT or TABLE ROT")
         return dataclasses.replace(made, rotation=Message("{word} ROT", word=rotation.group(1)))
-    if cursor.keyword("DIST", "ABST", "SETUP"):  # as German controls write it
+    if cursor.keyword("DIST", "ABST", "SETUP"):  # ABST is the German word.
         if made.way != "MOVE":
             text = Message("DIST is allowed only with MOVE, not with {word}.", word=made.way)
             raise syntax(cursor.line, column, text, "Remove this text from the program.")

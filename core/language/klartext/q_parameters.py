@@ -1,4 +1,4 @@
-"""Q parameters: formulas, and the functions FN 0 to FN 38."""
+"""Readers of Q parameter blocks: formulas, and the functions FN 0 to FN 38."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ MOST_LABEL = 65535
 
 
 def formula(cursor: Cursor, what: str) -> Formula:
-    """A whole formula for ``what``. Raises ProgramError where it cannot be read."""
+    """Read the complete formula for ``what``. Raises ProgramError if it is invalid."""
     reader = FormulaReader(GRAMMAR, cursor.upper, cursor.at)
     try:
         made = reader.formula()
@@ -109,7 +109,7 @@ def formula(cursor: Cursor, what: str) -> Formula:
 
 
 def assign(cursor: Cursor) -> Assign:
-    """``Q5 = …`` to the end of the line. Raises ProgramError for what would be found in a text."""
+    """Read ``Q5 = …`` to the end of the line. Raises ProgramError for string functions."""
     column, (kind, number) = cursor.column, _target(cursor)
     if _OF_TEXTS.match(cursor.upper, cursor.at):
         raise STRING.error(cursor.line, cursor.column)
@@ -119,7 +119,7 @@ def assign(cursor: Cursor) -> Assign:
 
 
 def function(cursor: Cursor, number: int, column: int) -> Node:
-    """Behind ``FN n:``. Raises ProgramError for those that this control does not execute."""
+    """Read the block after ``FN n:``. Raises ProgramError for functions that TurnDesk does not support."""
     cursor.take(_COLON)
     if number in _UNHEEDED:
         cursor.rest()
@@ -141,7 +141,7 @@ def function(cursor: Cursor, number: int, column: int) -> Node:
 
 
 def parameter(cursor: Cursor) -> tuple[str, int]:
-    """Kind and number of the parameter that stands here. Raises ProgramError for one too high."""
+    """Read the kind and number of a parameter. Raises ProgramError if the number is too high."""
     column, match = cursor.column, cursor.take(_TARGET)
     if match is None:
         raise cursor.expected("Expected a Q parameter")
@@ -178,7 +178,7 @@ def _arithmetic(cursor: Cursor, number: int, column: int) -> Assign:
 
 
 def _operand(cursor: Cursor, q: int) -> Formula:
-    """A number or a parameter with its sign: FN takes no formula."""
+    """Read a number or a parameter with its sign. FN does not accept formulas."""
     value = cursor.value(f"Q{q}")
     return value.formula
 
@@ -210,7 +210,7 @@ def _jump(cursor: Cursor, number: int, column: int) -> Jump:
 
 
 def _whole_jump(cursor: Cursor, condition: Formula) -> Jump:
-    """The label behind GOTO. Raises ProgramError."""
+    """Read the label after GOTO. Raises ProgramError if it is missing."""
     if not cursor.keyword("GOTO LBL"):
         raise cursor.expected("A jump needs GOTO LBL")
     at = cursor.column
@@ -220,7 +220,7 @@ def _whole_jump(cursor: Cursor, condition: Formula) -> Jump:
 
 
 def _wait(cursor: Cursor, column: int) -> Unheeded:
-    """FN 20: WAIT FOR SYNC waits for what is read ahead. Raises ProgramError for a condition of the PLC."""
+    """Read FN 20: WAIT FOR SYNC, which has no effect. Raises ProgramError for a PLC condition."""
     if not cursor.keyword("WAIT FOR SYNC") or not cursor.done:
         raise unsupported(cursor.line, column, "FN 20 with a condition from the machine builder's PLC")
     return Unheeded("FN 20 WAIT FOR SYNC", column)
@@ -253,7 +253,7 @@ def _system_write(cursor: Cursor, column: int) -> SystemWrite:
 
 
 def _place(cursor: Cursor, function: int) -> tuple[Formula, Formula, Formula | None]:
-    """Group, number and index of a figure of the control."""
+    """Read the group, number and index of a system value."""
     found: dict[str, Formula] = {}
     for word in ("ID", "NR", "IDX"):
         if cursor.take(re.compile(rf"{word}(?=\s*[+\-0-9Q])")):

@@ -1,4 +1,4 @@
-"""Blocks besides paths, cycles and PLANE: program frame, blank form, tools, datum, labels and calls."""
+"""Readers of program start and end, blank form, tool, datum, label and call blocks."""
 
 from __future__ import annotations
 
@@ -44,17 +44,17 @@ MOST_TOOL = 32767
 
 
 def begin(cursor: Cursor) -> Begin:
-    """The words behind ``BEGIN PGM``: name and unit."""
+    """Read the name and unit after ``BEGIN PGM``."""
     return Begin(*_named(cursor, "BEGIN PGM"))
 
 
 def end(cursor: Cursor) -> End:
-    """The words behind ``END PGM``: name and unit."""
+    """Read the name and unit after ``END PGM``."""
     return End(*_named(cursor, "END PGM"))
 
 
 def _named(cursor: Cursor, what: str) -> tuple[str, bool]:
-    """Name, which may be missing, and whether the unit is INCH; END PGM without a unit is read as MM."""
+    """Read the optional name and whether the unit is INCH; END PGM without a unit means MM."""
     match = _PROGRAM.match(cursor.text[cursor.at :].upper())
     if match is None and what == "END PGM":
         return cursor.rest(), False
@@ -74,7 +74,10 @@ _ROUND_WORD = re.compile(r"(RI|DI|R|D|L|DIST)(?=\s*[+\-0-9.,Q])")
 
 
 def _round_blank(cursor: Cursor) -> RoundBlank:
-    """Behind ``BLK FORM CYLINDER``: axis, radius or diameter, length, and how far it reaches up."""
+    """Read the words after ``BLK FORM CYLINDER``.
+
+    The words are the axis, the radius or diameter, the length and the height above the datum.
+    """
     axis = cursor.take(_AXIS)
     words = {name: word.value for name, word in words_once(cursor, _ROUND_WORD).items()}
     cursor.demand_end("Unexpected word in BLK FORM CYLINDER", "Use only R (or D), L, DIST and RI (or DI).")
@@ -85,7 +88,10 @@ def _round_blank(cursor: Cursor) -> RoundBlank:
 
 
 def blank_form(cursor: Cursor) -> BlankForm | RoundBlank | Unheeded:
-    """Behind ``BLK FORM``: two corners of a block, or a cylinder. Blanks by contour or file are not drawn."""
+    """Read the block after ``BLK FORM``: a corner of a block, or a cylinder.
+
+    A blank that is defined by a contour or a file is read but not drawn.
+    """
     column = cursor.column
     if cursor.keyword("CYLINDER"):
         return _round_blank(cursor)
@@ -117,7 +123,7 @@ def _demand_all(cursor: Cursor, corner: tuple[AxisWord, ...]) -> None:
 
 
 def tool_call(cursor: Cursor) -> ToolCall:
-    """The words behind ``TOOL CALL``: tool, axis, S, F (FU, FZ), DL and DR."""
+    """Read the words after ``TOOL CALL``: tool, axis, S, F (FU, FZ), DL and DR."""
     column = cursor.column
     tool: int | str | Value | None = None
     _demand_no_index(cursor)
@@ -151,7 +157,7 @@ def tool_call(cursor: Cursor) -> ToolCall:
 
 
 def _demand_no_index(cursor: Cursor) -> None:
-    """Raises ProgramError for 5.1, another edge of tool 5: the tool table has no such row here."""
+    """Raise ProgramError for a tool index such as 5.1, because the tool table has one row per tool."""
     if found := _INDEXED.match(cursor.upper, cursor.at):
         text = Message(
             "The tool table has one row per tool and does not use an index, so the table does "
@@ -162,14 +168,14 @@ def _demand_no_index(cursor: Cursor) -> None:
         raise fault(cursor.line, cursor.column, TOOL_UNKNOWN, text, hint)
 
 
-# --- datum shifts, labels, calls and Q parameters
+# --- tool definitions
 
 
 _LENGTHS = re.compile(r"([LR])(?=\s*[+\-0-9.,Q])")
 
 
 def tool_def(cursor: Cursor, column: int) -> ToolDef:
-    """The words behind ``TOOL DEF``: the tool, and its length and radius where the program tells them."""
+    """Read the words after ``TOOL DEF``: the tool, and its length and radius if the program defines them."""
     _demand_no_index(cursor)
     tool = cursor.name("TOOL DEF", MOST_TOOL)
     words = {name: word.value for name, word in words_once(cursor, _LENGTHS).items()}
@@ -185,7 +191,7 @@ _OF_REPEATS = re.compile(r"/\s*[0-9]+")
 
 
 def transformation(cursor: Cursor, column: int) -> Datum | Transform:
-    """The words behind ``TRANS``."""
+    """Read the block after ``TRANS``. Raises ProgramError for a syntax error."""
     if cursor.keyword("DATUM"):
         return _datum(cursor, column)
     if cursor.keyword("MIRROR"):
@@ -221,7 +227,7 @@ def _datum(cursor: Cursor, column: int) -> Datum:
 
 
 def label(cursor: Cursor) -> Label:
-    """The number or name behind ``LBL``."""
+    """Read the number or name after ``LBL``."""
     column = cursor.column
     made = Label(cursor.name("LBL", MOST_LABEL), column)
     cursor.demand_end("Unexpected word in LBL")
@@ -229,7 +235,10 @@ def label(cursor: Cursor) -> Label:
 
 
 def call(cursor: Cursor) -> Call:
-    """The label behind ``CALL LBL``, and its repeats; ``REP 3/3`` is how older controls write three."""
+    """Read the label and the number of repeats after ``CALL LBL``.
+
+    Older controls write three repeats as ``REP 3/3``.
+    """
     column = cursor.column
     name = cursor.name("CALL LBL", MOST_LABEL)
     if name == 0:
@@ -244,7 +253,7 @@ def call(cursor: Cursor) -> Call:
 
 
 def _repeats(cursor: Cursor) -> Value:
-    """A whole number of repeats, or a Q parameter."""
+    """Read the number of repeats: a whole number or a Q parameter."""
     column = cursor.column
     if cursor.upper[cursor.at : cursor.at + 1] == "Q":
         return cursor.value("REP")
@@ -252,7 +261,7 @@ def _repeats(cursor: Cursor) -> Value:
 
 
 def call_program(cursor: Cursor, column: int) -> ProgramCall:
-    """The file behind ``CALL PGM``, in quotes or not."""
+    """Read the file name after ``CALL PGM``, with or without quotation marks."""
     name = cursor.file()
     if not name:
         raise cursor.expected("CALL PGM needs the name of a program")
@@ -260,14 +269,14 @@ def call_program(cursor: Cursor, column: int) -> ProgramCall:
 
 
 def call_selected(cursor: Cursor, column: int) -> ProgramCall:
-    """Behind ``CALL SELECTED``: PGM."""
+    """Read PGM after ``CALL SELECTED``."""
     cursor.keyword("PGM")
     cursor.demand_end("CALL SELECTED accepts only PGM")
     return ProgramCall("", column)
 
 
 def selection(kind: str) -> Callable[[Cursor, int], Selection]:
-    """What reads the file behind ``SEL TABLE``, ``SEL PATTERN`` or ``SEL PGM``."""
+    """Return the function that reads the file name after ``SEL TABLE``, ``SEL PATTERN`` or ``SEL PGM``."""
 
     def read(cursor: Cursor, column: int) -> Selection:
         name = cursor.file()
@@ -282,7 +291,7 @@ _PROBE = re.compile(r"[0-9]+(?:\.[0-9]+)?")
 
 
 def touch_probe(cursor: Cursor, column: int) -> ProgramError:
-    """The error for ``TCH PROBE``: there is no touch probe on any machine."""
+    """Return the error for ``TCH PROBE``, because no machine has a touch probe."""
     cursor.keyword("TCH PROBE")
     match = cursor.take(_PROBE)
     what = Message("TCH PROBE {word}", word=match.group()) if match else "TCH PROBE"
@@ -291,7 +300,7 @@ def touch_probe(cursor: Cursor, column: int) -> ProgramError:
     return fault(cursor.line, column, NO_PROBE, text, hint)
 
 
-# They end or watch what this control does not do: its own ways stay as they are.
+# These functions end or monitor functions that TurnDesk does not have, so they have no effect.
 _STEERS_NOTHING = (
     *("MODE MILL", "FEED RESET", "S-PULSE RESET", "PARAXCOMP DISPLAY", "PARAXCOMP RESET", "PARAXMODE OFF"),
     *("COUNT", "LIFTOFF", "DCM", "AFC", "MONITORING", "PROG PATH", "CORRDATA RESET"),
@@ -300,7 +309,10 @@ _SECONDS = re.compile(r"TIME(?=\s*[0-9.,Q])")
 
 
 def _dwell(cursor: Cursor, column: int) -> CycleLine:
-    """``FUNCTION DWELL TIME10``, as cycle 9. Raises ProgramError."""
+    """Read ``FUNCTION DWELL TIME10``, which is like cycle 9.
+
+    Raises ProgramError for a dwell in revolutions.
+    """
     if cursor.take(_SECONDS) is None:
         raise unsupported(cursor.line, column, "FUNCTION DWELL in revolutions")
     made = CycleLine(9, 1, (AxisWord("", cursor.value("TIME")),), column=column)
@@ -309,15 +321,15 @@ def _dwell(cursor: Cursor, column: int) -> CycleLine:
 
 
 def material(cursor: Cursor, column: int) -> Unheeded:
-    """Behind ``WMAT``: the material, by which older controls propose cutting data."""
+    """Read the material after ``WMAT``, from which older controls calculate cutting data."""
     cursor.rest()
     return Unheeded("WMAT", column)
 
 
 def function(cursor: Cursor, column: int) -> TipControl | Unheeded | CycleLine:
-    """Behind ``FUNCTION``: TCPM on and off, DWELL; what steers nothing here is told.
+    """Read the block after ``FUNCTION``: TCPM, DWELL, or a function without effect here.
 
-    Raises ProgramError for AXIS SPAT and PATHCTRL VECTOR, by which the same words mean other ways.
+    Raises ProgramError for AXIS SPAT and PATHCTRL VECTOR, with which the same words mean other motions.
     """
     if cursor.keyword("TCPM"):
         while not cursor.done:

@@ -1,4 +1,4 @@
-"""The OmniTurn dialect as text: words, lines and what is wrong with them."""
+"""Reader of the OmniTurn dialect: words, lines and syntax errors."""
 
 from core.language.omniturn.omniturn_lexer import lex_line
 from core.language.omniturn.omniturn_words import Line, Word

@@ -1,7 +1,7 @@
-"""Lines that mean something to another control, and the OmniTurn code that their author meant.
+"""Lines that are written for another control, and the OmniTurn codes to use instead.
 
-Each pattern matches the code of a line: upper case, without blanks and comments. A line that matches gets one
-error. Its other words are not examined, because they belong to the other control too.
+Each pattern matches the code of a line in upper case, without blanks and comments. A line that matches gets
+one error. Its other words are not examined, because they belong to the other control too.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from core.message import Message
 
 
 class Intent(NamedTuple):
-    """The mistake in a line: index of its first character, diagnostic code, message and remedy."""
+    """A mistake in a line: index of its first character, diagnostic code, message and remedy."""
 
     at: int
     code: str
@@ -25,7 +25,7 @@ class Intent(NamedTuple):
 
 
 class _Pattern(NamedTuple):
-    """A form of another control. The message and the remedy may depend on what matched."""
+    """A form that belongs to another control. The message and the remedy may depend on the match."""
 
     form: re.Pattern[str]
     message: str
@@ -37,13 +37,13 @@ def _always(hint: str) -> Callable[[re.Match[str]], str]:
 
 
 def _dwell(match: re.Match[str]) -> str:
-    """P counts milliseconds, X and U count seconds."""
+    """Return the remedy for a dwell in milliseconds (P) or seconds (X and U)."""
     seconds = float(match[2]) / (1000.0 if match[1] == "P" and "." not in match[2] else 1.0)
     return Message("Write G04F{seconds}.", seconds=_plain(seconds))
 
 
 def _plain(value: float) -> str:
-    """A number as a program has it: no zero before the point, none at the end."""
+    """Return a number in the notation of programs: no zero before the point and no trailing zeros."""
     text = f"{value:.4f}".rstrip("0").rstrip(".")
     return text[1:] if text.startswith("0.") else text
 
@@ -138,7 +138,7 @@ _PATTERNS = (
 
 
 def intent_of(code: str) -> Intent | None:
-    """Return what the author of a line for another control meant; None for any other line."""
+    """Return the intended code of a line for another control; None for any other line."""
     for form, message, hint in _PATTERNS:
         match = form.search(code)
         if match is not None:
@@ -154,7 +154,7 @@ def intent_of(code: str) -> Intent | None:
 
 
 def _start(code: str, match: re.Match[str]) -> int:
-    """Index of the code or the letter that a pattern looks behind."""
+    """Return the index of the code or letter that precedes the match of a pattern."""
     if match.start() == 0 or code[match.start()] in _WORDS_OF_THEIR_OWN:
         return match.start()
     return match.start() - (3 if _AFTER_CODE.search(code[: match.start()]) else 1)
@@ -167,5 +167,5 @@ _LETTER_L = re.compile(r"(?<=[A-Za-z0-9.+-])l(?=[0-9.A-Za-z]|\s|$)")
 
 
 def with_digit_one(code: str) -> str:
-    """Return a line with 1 for each letter l that is part of a number; the line itself without any."""
+    """Return the line with 1 in place of each letter l that is part of a number."""
     return _LETTER_L.sub("1", code)

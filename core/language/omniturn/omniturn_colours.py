@@ -1,4 +1,4 @@
-"""The parts of a line of OmniTurn by kind: the lexer that reads it to run, inside a switched plane too."""
+"""Syntax coloring of OmniTurn lines with the lexer of the interpreter, including plane switching."""
 
 from __future__ import annotations
 
@@ -20,7 +20,10 @@ _OF_LETTER = {
 
 
 def spans(text: str, before: int) -> tuple[list[Span], int]:
-    """The coloured parts of a line, faults last, and the state it hands on; ``before`` is the one given."""
+    """Return the colored spans of a line, with errors last, and the state for the next line.
+
+    ``before`` is the state that the previous line returned.
+    """
     inside = before == IN_PLANE and not ends_program(text)
     if not inside and plane_entry(text) is not None:
         return [Span(0, len(text), Ink.CODE)], IN_PLANE
@@ -56,7 +59,7 @@ def _comments(text: str, line: Line) -> list[Span]:
 
 
 def _span(text: str, word: Word) -> Span:
-    """A word in the line as written, blanks inside it counted."""
+    """Return the span of a word in the line as written, including its blanks."""
     at = word.column - 1
     end = after_signs(text, at, len(word.text))
     return Span(at, end - at, _OF_LETTER.get(word.letter, Ink.POSITION))

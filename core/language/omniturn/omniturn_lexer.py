@@ -1,4 +1,4 @@
-"""Source text of one line → words. Numbers follow a strict grammar; whatever is left over is an error."""
+"""Lexer of OmniTurn lines. Numbers have a strict syntax, and any other text is an error."""
 
 from __future__ import annotations
 
@@ -15,10 +15,11 @@ from core.message import Message
 
 LONGEST_LINE = 8192
 
-# Most lines of a long program are nothing but these words; they need no look at each character.
+# Most lines of a long program consist only of these words, which need no check of each character.
 _NUMBER = r"[+-]?(?:[0-9]{1,4}(?:\.[0-9]{0,8})?|\.[0-9]{1,8})"
 _USUAL = re.compile(f"(?:[XZIKRFS]{_NUMBER}|[GM][0-9]{{2}}(?![0-9.]))+")
-_MAY_BE_FOREIGN = re.compile("G(?:04X|74|75|76|92S)")  # of usual words, but not of this control
+# lines of usual words that may belong to another control
+_MAY_BE_FOREIGN = re.compile("G(?:04X|74|75|76|92S)")
 _USUAL_WORD = re.compile(r"(([A-Z])([-+0-9.]+))")
 _WORD = re.compile(rf"(LS|LF|RF|CA|CI|[A-Z}}])({SIGNED})?")
 _THREAD = re.compile(r"G3[34](?![0-9.])")
@@ -28,7 +29,7 @@ _EXPONENT = re.compile(r"E[+-]?[0-9]+")
 _THREE_LETTERS = re.compile(r"[^\W\d_]{3}")
 _COMMENT = re.compile(r"\([^)]*\)?")
 _LETTERS = re.compile(r"[^\W\d_]+")
-# Three letters and more are no code; one or two are none where no number follows. Numbers may stand between.
+# Three or more letters are text, and so are one or two letters without a number. Numbers may be between them.
 _LONG, _SHORT = r"(?>[^\W\d_]{3,})", r"(?>[^\W\d_]+)(?!\s*[+\-.]*\d)"
 _NEXT = rf"(?:{_LONG}|{_SHORT}|(?>[^\W\d_]{{2}})(?=\s)|\d+(?:\.\d*)?|\.\d+)"
 _PROSE = re.compile(rf"(?<![^\W\d_])(?:{_LONG}|{_SHORT})(?:[\s,.;:!?'\"/&+-]*{_NEXT})*[.,;:!?]*")
@@ -39,7 +40,10 @@ _SPACE = re.compile(r"\s")
 
 
 class _Code(NamedTuple):
-    """The code of a line: upper case, no blanks, no comment, and the column that each character came from."""
+    """The code of a line in upper case, without blanks and comment.
+
+    ``columns`` has the source column of each character.
+    """
 
     text: str
     written: str
@@ -47,7 +51,10 @@ class _Code(NamedTuple):
 
 
 def lex_line(number: int, text: str) -> Line:
-    """The words of line ``number``. Never raises: errors are in the line, each with its column."""
+    """Read the words of line ``number``.
+
+    This function never raises; the line contains its errors with columns.
+    """
     if len(text) > LONGEST_LINE:
         return Line(number, errors=(word_faults.too_long(number, len(text)),))
     if _USUAL.fullmatch(text) and not _MAY_BE_FOREIGN.search(text):
@@ -74,7 +81,10 @@ def lex_line(number: int, text: str) -> Line:
 
 
 def _nested_comment(text: str) -> int | None:
-    """Index of a parenthesis that opens inside a comment, where all are closed; else None."""
+    """Return the index of a parenthesis that opens inside a comment, or None.
+
+    The result is also None if a parenthesis is not closed.
+    """
     depth, inner = 0, None
     for at, sign in enumerate(text):
         depth += (sign == "(") - (sign == ")")
@@ -84,7 +94,10 @@ def _nested_comment(text: str) -> int | None:
 
 
 def _letter_l(number: int, text: str) -> Diagnostic | None:
-    """The letter l written for the digit 1, where the line is good with the digit; else None."""
+    """Return the error for a letter l in place of the digit 1, or None.
+
+    The result is also None if the line has other errors.
+    """
     code = _with_blank_comments(text)
     fixed = with_digit_one(code)
     if fixed == code or lex_line(number, fixed).errors:
@@ -96,7 +109,7 @@ def _letter_l(number: int, text: str) -> Diagnostic | None:
 
 
 def _without_prose(number: int, text: str) -> tuple[str, list[Diagnostic]]:
-    """The line with blanks where text stands that is no code, and one error for each stretch of it."""
+    """Return the line with blanks in place of text that is not code, and one error for each such text."""
     bare = _with_blank_comments(text)
     habit = other_controls.whole_line(bare)
     if habit is not None:
@@ -106,7 +119,7 @@ def _without_prose(number: int, text: str) -> tuple[str, list[Diagnostic]]:
     told: list[Diagnostic] = []
     for found in _prose_in(bare):
         start, end = found.span()
-        if bare[start - 1 : start] == ";":  # a comment as others write it
+        if bare[start - 1 : start] == ";":  # a comment in the style of other controls
             start -= 1
             told.append(word_faults.of_sign(number, start + 1, ";", after_number=False))
         else:
@@ -121,7 +134,7 @@ def _with_blank_comments(text: str) -> str:
 
 
 def _prose_in(bare: str) -> Iterator[re.Match[str]]:
-    """Words that somebody reads, with what stands between them."""
+    """Yield the matches of plain text, with the characters between its words."""
     thread = _THREAD.search(bare.upper().replace(" ", "")) is not None
     for found in _PROSE.finditer(bare):
         words = _LETTERS.findall(found[0].upper())
@@ -132,7 +145,7 @@ def _prose_in(bare: str) -> Iterator[re.Match[str]]:
 
 
 def _usual_words(text: str) -> tuple[Word, ...] | None:
-    """The words of a line of usual words; None where one of them needs a closer look."""
+    """Return the words of a line of usual words; None if a word needs a full check."""
     words: list[Word] = []
     column = 1
     for written, letter, number in _USUAL_WORD.findall(text):
@@ -173,7 +186,7 @@ def _without_blanks(text: str, column: int) -> tuple[str, range | list[int]]:
 
 
 class _Scanner:
-    """Goes once through the code of a line; what it cannot read it reports and skips."""
+    """Scanner of the code of one line, which reports unreadable text and skips it."""
 
     def __init__(self, number: int, code: _Code, errors: list[Diagnostic]) -> None:
         self._number = number
@@ -197,7 +210,7 @@ class _Scanner:
         return tuple(found)
 
     def _read(self, match: re.Match[str], found: list[Word]) -> int:
-        """One word and the fault that may follow it; returns where to go on."""
+        """Read one word and check for errors after it; return the index of the next word."""
         letter, digits, end = match[1], match[2], match.end()
         text = self._code.text
         if letter == "O" and not self._thread:
@@ -238,12 +251,12 @@ class _Scanner:
         return at
 
     def _is_letter_o(self, at: int) -> bool:
-        """Whether a letter O here is part of a number; in a thread it may be a word."""
+        """Return whether a letter O at this index is part of a number; in a thread, O can be a word."""
         text = self._code.text
         return text[at : at + 1] == "O" and (not self._thread or text[at + 1 : at + 2] in _NUMBER_SIGNS)
 
     def _letter_o(self, start: int, at: int) -> int:
-        """Report the letter O at ``at`` in the word that begins at ``start``; return where the word ends."""
+        """Report the letter O at ``at`` in the word that begins at ``start``; return the end of the word."""
         match = _ZERO_LETTER.match(self._code.text, at)
         end = match.end() if match else at + 1
         word = self._code.written[start:end]

@@ -1,4 +1,4 @@
-"""What an OmniTurn line is made of: words, each a letter and a number, and what a number may be."""
+"""Words and lines of OmniTurn programs, and the ranges of their numbers."""
 
 from __future__ import annotations
 
@@ -30,8 +30,11 @@ RANGES: dict[str, tuple[float, float]] = {
 
 
 class Word(NamedTuple):
-    """One word. ``letter`` is upper case (``LS LF RF CA CI`` and ``}`` count as letters), ``value`` its
-    number or None where it has none, ``column`` of its letter from 1, ``text`` as written without blanks."""
+    """One word of a line. ``letter`` is in upper case; ``LS LF RF CA CI`` and ``}`` count as letters.
+
+    ``value`` is its number, or None without a number. ``column`` is the column of its letter, from 1.
+    ``text`` is the word as written, without blanks.
+    """
 
     letter: str
     value: float | None
@@ -40,10 +43,12 @@ class Word(NamedTuple):
 
 
 class Line(NamedTuple):
-    """One line of source. ``text`` is its code as written, without blanks and comment; ``number`` from 1.
+    """One line of a program.
 
-    ``comment`` is None where there is no parenthesis, ``comment_column`` that of the parenthesis.
-    ``errors`` tells what could not be read; such a line must not run.
+    ``text`` is its code as written, without blanks and comment; ``number`` counts from 1.
+
+    ``comment`` is None if the line has no parenthesis, and ``comment_column`` is the column of the
+    parenthesis. A line with ``errors`` must not be executed.
     """
 
     number: int

@@ -1,4 +1,7 @@
-"""What other controls write and this one does not: for each habit, what it is here; and their programs."""
+"""Codes and characters of other controls with their OmniTurn equivalents.
+
+This module also detects programs for other controls.
+"""
 
 from __future__ import annotations
 
@@ -116,17 +119,23 @@ _TOOL = re.compile(r"T0*([0-9]{1,2})([0-9]{2})")
 
 
 def meaning_here(word: str) -> tuple[str, str] | None:
-    """What a code or a letter of other controls is here, and what to write; None where it is no habit."""
+    """Return the explanation and the remedy for a code or letter of other controls.
+
+    Returns None for any other word.
+    """
     return _HERE.get(word)
 
 
 def sign(character: str) -> tuple[str, str] | None:
-    """What a character is that no program of this control holds, and what to type."""
+    """Return the description and the remedy for a character that is not valid in a program.
+
+    Returns None for an unknown character.
+    """
     return _SIGNS.get(character) or typed(character)
 
 
 def whole_line(code: str) -> tuple[str, str, str] | None:
-    """Code, sentence and hint for a line that has a meaning for other controls alone."""
+    """Return code, message and hint for a line that only other controls need; otherwise None."""
     if _TRANSFER.fullmatch(code):
         return (
             "transfer-line",
@@ -148,7 +157,10 @@ def whole_line(code: str) -> tuple[str, str, str] | None:
 
 
 def tool(text: str) -> tuple[str, str] | None:
-    """Sentence and hint for ``T0101``, by which others call tool and wear offset; None for any other."""
+    """Return message and hint for ``T0101``, which selects tool and wear offset on other controls.
+
+    Returns None for any other word.
+    """
     match = _TOOL.fullmatch(text)
     if match is None:
         return None
@@ -169,7 +181,7 @@ def tool(text: str) -> tuple[str, str] | None:
 
 
 _COMMENT = re.compile(r"\([^)]*\)?")
-_MOST_LINES = 400  # a program shows on its first lines for which control it was written
+_MOST_LINES = 400  # The first lines of a program show its control.
 
 _ONLY = (
     ("LinuxCNC", re.compile(r"O<|O\d+(?:SUB|CALL|IF|WHILE|REPEAT)|#<|G64P|G[78](?![0-9])")),

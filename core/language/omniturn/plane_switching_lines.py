@@ -1,6 +1,6 @@
 """Lines of plane switching: statements in parentheses, from (~PLXC) or (~PLZC) to (END).
 
-The original control's checker does not know them, so programs hide them from it as comments.
+The checker of the original control does not know these statements, so programs hide them in comments.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ _HINT = "Between (~PLXC) or (~PLZC) and (END), write only (X Y Z F), (G02 or G03
 
 
 class PlaneLine(NamedTuple):
-    """One line of plane switching. ``name`` is PLXC, PLZC, END, or empty for a statement of ``words``.
+    """One line of plane switching. ``name`` is PLXC, PLZC or END; it is empty for a statement with ``words``.
 
-    ``arc`` is 2 or 3 on a line with G02 or G03, else 0. Words by letter, as numbers of the program.
+    ``arc`` is 2 for G02, 3 for G03 and otherwise 0. The numbers of the words are in program units.
     """
 
     name: str
@@ -37,15 +37,16 @@ class PlaneLine(NamedTuple):
 
 
 def plane_entry(text: str) -> PlaneLine | None:
-    """The line as an entry to plane switching, None where it is anything else."""
+    """Return the line if it starts plane switching; None for any other line."""
     match = _ENTRY.fullmatch(text) if "~" in text else None
     return PlaneLine(match[1].upper(), {}) if match else None
 
 
 def lacks_sign(text: str, following: Iterable[str]) -> bool | None:
-    """Whether an entry lacks its ~, so that it and its lines are comments; None where it is no entry at all.
+    """Return whether an entry to plane switching lacks its ~, so that it is read as a comment.
 
-    ``following``: the lines behind it. True where the next of them is a line of a plane; else it may be one.
+    True means that the next line in ``following`` is a plane statement. With False, the line may be a
+    comment. The result is None if the line is not an entry.
     """
     if _BARE_ENTRY.fullmatch(text) is None:
         return None
@@ -56,12 +57,12 @@ def lacks_sign(text: str, following: Iterable[str]) -> bool | None:
 
 
 def ends_program(text: str) -> bool:
-    """Whether a line inside a plane is M30 or M02: (END) has been forgotten."""
+    """Return whether a line is M30 or M02, so that (END) is missing."""
     return _END.fullmatch(text) is not None
 
 
 def lex_plane(number: int, text: str) -> PlaneLine:
-    """A line between the entry and (END). Raises ProgramError for anything that may not stand there."""
+    """Read a line between the entry and (END). Raises ProgramError for a statement that is not allowed."""
     match = _STATEMENT.fullmatch(text) if text.isascii() else None
     if match is None:
         raise program_error(number, 1, "plane-line", "This line is not a statement in parentheses.", _HINT)

@@ -1,4 +1,4 @@
-"""What can be wrong with a word as text: one code, one sentence and one hint for each fault."""
+"""Diagnostics for syntax errors in OmniTurn words, each with a code, a message and a hint."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ _AFTER_NUMBER = {
 _SLIPS = {
     "comment-open": ("The comment has no closing parenthesis.", "Add ')'."),
     "comment-nested": ("A comment is inside another comment.", "Remove the inner parentheses."),
-    # X1E5, and E005 where a print of F.005 was read.
+    # This covers X1E5, and also E005 from a misread print of F.005.
     "exponent": (
         "A number cannot have an exponent.",
         ("Write the number without an exponent; use F for a feed."),
@@ -46,7 +46,7 @@ _SLIPS = {
 
 
 def too_long(line: int, length: int) -> Diagnostic:
-    """More on one line than a program line can hold."""
+    """Return the error for a line that is too long."""
     return refusal(
         line,
         0,
@@ -57,19 +57,19 @@ def too_long(line: int, length: int) -> Diagnostic:
 
 
 def text_outside(line: int, column: int, text: str) -> Diagnostic:
-    """Words for a reader that stand among those for the control."""
+    """Return the error for text outside parentheses."""
     shown = text if len(text) <= _MOST_SHOWN else f"{text[:_MOST_SHOWN]}…"
     message = Message("'{value}' is text outside parentheses.", value=shown)
     return refusal(line, column, "text-outside", message, Message("Write ({value}).", value=shown))
 
 
 def slip(line: int, column: int, code: str) -> Diagnostic:
-    """What has one sentence wherever it stands."""
+    """Return the error for a code that always has the same message."""
     return refusal(line, column, code, *_SLIPS[code])
 
 
 def letter_o(line: int, column: int, word: str) -> Diagnostic:
-    """A letter O for a zero: GO2, MO5, XO."""
+    """Return the error for a letter O in place of a zero, such as GO2, MO5 or XO."""
     message = Message("{word}: letter O in a number.", word=word)
     return refusal(
         line, column, "letter-o", message, Message("Write {name}.", name=word.upper().replace("O", "0"))
@@ -77,7 +77,7 @@ def letter_o(line: int, column: int, word: str) -> Diagnostic:
 
 
 def no_number(line: int, column: int, letter: str, follower: str) -> Diagnostic:
-    """A letter and nothing that is a number."""
+    """Return the error for a letter that no valid number follows."""
     if follower in {"+", "-"}:
         return refusal(
             line,
@@ -106,7 +106,7 @@ def no_number(line: int, column: int, letter: str, follower: str) -> Diagnostic:
 
 
 def of_sign(line: int, column: int, sign: str, *, after_number: bool) -> Diagnostic:
-    """A character that starts no word."""
+    """Return the error for a character that cannot start a word."""
     fixed = _SIGNS.get(sign) or (_AFTER_NUMBER.get(sign) if after_number else None)
     if fixed is not None:
         return refusal(line, column, *fixed)
@@ -135,7 +135,7 @@ def of_sign(line: int, column: int, sign: str, *, after_number: bool) -> Diagnos
 
 
 def of_word(line: int, word: Word, digits: str | None) -> Diagnostic | None:
-    """What is wrong with the letter or the size of a word, or None."""
+    """Return the error in the letter or the value of a word, or None."""
     letter, value, column, _ = word
     if letter not in RANGES and letter not in {"LF", "RF", "O"}:
         return _unknown_letter(line, column, letter)

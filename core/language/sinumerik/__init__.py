@@ -1,4 +1,4 @@
-"""The SINUMERIK turning dialect as text: words, lines, and what is wrong with them."""
+"""Reader of the SINUMERIK turning dialect: words, lines and syntax errors."""
 
 from core.language.sinumerik.sinumerik_lexer import lex_line
 from core.language.sinumerik.sinumerik_words import Form, Line, Word

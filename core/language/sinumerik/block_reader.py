@@ -1,4 +1,4 @@
-"""A place in a SINUMERIK block, from which formulas, values of arrays and what stands beside are read."""
+"""Reader of a SINUMERIK block: formulas, lists of values and other items at a position."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from core.language.line_reading import UNSIGNED
 
 GRAMMAR = Grammar(
     number=re.compile(rf"{UNSIGNED}(?:EX[+-]?[0-9]{{1,3}})?"),
-    # $P_… and the like are system variables, their indices are part of the name.
+    # Names such as $P_… are system variables, and their indices are part of the name.
     parameter=re.compile(r"(R(?=[0-9\[])|\$[A-Z][A-Z0-9_]*(?:\[[^\]]*\])?|[A-Z_][A-Z_][A-Z0-9_]*)([0-9]*)"),
     operators={
         "*": (80, "times"),
@@ -49,7 +49,7 @@ GRAMMAR = Grammar(
 
 
 def formula_at(text: str, at: int) -> tuple[Formula, int]:
-    """Return the formula that begins at ``at``, and the index behind it. Raises FormulaError."""
+    """Return the formula that starts at ``at`` and the index after it. Raises FormulaError."""
     reader = FormulaReader(GRAMMAR, text, at)
     return reader.formula(), reader.at
 
@@ -61,7 +61,10 @@ _Item = TypeVar("_Item")
 
 
 class BlockReader(FormulaReader):
-    """Reads a block from ``at`` on. ``upper`` is the block in capitals, ``written`` is as it was written."""
+    """Reader of a block from index ``at`` on.
+
+    ``upper`` is the block in capitals, and ``written`` is the original text.
+    """
 
     def __init__(self, upper: str, written: str, at: int) -> None:
         super().__init__(GRAMMAR, upper, at)
@@ -69,25 +72,31 @@ class BlockReader(FormulaReader):
 
     @property
     def rest(self) -> str:
-        """What is left, without the blanks before it."""
+        """The remaining text without leading blanks."""
         return self.upper[self.at :].lstrip()
 
     def take(self, pattern: re.Pattern[str], *, written: bool = False) -> re.Match[str] | None:
-        """What the pattern matches here, and go behind it."""
+        """Return the match of the pattern at this position and move past it; None without a match."""
         match = pattern.match(self.written if written else self.upper, self.at)
         if match is not None:
             self.at = match.end()
         return match
 
     def demand(self, pattern: re.Pattern[str], why: str, hint: str) -> re.Match[str]:
-        """The same. Raises FormulaError where it matches nothing."""
+        """Return the match of the pattern at this position and move past it.
+
+        Raises FormulaError without a match.
+        """
         match = self.take(pattern)
         if match is None:
             raise FormulaError(self.at, why, hint)
         return match
 
     def items(self, read: Callable[[], _Item], why: str, hint: str) -> list[_Item]:
-        """Return what ``read`` finds up to the closing parenthesis. Raises FormulaError without one."""
+        """Return the items that ``read`` returns up to the closing parenthesis.
+
+        Raises FormulaError without one.
+        """
         found: list[_Item] = []
         while True:
             found.append(read())
@@ -99,9 +108,9 @@ _LIST = re.compile(r"\s*(SET|REP)?\s*\(")
 
 
 class Values(NamedTuple):
-    """What elements are given, one after the other; None for one that keeps what it has.
+    """Values for consecutive elements of an array; None leaves an element unchanged.
 
-    Of REP there is one formula, for ``times`` elements, or without it for all that are left.
+    REP has one formula for ``times`` elements, or for all remaining elements if ``times`` is None.
     """
 
     formulas: tuple[Formula | None, ...]
@@ -110,9 +119,10 @@ class Values(NamedTuple):
 
 
 def read_values(reader: BlockReader, *, bare: bool) -> Values | None:
-    """The list that begins here; None where none does. Raises FormulaError.
+    """Read a list of values; return None if no list starts here.
 
-    ``bare`` takes brackets without SET before them, which elsewhere begin a formula.
+    With ``bare``, a parenthesis without SET also starts a list. Otherwise, such a parenthesis starts a
+    formula. Raises FormulaError for an incomplete list.
     """
     match = _LIST.match(reader.upper, reader.at)
     if match is None or not (match[1] or bare):

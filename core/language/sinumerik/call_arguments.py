@@ -1,4 +1,4 @@
-"""Arguments of a call, CYCLE95("CONTOUR", 2, , 0.4), and parameters of PROC and EXTERN."""
+"""Readers of call arguments, such as CYCLE95("CONTOUR", 2, , 0.4), and of parameter lists."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ _DIMENSION = re.compile(r"\s*([0-9]*)\s*")
 
 
 class Argument(NamedTuple):
-    """One argument: a formula, or a text in quotes (an axis by its letter too); neither where it is left out.
+    """One argument: a formula, or a text (in quotation marks or an axis letter), or neither if it is omitted.
 
-    ``column`` from 1.
+    ``column`` counts from 1.
     """
 
     formula: Formula | None
@@ -29,14 +29,15 @@ class Argument(NamedTuple):
 
     @property
     def given(self) -> bool:
-        """Whether anything stands there."""
+        """Whether the argument is specified."""
         return self.formula is not None or self.text is not None
 
 
 class Parameter(NamedTuple):
-    """A parameter of PROC: ``kind`` such as REAL, ``by_reference`` with VAR, ``default`` where it has one.
+    """A parameter of PROC. ``kind`` is its type such as REAL, and ``by_reference`` is True with VAR.
 
-    ``sizes`` are those of an array, None for one that the caller's array has; without them it is no array.
+    ``default`` is the default value, or None. ``sizes`` are the dimensions of an array, with None for a
+    dimension that the caller's array determines; it is empty for a scalar.
     """
 
     name: str
@@ -47,7 +48,7 @@ class Parameter(NamedTuple):
 
 
 def read_arguments(reader: BlockReader) -> tuple[Argument, ...]:
-    """The arguments in the brackets that open here. Raises FormulaError."""
+    """Read the arguments in parentheses. Raises FormulaError for invalid text."""
     found: list[Argument] = []
     start = reader.at
     reader.at += 1
@@ -76,7 +77,7 @@ def _argument(reader: BlockReader) -> Argument:
 
 
 def read_parameters(reader: BlockReader) -> tuple[Parameter, ...]:
-    """The parameters in the brackets that open here. Raises FormulaError."""
+    """Read the parameters in parentheses. Raises FormulaError for invalid text."""
     reader.at += 1
     reader.blanks()
     if reader.upper[reader.at : reader.at + 1] == ")":
@@ -100,7 +101,7 @@ def _parameter(reader: BlockReader) -> Parameter:
 
 
 def _sizes(match: re.Match[str]) -> tuple[int | None, ...]:
-    """The sizes of an array parameter, NAME[3] or NAME[,4]. Raises FormulaError."""
+    """Return the dimensions of an array parameter, NAME[3] or NAME[,4]. Raises FormulaError."""
     if match[4] is None:
         return ()
     found = [_DIMENSION.fullmatch(each) for each in match[4].split(",")]

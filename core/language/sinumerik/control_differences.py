@@ -1,8 +1,8 @@
-"""What the smaller controls of the SINUMERIK family lack: 802D and 808D beside 828D and 840D.
+"""Functions that smaller SINUMERIK controls lack: 802D and 808D compared with 828D and 840D.
 
-A machine that has replaced an 802D says so in its file (``machine.control``), so that a program which its old
-control would not have read is refused here too. The lists are recalled from the makers' programming guides of
-the turning versions; ``docs/sinumerik-controls.md`` shows them.
+The machine file of a machine that replaces an 802D specifies the old control (``machine.control``). A program
+that the old control would not accept is then rejected here too. The lists follow the manufacturer's
+programming guides for turning; ``docs/sinumerik-controls.md`` shows them.
 """
 
 from __future__ import annotations
@@ -38,7 +38,10 @@ LACKS: Mapping[str, frozenset[str]] = {
 
 
 def lacking(control: str, line: Line) -> tuple[str, int] | None:
-    """The first thing of a line that a control has not, with its column; None where it has all."""
+    """Return the first function of a line that a control lacks, with its column.
+
+    Returns None if the control has all functions of the line.
+    """
     lacks = LACKS[control]
     if not lacks:
         return None

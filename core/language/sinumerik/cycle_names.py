@@ -1,4 +1,4 @@
-"""Standard cycles of SINUMERIK by name: their parameters in order, and those that this control refuses."""
+"""Standard cycles of SINUMERIK by name: their parameters in order, and the cycles that are rejected."""
 
 from __future__ import annotations
 

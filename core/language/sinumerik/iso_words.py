@@ -1,4 +1,4 @@
-"""What the ISO mode and controls like it write, and what says the same in the SINUMERIK language."""
+"""Words of the ISO mode and of similar controls, with their SINUMERIK equivalents."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from core.message import Message
 
 
 class Habit(NamedTuple):
-    """Something that is written otherwise here: where it begins (an index), what it is, what to write."""
+    """A word of another control: the index where it starts, its explanation and the remedy."""
 
     at: int
     text: str
@@ -22,12 +22,12 @@ _Rule = tuple[re.Pattern[str], Callable[[re.Match[str]], tuple[str, str]]]
 
 
 def _g(codes: str) -> str:
-    """One of these G codes, with leading zeros or without."""
+    """Return a pattern for these G codes, with or without leading zeros."""
     return rf"(?<![A-Z0-9_])G0*(?:{codes})(?![0-9.])"
 
 
 def _seconds(letter: str, number: str) -> str:
-    """The time of a dwell: P counts milliseconds where it has no point."""
+    """Return the time of a dwell in seconds; P without a decimal point is in milliseconds."""
     value = float(number)
     return f"{value / 1000.0 if letter == 'P' and '.' not in number else value:g}"
 
@@ -180,7 +180,10 @@ _RULES: tuple[_Rule, ...] = (
 
 
 def iso_habit(code: str) -> Habit | None:
-    """What of a block, in capitals and without its comment, is written as in ISO; None where nothing is."""
+    """Return the first ISO word of a block, or None.
+
+    ``code`` is the block in capitals, without its comment.
+    """
     for pattern, told in _RULES:
         if match := pattern.search(code):
             groups = match.groupdict()

@@ -1,6 +1,6 @@
-"""Words of the SINUMERIK language that this control does not execute, and what to write instead.
+"""Words of the SINUMERIK language that TurnDesk does not execute, with their alternatives.
 
-They are refused by their names, so that none is taken for a subprogram or a variable.
+These words are rejected by name, so that none of them is mistaken for a subprogram or a variable.
 """
 
 from __future__ import annotations

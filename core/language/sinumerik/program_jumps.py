@@ -1,4 +1,4 @@
-"""Lines that steer the program: GOTOF, GOTOB, IF, CASE, WHILE, FOR, LOOP, REPEAT, PROC, DEF, MSG, STOPRE."""
+"""Reader of program control lines: jumps, IF, CASE, loops, REPEAT, PROC, DEF, MSG and STOPRE."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from core.message import Message
 
 
 class Steering(StrEnum):
-    """What a line does besides words."""
+    """Keyword of a program control line."""
 
     GOTO_FORWARD = "GOTOF"
     GOTO_BACK = "GOTOB"
@@ -48,9 +48,9 @@ class Steering(StrEnum):
 
 
 class Defined(NamedTuple):
-    """A variable of DEF with the formula of its first value; None is 0.
+    """A variable of DEF with the formula of its initial value; None means 0.
 
-    ``sizes`` are those of an array, one for each of its dimensions; ``values`` a list for its elements.
+    ``sizes`` are the dimensions of an array, and ``values`` is a list of values for its elements.
     """
 
     name: str
@@ -62,7 +62,7 @@ class Defined(NamedTuple):
 
 
 class Choice(NamedTuple):
-    """One branch of CASE; without ``formula`` that of DEFAULT."""
+    """One branch of CASE; ``formula`` is None for the DEFAULT branch."""
 
     formula: Formula | None
     steering: Steering
@@ -70,11 +70,12 @@ class Choice(NamedTuple):
 
 
 class Jump(NamedTuple):
-    """One steering line. ``condition`` of IF, CASE, WHILE, UNTIL; ``target`` of a jump: a label, or N123.
+    """One program control line. ``condition`` belongs to IF, CASE, WHILE and UNTIL.
 
-    ``name first last`` are variable, start and end of FOR; ``name parameters saves`` of PROC; ``pieces`` are
-    texts and formulas of MSG. REPEAT goes from ``target`` to ``until``, ``passes`` times. ``other`` is one
-    more IF … GOTO of the block. ``column`` from 1.
+    ``target`` of a jump is a label or a block number such as N123. ``name``, ``first`` and ``last`` are the
+    variable, start and end of FOR. PROC uses ``name``, ``parameters`` and ``saves``. ``pieces`` are the texts
+    and formulas of MSG. REPEAT executes the lines from ``target`` to ``until`` another ``passes`` times.
+    ``other`` is a further IF … GOTO in the block. ``column`` counts from 1.
     """
 
     steering: Steering
@@ -120,13 +121,13 @@ _TOLERATED_BRACKET = frozenset({Steering.GROUP_BEGIN, Steering.GROUP_END, Steeri
 
 
 def steering_word(text: str, at: int) -> Steering | None:
-    """The word of a steering line that stands here (``text`` in capitals)."""
+    """Return the keyword at this index of a line in capitals, or None."""
     match = _WORDS.match(text, at)
     return None if match is None else Steering(match.group(1))
 
 
 def read_jump(text: str, written: str, at: int, steering: Steering) -> Jump:
-    """The line whose steering word stands at ``at``; ``written`` in its own case. Raises FormulaError."""
+    """Read the line whose keyword is at ``at``; ``written`` is the original text. Raises FormulaError."""
     reader = _Reader(text, written, at, steering)
     jump = reader.jump()
     reader.demand_end()
@@ -157,7 +158,10 @@ class _Reader(BlockReader):
         return Jump(self._steering, self._column) if read is None else read()
 
     def _demand(self, pattern: re.Pattern[str], problem: str, hint: str) -> re.Match[str]:
-        """Return what the pattern matches here, and move behind it. Raises FormulaError without a match."""
+        """Return the match of the pattern at this position and move past it.
+
+        Raises FormulaError without a match.
+        """
         match = self.take(pattern)
         if match is None:
             raise FormulaError(self.at, problem, hint)
@@ -179,7 +183,7 @@ class _Reader(BlockReader):
             raise FormulaError(self.at, text, "Put the extra text in a separate block.")
 
     def _if(self) -> Jump:
-        """With a jump behind the condition the whole branch; without one the beginning of IF … ENDIF."""
+        """Read an IF: a conditional jump, or the start of IF … ENDIF if no jump follows the condition."""
         condition = self.formula()
         match = self.take(_GOTO)
         if match is None:
@@ -193,7 +197,7 @@ class _Reader(BlockReader):
         return jump
 
     def _case(self) -> Jump:
-        """CASE R1 OF 1 GOTOF A 2 GOTOF B DEFAULT GOTOF C."""
+        """Read a line such as CASE R1 OF 1 GOTOF A 2 GOTOF B DEFAULT GOTOF C."""
         condition, choices = self.formula(), list[Choice]()
         self.demand(_OF, "CASE needs OF", "Write, for example, CASE R1 OF 1 GOTOF A DEFAULT GOTOF B.")
         while self.rest:
@@ -212,7 +216,7 @@ class _Reader(BlockReader):
         return Jump(Steering.FOR, self._column, name=name, first=first, last=self.formula())
 
     def _repeat(self) -> Jump:
-        """REPEAT alone begins REPEAT … UNTIL; with a label or two it runs a part of the program again."""
+        """Read a REPEAT: the start of REPEAT … UNTIL, or with labels the repetition of a program section."""
         labels = list[str]()
         while len(labels) < 2 and (match := self.take(_REPEATED)):
             labels.append(match.group(1))
@@ -247,7 +251,7 @@ class _Reader(BlockReader):
         return made
 
     def _first_value(self, made: Defined) -> Defined:
-        """What stands behind the = of DEF: a text, a list for an array, a formula."""
+        """Read the text after the = of DEF: a string, a list for an array, or a formula."""
         quoted = _JOINED.match(self.written, self.at)
         if made.kind == "STRING" and quoted and quoted[1] is not None:
             self.at = quoted.end()
@@ -256,7 +260,7 @@ class _Reader(BlockReader):
         return made._replace(formula=self.formula()) if values is None else made._replace(values=values)
 
     def _sign(self) -> str:
-        """A comma or = that stands here."""
+        """Read a comma or an equals sign; return an empty string for any other character."""
         match = self.take(_SIGN)
         return "" if match is None else match[1]
 
@@ -274,7 +278,7 @@ class _Reader(BlockReader):
         return Jump(self._steering, self._column, name=match[1], parameters=parameters)
 
     def _message(self) -> Jump:
-        """MSG("TEXT"<<R1): texts and formulas, joined by <<."""
+        """Read a line such as MSG("TEXT"<<R1): texts and formulas that << concatenates."""
         closing = self.upper.rstrip()
         if not closing.endswith(")"):
             raise FormulaError(self.at, *_NO_TEXT)
@@ -286,7 +290,7 @@ class _Reader(BlockReader):
                 self.at = match.end()
                 pieces += [] if match[1] is None else [match[1]]
             elif self.upper[self.at : end].lstrip().startswith(","):
-                break  # what stands behind the text says only how it is shown
+                break  # The text after the comma only changes how the message is displayed.
             else:
                 pieces.append(self.formula())
         self.at = len(self.upper)

@@ -1,4 +1,4 @@
-"""Alarms in the shape of this control: number, channel and block, axis, what is wrong, and what to do."""
+"""SINUMERIK alarms in the format of the control: number, channel, block, axis, message and remedy."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ CHANNEL = 1
 def fault(
     line: int, column: int, code: int | str, block: str, text: str, hint: str, *, axis: str = ""
 ) -> Diagnostic:
-    """An error: an alarm of the control by its number, or by a word one of ours that has none there."""
+    """Return an error with the control's alarm number as its code, or with a TurnDesk code in words."""
     where = Message("channel {channel} block {block}", channel=CHANNEL, block=block)
     where = Message("{place} axis {axis}", place=where, axis=axis) if axis else where
     if isinstance(code, int):

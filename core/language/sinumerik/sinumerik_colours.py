@@ -1,4 +1,4 @@
-"""The parts of a line by kind, for whoever colours a text: the same lexer that reads it to run."""
+"""Syntax coloring of SINUMERIK lines with the lexer of the interpreter."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _OF_NAME = {
 
 
 def spans(text: str) -> list[Span]:
-    """The coloured parts of a line, faults last so that they are seen."""
+    """Return the colored spans of a line, with errors last."""
     if HEADER.fullmatch(text):
         return [Span(0, len(text), Ink.CALL)]
     line = lex_line(1, text)

@@ -1,4 +1,4 @@
-"""Source text of one SINUMERIK block → words. What the grammar does not name is an error."""
+"""Lexer of SINUMERIK blocks. Text outside the grammar is an error."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from core.message import Message
 
 _NUMBER = re.compile(SIGNED)
 _HEAD = re.compile(r"\s*(?:/([0-9]?))?\s*(?:([N:])([0-9]+))?\s*(?:([A-Z_][A-Z_][A-Z0-9_]*)\s*:)?\s*")
-# Nearly all words are these; they need no look at each sign.
+# Nearly all words match this pattern and need no check of each character.
 _PLAIN = re.compile(rf"\s*([GMXYZCIJKFSTD])({SIGNED})(?=[\sA-Z]|$)")
 _NAME = re.compile(r"[A-Z_][A-Z_][A-Z0-9_]*|L[0-9]+(?![0-9.])")
 _ASSIGNED = re.compile(r"(R[0-9]+|[A-Z_]+[0-9]*)\s*=(?!=)\s*")
@@ -45,15 +45,17 @@ _TRANSFORMATIONS = frozenset({"TRANSMIT", "TRACYL", "TRAFOOF"})
 
 
 def lex_line(number: int, text: str, third_axis: str = OWN) -> Line:
-    """The words of line ``number``. Never raises: errors are in the line, each with its column.
+    """Read the words of line ``number``.
 
-    ``third_axis`` is the name of the machine's third axis, whose words come out as those of C.
+    This function never raises; the line contains its errors with columns.
+
+    ``third_axis`` is the name of the machine's third axis. Its words are returned as words of C.
     """
     end = comment_start(text)
     code, comment = text[:end], end + 1 if end < len(text) else 0
     upper = ascii_upper(code)
     head = _HEAD.match(upper)
-    assert head is not None  # every part of it may be missing
+    assert head is not None  # The pattern always matches, because all its parts are optional.
     level, kind, count, label = head.groups()
     block = f"{kind}{count}" if kind else label or Message("in line {line}", line=number)
     wrong = -1
@@ -96,7 +98,7 @@ def lex_line(number: int, text: str, third_axis: str = OWN) -> Line:
 
 
 class _Scanner:
-    """Goes once through the code of a block; what it cannot read it reports and skips."""
+    """Scanner of the code of one block, which reports unreadable text and skips it."""
 
     def __init__(self, number: int, block: str, text: str, written: str) -> None:
         self.words: list[Word] = []
@@ -109,14 +111,14 @@ class _Scanner:
         self._number, self._block, self._text = number, block, text
 
     def steer(self, at: int, steering: Steering) -> None:
-        """A line that steers the program."""
+        """Read a program control line."""
         try:
             self.jump = read_jump(self._text, self._written, at, steering)
         except FormulaError as problem:
             self.refuse(problem.at + 1, f"{problem}", problem.hint)
 
     def scan(self, at: int) -> None:
-        """All words from ``at`` on."""
+        """Read all words from index ``at`` on."""
         text = self._text
         while at < len(text):
             if match := _PLAIN.match(text, at):
@@ -140,7 +142,7 @@ class _Scanner:
                 at = self._skip(at, Message("{name} is not a valid word", name=text[at]), hint)
 
     def _plain(self, match: re.Match[str]) -> int:
-        """A letter and its number, with nothing behind that could belong to it."""
+        """Add a letter with a plain number."""
         letter, number = match.groups()
         word = Word(letter, float(number), match.start(1) + 1, letter + number)
         if wrong := beyond(word):
@@ -149,7 +151,7 @@ class _Scanner:
         return match.end()
 
     def no_axis(self, at: int, third_axis: str) -> None:
-        """A word of C on a machine whose third axis has another name."""
+        """Report a C word on a machine whose third axis has another name."""
         self._outside(
             at,
             at + 1,
@@ -158,13 +160,13 @@ class _Scanner:
         )
 
     def tell_habit(self) -> None:
-        """Where the block is one of the ISO mode, what stands for it here, in place of the first mistake."""
+        """Replace the first error with the advice for an ISO word if the block contains one."""
         if habit := iso_habit(self._text):
             number, block = self._number, self._block
             self.errors[:] = [fault(number, habit.at + 1, "other-control", block, habit.text, habit.hint)]
 
     def refuse(self, column: int, text: str, hint: str) -> None:
-        """A syntax alarm at this column."""
+        """Report a syntax alarm at this column."""
         self._tell(
             fault(
                 self._number, column, SYNTAX, self._block, Message("syntax error: {what}.", what=text), hint
@@ -172,7 +174,10 @@ class _Scanner:
         )
 
     def _tell(self, found: Diagnostic) -> None:
-        """The first mistake of a block is told; what follows may come of it."""
+        """Add the finding if it is the first error of the block.
+
+        Later errors may be consequences of the first error.
+        """
         if not self.errors:
             self.errors.append(found)
 
@@ -182,7 +187,7 @@ class _Scanner:
         return rest.end() if rest else at + 1
 
     def _outside(self, at: int, end: int, name: str, why: str) -> int:
-        """A word of the language that this control does not execute."""
+        """Report a word of the language that TurnDesk does not execute."""
         text, hint = (
             Message("{word}: {problem}.", word=name, problem=why),
             ("Remove this text from the program."),
@@ -192,7 +197,7 @@ class _Scanner:
         return rest.end() if rest and not self._text[end : end + 1].isspace() else end
 
     def _letter(self, at: int) -> int:
-        """A letter and its number."""
+        """Read a letter and its number."""
         text, letter = self._text, self._text[at]
         if letter == "N" and text[at + 1 : at + 2].isdigit():
             return self._skip(
@@ -215,7 +220,7 @@ class _Scanner:
         return self._keep(Word(letter, float(match[0]), at + 1, text[at : match.end()]), match.end())
 
     def _named(self, match: re.Match[str]) -> int:
-        """A key word, or the name of a subprogram, which stands alone in its block."""
+        """Read a keyword or a subprogram name; a subprogram name must be alone in its block."""
         name, at, end = match[0], match.start(), match.end()
         if name in known.KEYS:
             return self._key(name, at, end)
@@ -245,7 +250,7 @@ class _Scanner:
         return self._skip(at, Message("{name} is not a valid word", name=name), hint)
 
     def _key(self, name: str, at: int, end: int) -> int:
-        """A word without a value, or with what stands in its brackets."""
+        """Read a word without a value, or with arguments in parentheses."""
         if name in _TRANSFORMATIONS:
             return self._transformation(name, at, end)
         self.words.append(Word(name, None, at + 1, name))
@@ -253,7 +258,7 @@ class _Scanner:
         return end if blank is None else blank.end()
 
     def _transformation(self, name: str, at: int, end: int) -> int:
-        """TRANSMIT, TRACYL and TRAFOOF with what stands in their brackets."""
+        """Read TRANSMIT, TRACYL or TRAFOOF with its arguments."""
         arguments: tuple[Argument, ...] | None = ()
         if bracket := _BRACKET.match(self._text, end):
             arguments, end = self._arguments(name, bracket)
@@ -262,7 +267,7 @@ class _Scanner:
         return end
 
     def _arguments(self, name: str, bracket: re.Match[str]) -> tuple[tuple[Argument, ...] | None, int]:
-        """Return the arguments in this bracket, None if they cannot be read; and the index behind them."""
+        """Return the arguments in parentheses, or None if they are invalid, and the index after them."""
         try:
             reader = BlockReader(self._text, self._written, bracket.end() - 1)
             return read_arguments(reader), reader.at
@@ -272,7 +277,7 @@ class _Scanner:
             return None, len(self._text)
 
     def _of_a_spindle(self, name: str, at: int, end: int) -> int:
-        """SETMS, WAITS, SETMS(1): with the number of a spindle behind, or meant for the first."""
+        """Read SETMS, WAITS or SETMS(1); without a number, the word applies to spindle 1."""
         match = _NUMBERED.match(self._text, end)
         number = int(match[1] or 1) if match is not None else 1
         word = Word(name, float(number), at + 1, f"{name}({number})", spindle=number)
@@ -280,7 +285,7 @@ class _Scanner:
         return match.end() if match is not None else end
 
     def _behind_call(self, word: str, at: int, end: int) -> int:
-        """MCALL with or without a name, CALL "NAME"."""
+        """Read the program name after MCALL or CALL; MCALL without a name is also valid."""
         match = _PROGRAM.match(self._text, end)
         self.modal_call, self.call_column = word == "MCALL", at + 1
         if match is not None:
@@ -316,7 +321,7 @@ class _Scanner:
         return len(self._text)
 
     def _element(self, match: re.Match[str]) -> int:
-        """R[ ]= or an element of an array."""
+        """Read an assignment to R[ ] or to an element of an array."""
         name, at = match[1], match.start()
         if name in known.NAMES_OUTSIDE or _OF_AN_AXIS.match(self._text, match.end()):
             why = known.WHY_OUTSIDE.get(name, "this control does not support axis-specific words")
@@ -345,7 +350,7 @@ class _Scanner:
         return self._keep(word._replace(values=listed), value.end)
 
     def _assigned(self, match: re.Match[str]) -> int:
-        """A word with =."""
+        """Read a word with an equals sign."""
         name, at, end = match[1], match.start(), match.end()
         index = match[2] if match.re is _INDEXED else None
         if of := _OF_SPINDLE.fullmatch(name):
@@ -399,7 +404,7 @@ class _Scanner:
         return self._keep(Word(name, value.number, at + 1, written, Form.PLAIN, value.formula), value.end)
 
     def _target(self, name: str, at: int, found: re.Match[str]) -> int:
-        """AC( ), IC( ), DC( ), ACP( ), ACN( )."""
+        """Read a target such as AC( ), IC( ), DC( ), ACP( ) or ACN( )."""
         form, bracket = found[1], found[2]
         if form not in known.FORMS.get(name, frozenset()):
             allowed = ", ".join(sorted(known.FORMS.get(name, ()))) or "a number or a formula"

@@ -1,7 +1,7 @@
-"""What a SINUMERIK line is made of: words with a number, an R parameter, or a target in brackets.
+"""Words and lines of SINUMERIK programs. A value is a number, an R parameter or a target in parentheses.
 
-The third axis has the name that the machine's builder has given it: B, Y or Q1 in the place of C. Inside it
-is C all the same: its words are read as those of C, and told as they are written.
+The machine builder defines the name of the third axis, such as B, Y or Q1 in place of C. TurnDesk reads its
+words as words of C and shows them as they are written.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ LONGEST_LINE = 512
 
 
 class Form(StrEnum):
-    """How a position is meant, for one word and one block; plain: as G90 or G91 says."""
+    """Meaning of a position for one word in one block; with PLAIN, G90 or G91 determines the meaning."""
 
     PLAIN = ""
     AC = "AC"
@@ -35,10 +35,13 @@ class Form(StrEnum):
 
 
 class Word(NamedTuple):
-    """One word. ``name`` is upper case; ``value`` its number, or None where a ``formula`` gives it.
+    """One word.
 
-    ``column`` is that of its first sign, from 1; ``text`` as written, without blanks. ``string`` is a name in
-    quotes, T="ROUGHER"; ``spindle`` the number in M1=3, S1=500 and SPOS[1]=90, 0 without one.
+    ``name`` is in upper case. ``value`` is its number, or None if ``formula`` determines the value.
+
+    ``column`` is the column of its first character, from 1, and ``text`` is the word as written, without
+    blanks. ``string`` is a name in quotation marks, as in T="ROUGHER". ``spindle`` is the spindle number, as
+    in M1=3 or SPOS[1]=90; 0 if it is not specified.
     """
 
     name: str
@@ -49,19 +52,20 @@ class Word(NamedTuple):
     formula: Formula | None = None
     string: str = ""
     spindle: int = 0
-    element: Formula | None = None  # index of R[ ] or of an array; ``name`` is then R0, or the array's
+    # index of R[ ] or of an array; ``name`` is then R0 or the name of the array
+    element: Formula | None = None
     arguments: tuple[Argument, ...] = ()  # of TRANSMIT( ) and TRACYL( )
     values: Values | None = None  # SET( ) or REP( ), from ``element`` on
 
 
 class Line(NamedTuple):
-    """One block of source; ``number`` is its line, from 1.
+    """One block of a program; ``number`` is its line, from 1.
 
-    ``block`` is what alarms call it: its N or : number, its label, or its line. ``skip`` is the level of
-    ``/`` (0 for a bare one), None without. ``call`` names a subprogram or a cycle, run ``passes`` times with
-    ``arguments`` (None: without brackets), with ``modal_call`` (MCALL) behind each move from now on. ``text``
-    is the code as written without number, label and comment. ``errors`` tells what could not be read; such a
-    line must not run.
+    ``block`` is the name of the block in alarms: its N or : number, its label, or its line. ``skip`` is the
+    level of ``/`` (0 without a digit), or None. ``call`` is the name of a subprogram or cycle, which is
+    executed ``passes`` times with ``arguments`` (None without parentheses). With ``modal_call`` (MCALL), the
+    call is executed after each following move. ``text`` is the code as written, without number, label and
+    comment. A line with ``errors`` must not be executed.
     """
 
     number: int
@@ -75,21 +79,24 @@ class Line(NamedTuple):
     comment_column: int = 0
     text: str = ""
     errors: tuple[Diagnostic, ...] = ()
-    jump: Jump | None = None  # what steers the program; it has no words beside it
+    jump: Jump | None = None  # program control statement; such a line has no words
     arguments: tuple[Argument, ...] | None = None
     modal_call: bool = False
 
     @property
     def executable(self) -> bool:
-        """Whether there is anything to do in it."""
+        """Whether the line has anything to execute or an error to report."""
         return bool(self.words or self.call or self.errors or self.jump or self.modal_call)
 
     def refuse(self, column: int, code: int | str, text: str, hint: str) -> ProgramError:
-        """An error at this column, to be raised: an alarm of the control by its number, or one of ours."""
+        """Return the error to raise at this column.
+
+        ``code`` is an alarm number of the control, or a TurnDesk code in words.
+        """
         return ProgramError(fault(self.number, column, code, self.block, text, hint))
 
 
-# --- vocabulary: what this control knows, and what it knows of but does not execute
+# --- vocabulary: supported words, and known words that are not executed
 
 
 AXES = ("X", "Y", "Z", "C")
@@ -185,18 +192,19 @@ OWN = "C"
 
 
 def words_as_c(text: str, name: str) -> tuple[str, int]:
-    """A line's code, in capitals, with the words of the axis ``name`` as words of C at the same columns.
+    """Return the code with the words of axis ``name`` changed to words of C at the same columns.
 
-    Beside it the index of a word of C, which this machine has not; -1 without one.
+    ``text`` is in capitals. The second value is the index of an original C word, which is an error on this
+    machine, or -1.
     """
     own = _pattern(OWN).search(text)
-    pieces = text.split('"')  # every other one is a text in quotes
+    pieces = text.split('"')  # every second piece is a quoted text
     pieces[::2] = [_pattern(name).sub(OWN.ljust(len(name)), piece) for piece in pieces[::2]]
     return '"'.join(pieces), own.start() if own and text.count('"', 0, own.start()) % 2 == 0 else -1
 
 
 @lru_cache(maxsize=16)
 def _pattern(name: str) -> re.Pattern[str]:
-    """A word of the axis: with = behind it, or for a single letter a number."""
+    """Return a pattern for a word of the axis: with = after it, or with a number after a single letter."""
     behind = r"\s*=(?!=)" if len(name) > 1 else r"(?:\s*=(?!=)|[-+]?\.?[0-9]+(?![0-9]*\s*=))"
     return re.compile(rf"(?<![A-Z_$]){name}(?={behind})")

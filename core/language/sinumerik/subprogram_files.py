@@ -1,4 +1,4 @@
-"""Subprograms: in the same file behind %_N_NAME_SPF lines, or as NAME.spf beside the main program."""
+"""Subprograms: in the same file after %_N_NAME_SPF lines, or as NAME.spf in the main program's folder."""
 
 from __future__ import annotations
 
@@ -14,21 +14,21 @@ from core.language.source import Source
 HEADER = re.compile(r"\s*%_N_([A-Z0-9_]+)_(MPF|SPF)\s*(?:;.*)?", re.IGNORECASE)
 ENDING = ".SPF"
 PROGRAM_NAME = re.compile(r"[A-Z_][A-Z0-9_]{1,30}")
-# Nearly all lines begin with a number, or with a letter and a number; only the others can be calls.
+# Nearly all lines begin with a number or with a letter and a number. Only other lines can be calls.
 _MAY_CALL = re.compile(
     r"\s*(?:/[0-9]?)?\s*(?:[N:][0-9]+)?\s*(?:\w+\s*:)?\s*(?:L[0-9]|[A-Z_]{2})", re.IGNORECASE
 )
 
 
 class Section(NamedTuple):
-    """One program of a file: its name (empty: the file's own), and its lines as indices into the source."""
+    """One program of a file: its name, which is empty for the file's main text, and its line indices."""
 
     name: str
     lines: range
 
 
 def sections(source: Source) -> list[Section]:
-    """The programs of a file; the first is the main program."""
+    """Return the programs of a file; the first one is the main program."""
     heads = [
         (i, match[1].upper()) for i, line in enumerate(source.lines) if (match := HEADER.fullmatch(line))
     ]
@@ -42,7 +42,7 @@ def sections(source: Source) -> list[Section]:
 
 
 def called_files(source: Source) -> Iterator[str]:
-    """Names of the files, in capitals, of the subprograms that are called and not in the file itself."""
+    """Yield the file names, in capitals, of the subprograms that are called but not in the file itself."""
     inside = {section.name for section in sections(source)}
     for number, text in enumerate(source.lines, start=1):
         if not _MAY_CALL.match(text):
@@ -54,7 +54,7 @@ def called_files(source: Source) -> Iterator[str]:
 
 
 def _names(line: Line) -> Iterator[str]:
-    """Programs that a line calls by name, and those that it hands over to a cycle as a contour."""
+    """Yield the programs that a line calls by name or passes to a cycle as a contour."""
     if line.call:
         yield line.call
         for argument in line.arguments or ():
@@ -63,5 +63,5 @@ def _names(line: Line) -> Iterator[str]:
 
 
 def program_name(source: Source) -> str:
-    """The name by which a program calls this file."""
+    """Return the name with which a program calls this file."""
     return Path(source.name).stem.upper()

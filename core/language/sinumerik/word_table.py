@@ -1,6 +1,6 @@
-"""The vocabulary of SINUMERIK turning: G functions by group, words with a value, M functions.
+"""Vocabulary of SINUMERIK turning: G functions by group, words with a value, and M functions.
 
-The code book (``code_books/sinumerik``) explains each of them. Tests compare its chapters with this table.
+The code book (``code_books/sinumerik``) explains each word. Tests compare its chapters with this table.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Values of SINUMERIK words: a number, or a formula of R parameters; and which numbers a word accepts."""
+"""Values of SINUMERIK words, which are numbers or formulas, and the checks of their ranges."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _LONGEST_CODE = 4  # digits
 
 
 class Value(NamedTuple):
-    """A number, or the formula that gives it; and where it ends."""
+    """A number or a formula, and the index after it."""
 
     number: float | None
     formula: Formula | None
@@ -24,7 +24,7 @@ class Value(NamedTuple):
 
 
 def value_at(text: str, at: int) -> Value:
-    """The value that begins at this place. Raises FormulaError where none does."""
+    """Return the value that starts at this index. Raises FormulaError without a value."""
     made, end = formula_at(text, at)
     match made:
         case Number(value):
@@ -37,7 +37,7 @@ def value_at(text: str, at: int) -> Value:
 
 
 def demand_parameters(formula: Formula, at: int) -> None:
-    """R parameters that there are, all through a formula."""
+    """Raise FormulaError if a formula contains an R parameter that does not exist."""
     match formula:
         case Parameter("R", int(number), column) if number > known.MOST_R:
             raise FormulaError(
@@ -51,12 +51,12 @@ def demand_parameters(formula: Formula, at: int) -> None:
 
 
 def variable(name: str) -> bool:
-    """Whether a word sets an R parameter or a variable of the program."""
+    """Return whether a word assigns an R parameter or a variable of the program."""
     return PARAMETER.fullmatch(name) is not None or (len(name) > 1 and name not in known.VOCABULARY)
 
 
 def beyond(word: Word) -> tuple[str, str] | None:
-    """What is wrong with the number of a word, and what to do; None where nothing is."""
+    """Return the message and hint for an invalid number of a word; None if the number is valid."""
     if word.value is None:
         return None
     if word.name in {"G", "M"}:
@@ -68,7 +68,7 @@ def beyond(word: Word) -> tuple[str, str] | None:
         ), "Write a whole number of up to four digits."
     if word.name in {"T", "D"} and not word.value.is_integer():
         return Message("{word} is not a valid tool or edge number", word=word.text), "Enter a whole number."
-    low, high = known.REACH.get(word.name, known.REACH["R"])  # a variable is like an R parameter
+    low, high = known.REACH.get(word.name, known.REACH["R"])  # a variable has the range of an R parameter
     if low <= word.value <= high:
         return None
     return Message("{word} is out of range", word=word.text), (

@@ -1,4 +1,4 @@
-"""Checks of how much a move takes off: too much for the tool, or nothing where metal is meant."""
+"""Checks of the material that a move removes: too much for the tool, or nothing where a cut is expected."""
 
 from __future__ import annotations
 
@@ -24,58 +24,62 @@ NEAR = 2.0
 """mm; further from all metal than that is in the air."""
 
 _AIR_TIME, _AIR_WAY = 5.0, 5.0  # s, mm
-_LONG_AIR = 20.0  # s, of moves one after the other
-_AWAY = 2.54  # mm; a move that leads away from the part, or in beside it
-_OUT = 5.2  # mm before the face: a feed back along what was turned ends nearer
+_LONG_AIR = 20.0  # s of consecutive moves
+_AWAY = 2.54  # mm, least length of a move away from the part or alongside it
+_OUT = 5.2  # mm before the face; a feed back along the turned surface ends closer to it
 _LEAST = 1.0  # mm of feeds between two rapids
 _BESIDE = 5.0  # mm outside the bar
 _BEHIND_FACE = 0.5  # mm
 _PLACES = (0.05, 0.15, 0.25, 0.35, 0.45, 0.55, 0.65, 0.75, 0.85, 0.95)
-# Largest usual depth of cut in lengths of the cutting edge (a round insert: diameters), for medium
+# =
 # geometries: Widia, "Selection of insert", the column -LM of its table of effective lengths.
 USUAL: Mapping[str, float] = {"S": 0.5, "C": 0.5, "W": 0.4, "T": 0.3, "D": 0.3, "V": 0.2, "R": 0.3}
 _OTHER_SHAPE = 0.5
-# The largest share that makers allow for roughing geometries.
+# =
 LARGEST: Mapping[str, float] = {"S": 2 / 3, "C": 2 / 3, "W": 0.5, "T": 0.5, "D": 0.5, "V": 0.25, "R": 0.4}
-_OF_BAR = 0.5  # of a boring bar's diameter
-_USUAL = insert_of("C", 12.7, 0.8)  # CNMG432, the largest that a small lathe usually has
-_COARSE = 0.8  # of the nose radius: the usual limit of a turned face
-_OF_WIDTH = 0.12  # of a grooving edge; Ingersoll's catalog of 2011 has .075
-_OF_DRILL = 0.04  # of the diameter of a drill: twice the usual .02
+_OF_BAR = 0.5  # fraction of the diameter of a boring bar
+_USUAL = insert_of("C", 12.7, 0.8)  # CNMG432, the largest usual insert of a small lathe
+_COARSE = 0.8  # fraction of the nose radius, the usual limit of a turned surface
+_OF_WIDTH = 0.12  # fraction of the width of a grooving edge; Ingersoll's catalog of 2011 has .075
+_OF_DRILL = 0.04  # fraction of the diameter of a drill, twice the usual .02
 _OF_REAMER = 0.1
-_BREAKS = 5.0  # times one of these; drills and blades are made for feeds that differ by so much
+_BREAKS = 5.0  # multiple of these limits; suitable feeds of drills and blades vary by this factor
 _BREAKS_INSERT = 2.5
-_NEVER_BREAKS = 0.15  # mm of feed of an insert, however sharp its nose
-_TURNS_WIDE = 0.8  # of the width, by a grooving edge along Z: the same catalog
-_BLADE_FINISH = 0.25  # mm along Z that a parting blade may take off
+_NEVER_BREAKS = 0.15  # mm of feed that never breaks an insert, even with a sharp nose
+_TURNS_WIDE = 0.8  # fraction of the width for a grooving edge along Z, from the same catalog
+_BLADE_FINISH = 0.25  # mm of depth that a parting blade may turn along Z
 _DRILLS = frozenset({ToolKind.DRILL, ToolKind.CENTRE_DRILL, ToolKind.REAMER})
 INSERTS = frozenset({ToolKind.TURNING, ToolKind.BORING})
 
 
 @dataclass(slots=True)
 class AirChecks:
-    """Goes with the moves in their order: ``feed`` or ``rapid`` once each has been cut, ``pause`` between."""
+    """Checks for missing cuts, called with the moves in their order.
+
+    ``feed`` or ``rapid`` is called after each move has been cut, and ``pause`` between moves.
+    """
 
     stock: Stock | None = None
     _tool: int = 0
-    _milled: dict[int, tuple[int, int] | None] = field(default_factory=dict)  # T → line and n, until it cuts
-    _cut_before: bool = False  # the move before has taken metal off, or gone along it
-    _left_part: TipMove | None = None  # a feed that led away from the part, and met nothing
-    _air: float = 0.0  # s without metal since the last cut
-    _fed: TipMove | None = None  # the first of the feeds since the last rapid, none of which came near metal
+    # T → line and block of its first feed, None after a cut
+    _milled: dict[int, tuple[int, int] | None] = field(default_factory=dict)
+    _cut_before: bool = False  # the previous move has cut or followed material
+    _left_part: TipMove | None = None  # a feed that led away from the part without a cut
+    _air: float = 0.0  # s in air since the last cut
+    _fed: TipMove | None = None  # the first feed since the last rapid if none of the feeds came near material
     _fed_length: float = 0.0
-    _has_cut: bool = False  # one of the feeds since the last rapid came near metal
-    _in_hole: TipMove | None = None  # the first feed of a drill since then, while it has cut nothing
-    _fresh: bool = False  # no feed since the last rapid
-    _cut_line: int = 0  # of the last feed that came near metal: a cycle's own rapids have it
-    _went_in: TipMove | None = None  # a rapid beside the part, where nothing has been cut since
+    _has_cut: bool = False  # a feed since the last rapid came near material
+    _in_hole: TipMove | None = None  # the first feed of a drill since the last rapid if it has cut nothing
+    _fresh: bool = False  # =
+    _cut_line: int = 0  # line of the last feed near material, which the rapids of a canned cycle share
+    _went_in: TipMove | None = None  # a rapid next to the part after which nothing has been cut
 
     def pause(self) -> None:
-        """The program waits or switches something: what it has gone in for."""
+        """Record a wait or a switched output, which may be the purpose of the present tool position."""
         self._went_in = None
 
     def rapid(self, move: TipMove, met: Cut, tool: int) -> Iterator[Found]:
-        """What the feeds before a rapid, and the rapids before it, should have cut."""
+        """Yield faults of the feeds before a rapid and of earlier rapids, which have cut nothing."""
         if tool != self._tool:
             self._tool, self._went_in = tool, None
         yield from self._end_of_feeds()
@@ -95,9 +99,10 @@ class AirChecks:
         self, move: TipMove, met: Cut, cutter: Cutter, part: TurnedPart, tool: int, forward: int,
         *, drill: bool = False,
     ) -> Iterator[Found]:  # fmt: skip
-        """What a feed that meets nothing should have cut; ``forward``: sign of Z the tool cuts towards.
+        """Yield faults of a feed that meets no material.
 
-        ``drill``: it is a drill of a known diameter.
+        ``forward`` is the sign of Z of the cutting direction. ``drill`` is True for a drill with a known
+        diameter.
         """
         if tool != self._tool:
             yield from self._end_of_feeds()
@@ -126,7 +131,7 @@ class AirChecks:
         self._cut_before = close
 
     def mill(self, line: int, n: int, tool: int, cut: Callable[[], bool]) -> None:
-        """A live tool has been fed; ``cut`` is asked of one that has cut nothing yet."""
+        """Record a feed of a live tool. ``cut`` is called only if the tool has not cut anything yet."""
         if self._milled.get(tool, (line, n)) is None:
             return
         if cut():
@@ -136,7 +141,7 @@ class AirChecks:
 
     @property
     def never_milled(self) -> list[tuple[int, int, int]]:
-        """Line and block of the first feed of each live tool that has cut nothing, and its T."""
+        """Line and block of the first feed of each live tool that has cut nothing, with its T."""
         return [(*at, tool) for tool, at in self._milled.items() if at is not None]
 
     def _end_of_feeds(self) -> Iterator[Found]:
@@ -170,16 +175,17 @@ class AirChecks:
             if self._out_of_part(move, cutter, fresh=fresh):
                 text = "This move feeds along Z out of the part and past its face, inside the stock diameter."
                 yield Found("unmade-cut", text)
-            elif near(cutter, part, move.points[0]) and not self._cut_before:  # behind a cut it is a retract
+            # after a cut the move is a retract
+            elif near(cutter, part, move.points[0]) and not self._cut_before:
                 self._left_part = move
 
     def _is_inside(self, move: TipMove) -> bool:
         return self.stock is not None and move.points[-1][0] < self.stock.front - NEAR
 
     def _out_of_part(self, move: TipMove, cutter: Cutter, *, fresh: bool) -> bool:
-        """Whether a tool is fed forwards out of the part, on what it has turned: a lost minus.
+        """Return whether a tool feeds forward out of the part on a turned surface, as after a missing minus.
 
-        One that bores is fed out of its bore; from the face on it is no more than that.
+        A boring tool is checked only if it starts at the face, because it feeds out of its bore.
         """
         if self.stock is None or cutter.drills:
             return False
@@ -211,7 +217,7 @@ class AirChecks:
             )
 
     def _outside_stock(self, move: TipMove) -> bool:
-        """Whether it cuts along Z beside the stock, and further out."""
+        """Return whether a move cuts along Z next to the stock but outside it."""
         stock, zs = self.stock, [z for z, _ in move.points]
         if stock is None or max(zs) - min(zs) < _AWAY or min(zs) > stock.front - _AWAY:
             return False
@@ -221,13 +227,13 @@ class AirChecks:
 
 
 def near(cutter: Cutter, part: TurnedPart, *places: Point) -> bool:
-    """Whether the edge stands near metal at one of these places at least."""
+    """Return whether the edge is near material at one of these positions."""
     around = ((0.0, -NEAR), (0.0, NEAR), (-NEAR, 0.0), (NEAR, 0.0))
     return any(cutter.meets(part, p, (p[0] + dz, p[1] + dr)) for p in places for dz, dr in around)
 
 
 def _share_in_air(cutter: Cutter, part: TurnedPart, move: TipMove) -> float:
-    """How much of a way is far from all metal, read at places along it."""
+    """Return the share of a move that is far from all material, sampled along the move."""
     places = [
         (a[0] + (b[0] - a[0]) * share, a[1] + (b[1] - a[1]) * share)
         for a, b in pairwise(move.points)
@@ -239,7 +245,7 @@ def _share_in_air(cutter: Cutter, part: TurnedPart, move: TipMove) -> float:
 def size_faults(
     move: TipMove, met: Cut, shape: ToolShape, cutter: Cutter, tool: int, *, stock_given: bool
 ) -> Iterator[Found]:
-    """Yield what is too large in a feed that has just cut ``met``."""
+    """Yield faults of a feed whose cut ``met`` is too large for the tool."""
     yield from _feed(move, shape, tool, held=cutter.held)
     if move.kind is Kind.THREAD:
         return
@@ -250,7 +256,7 @@ def size_faults(
 
 
 def _feed(move: TipMove, shape: ToolShape, tool: int, *, held: bool) -> Iterator[Found]:
-    """Feed per revolution against nose radius, width of a groover or diameter of a drill."""
+    """Check the feed per revolution against the nose radius, the groove width or the drill diameter."""
     feed = move.per_rev or (move.speed * 60.0 / abs(move.rpm) if move.rpm else 0.0)
     if not feed or move.kind is Kind.THREAD or shape.kind is ToolKind.TAP:
         return
@@ -265,7 +271,7 @@ def _feed(move: TipMove, shape: ToolShape, tool: int, *, held: bool) -> Iterator
 
 
 def _feed_limit(shape: ToolShape, *, held: bool) -> tuple[float, float, float]:
-    """Usual largest feed of a tool, mm (0: none), how many times that breaks it, and mm that never do."""
+    """Return the usual maximum feed in mm (0: none), the factor that breaks the tool, and a safe feed."""
     if shape.kind in _DRILLS and held:
         share = _OF_REAMER if shape.kind is ToolKind.REAMER else _OF_DRILL
         return share * shape.diameter, _BREAKS, 0.0
@@ -277,7 +283,7 @@ def _feed_limit(shape: ToolShape, *, held: bool) -> tuple[float, float, float]:
 
 
 def _too_fast(move: TipMove, shape: ToolShape, tool: int, feed: float) -> Message:
-    """Return the words for a feed over the limit of ``_feed_limit``."""
+    """Return the message for a feed above the limit of ``_feed_limit``."""
     name, text = edge_name(tool), move.modal.length_text
     shown = move.modal.feed_text(feed, per_rev=True)
     if shape.kind in _DRILLS:
@@ -303,15 +309,15 @@ def _too_fast(move: TipMove, shape: ToolShape, tool: int, feed: float) -> Messag
 
 
 def _is_along(move: TipMove) -> bool:
-    """Return whether a move goes along Z rather than across it."""
+    """Return whether a move is more along Z than across it."""
     (z0, r0), (z1, r1) = move.points[0], move.points[-1]
     return abs(z1 - z0) > abs(r1 - r0)
 
 
 def _blade_turns(move: TipMove, met: Cut, shape: ToolShape, tool: int) -> Iterator[Found]:
-    """A blade that turns further along Z than it is wide, and deeper than it can bend.
+    """Check that a blade does not turn further along Z than its width and deeper than it can bend.
 
-    A chamfer at 45° is not such a move, nor the last shaving off the wall of a groove.
+    A chamfer at 45° and the finishing cut on the wall of a groove are permitted.
     """
     (z0, r0), (z1, r1) = move.points[0], move.points[-1]
     if abs(z1 - z0) <= 2.0 * abs(r1 - r0):
@@ -331,11 +337,11 @@ def _blade_turns(move: TipMove, met: Cut, shape: ToolShape, tool: int) -> Iterat
 def _depth(
     move: TipMove, met: Cut, shape: ToolShape, cutter: Cutter, tool: int, *, stock_given: bool
 ) -> Iterator[Found]:
-    """Depth of a cut against the length of the edge, and against the bar of a boring tool.
+    """Check the depth of a cut against the edge length, and against the bar of a boring tool.
 
-    It is the mean depth: a finishing pass that ends in a shoulder shaves all of it for a moment. Across it is
-    the mean of Z. A pass that is deeper anywhere than its edge is long is an error, and so is one that is
-    deeper on the average than any insert of this shape, or the bar of a boring tool, can take.
+    The check uses the mean depth, because a finishing pass that ends at a shoulder briefly cuts all of it.
+    For a cut across Z, the mean is taken along Z. A pass that is deeper anywhere than the edge length is an
+    error. A mean depth that no insert of this shape, or no such bar, can cut is also an error.
     """
     along, text = _is_along(move), move.modal.length_text
     deep = _mean(met, along=along)
@@ -350,10 +356,10 @@ def _depth(
         return
     if not stock_given:
         return
-    if not cutter.held:  # the insert is assumed with its holder
+    if not cutter.held:  # =
         shape = replace(shape, insert="", diameter=0.0)
     largest, usual = _largest(shape), depth_limit(shape)
-    if deep > largest and move.rpm:  # a spindle that is switched by hand may stand
+    if deep > largest and move.rpm:  # a manually switched spindle may be stopped
         words = Message(
             "{tool} cuts {depth} deep in one pass, but its maximum depth of cut is {largest}.",
             tool=edge_name(tool),
@@ -372,20 +378,20 @@ def _depth(
 
 
 def _mean(met: Cut, *, along: bool) -> float:
-    """Mean depth along r, or along Z of a cut across; the pieces of an arc follow each other."""
+    """Return the mean depth along r, or along Z for a cut across; pieces of an arc follow each other."""
     if along:
         return met.area / max(met.width, met.front - met.back)
     return min(met.width, met.area / met.depth)
 
 
 def _largest(shape: ToolShape) -> float:
-    """Return the depth of cut, mm, at which the tool breaks; what is not stated of it has no limit."""
+    """Return the depth of cut in mm at which the tool breaks; unspecified dimensions set no limit."""
     bar = _OF_BAR * shape.diameter if shape.kind is ToolKind.BORING and shape.diameter else math.inf
     return min(bar, depth_limit(shape, LARGEST) if shape.insert.strip() else math.inf)
 
 
 def depth_limit(shape: ToolShape, shares: Mapping[str, float] = USUAL) -> float:
-    """Return the largest usual depth of cut, mm: a share of the straight edge or of a round insert."""
+    """Return the usual maximum depth of cut in mm, a share of the edge or of a round insert."""
     insert = _insert(shape)
     share = shares.get(insert.shape, _OTHER_SHAPE)
     edge = insert.edges[0] - insert.nose_radius if insert.edges else insert.inscribed_circle

@@ -1,4 +1,4 @@
-"""Checks of a cutting edge: its side, its place along the part, and the hand of the spindle."""
+"""Checks of a cutting edge: cutting side, position along the part, and direction of the spindle."""
 
 from __future__ import annotations
 
@@ -21,21 +21,21 @@ from core.proving.checks.thread_checks import Found
 from core.proving.tip_moves import TipMove
 from core.tool_edges import edge_name
 
-_WRONG_SIDE = 0.5  # mm that the back of an insert may take off
-_BEHIND = 0.05  # mm of metal behind the nose
-_FACED = 2.54  # mm that is usually faced off in one cut towards the axis
+_WRONG_SIDE = 0.5  # mm that the back of an insert may cut
+_BEHIND = 0.05  # mm of material cut after the nose
+_FACED = 2.54  # mm that is usually faced in one cut toward the axis
 _STEEPER = 2.0  # degrees
-_OVER_AXIS = 1.5  # mm beyond it, which a face or a part-off needs at most
-_TURNED_AWAY = 0.1  # mm beyond it, by a cut along Z that leaves nothing
+_OVER_AXIS = 1.5  # mm beyond the axis that a face or a part-off needs at most
+_TURNED_AWAY = 0.1  # mm beyond the axis for a cut along Z that leaves nothing
 _BEHIND_FACE = 0.5  # mm
 _PAST = 12.7  # mm
 _BEYOND_CUT = 0.2  # mm
-_ENTERS = 1.0  # mm; less is a chamfer or a face
+_ENTERS = 1.0  # mm; a shorter cut is a chamfer or a face
 _BREAKS_THROUGH = 2.54  # mm that a tool may go beyond the stock
 _OFF_AXIS = 0.1  # mm; less is a correction by a work shift
-_LOOP = 200.0  # degrees; an insert with a corner gets around less than 180
+_LOOP = 200.0  # degrees; an insert with a corner can cut an arc of less than 180
 _QUARTER = (80.0, 100.0)  # degrees
-_EDGE = 3.0  # mm of radius with which an edge is rounded at most
+_EDGE = 3.0  # mm, largest radius of a rounded edge
 _AT_FACE = 0.05  # mm
 _NEAR = 1e-6
 _DRILLS = frozenset({ToolKind.DRILL, ToolKind.CENTRE_DRILL, ToolKind.REAMER, ToolKind.TAP})
@@ -43,17 +43,17 @@ _DRILLS = frozenset({ToolKind.DRILL, ToolKind.CENTRE_DRILL, ToolKind.REAMER, Too
 
 @dataclass(slots=True)
 class EdgeChecks:
-    """Goes with the moves in their order, each once it has been cut."""
+    """Checks of cutting edges, called with the moves in their order after each has been cut."""
 
     stock: Stock | None = None
-    stock_given: bool = False  # and not assumed
-    parted_at: float | None = None  # Z to which the deepest part-off cuts, at the side of the chuck
-    _turned: dict[int, float] = field(default_factory=dict)  # T → which way its edge has been cut with
+    stock_given: bool = False  # the stock is specified instead of assumed
+    parted_at: float | None = None  # Z of the deepest part-off on the side of the chuck
+    _turned: dict[int, float] = field(default_factory=dict)  # T → direction in which its edge has cut
     _told: set[int] = field(default_factory=set)
-    _solid: float = 0.0  # mm of Z without a bore that the move under way enters
+    _solid: float = 0.0  # mm of solid material along Z that the present move enters
 
     def before_cut(self, move: TipMove, shape: ToolShape | None, part: TurnedPart) -> None:
-        """Note how much solid material a tool for bores is about to enter."""
+        """Record the length of solid material that a boring tool is about to enter."""
         self._solid = 0.0
         if shape is None or not shape.internal or move.quick:
             return
@@ -72,7 +72,7 @@ class EdgeChecks:
         part: TurnedPart,
         tool: int,
     ) -> Iterator[Found]:
-        """Yield the faults of a feed that has just cut; ``cuts``: what each piece of it has met."""
+        """Yield the faults of a feed that has just cut; ``cuts`` are the cuts of its straight pieces."""
         if shape is None or not met:
             return
         if cutter.held and shape.kind in INSERTS and _turning(move) > _LOOP and not is_round(shape):
@@ -103,11 +103,12 @@ class EdgeChecks:
         yield from self._past_part_off(move, shape, cutter, tool)
         yield from self._contour_past_part_off(move, shape, tool)
         yield from self._drilled(move, shape, tool)
-        if cutter.held and shape.kind in INSERTS and move.kind is not Kind.THREAD:  # else it is assumed
+        # otherwise the insert is assumed
+        if cutter.held and shape.kind in INSERTS and move.kind is not Kind.THREAD:
             yield from _wrong_side(move, cuts, shape, cutter, part, tool)
 
     def _spindle(self, move: TipMove, shape: ToolShape, cutter: Cutter, tool: int) -> Iterator[Found]:
-        """M03 and M04 against the hand of a drill; one edge cuts one way only."""
+        """Check M03 and M04 against the hand of a drill. Each edge must cut in one direction only."""
         if not move.rpm:
             return
         if shape.kind in _DRILLS:
@@ -123,7 +124,7 @@ class EdgeChecks:
             return
         radii = [r for _, r in move.points]
         if min(radii) < _NEAR and max(radii) > -_NEAR:
-            return  # over the axis
+            return  # the move crosses the axis
         way = math.copysign(1.0, move.rpm) * math.copysign(1.0, radii[0])
         if self._turned.setdefault(tool, way) != way and tool not in self._told:
             self._told.add(tool)
@@ -134,7 +135,7 @@ class EdgeChecks:
             yield Found("wrong-spindle-direction", words)
 
     def _over_axis(self, move: TipMove, met: Cut, cutter: Cutter, tool: int) -> Iterator[Found]:
-        """An outside tool that is fed through the axis, or cuts on its other side."""
+        """Check that an outside tool does not feed through the axis or cut on the other side of it."""
         face = (self.stock.front if self.stock is not None else 0.0) - _BEHIND_FACE
         beyond = max((-r * cutter.across for z, r in move.points[1:] if z < face), default=0.0)
         turns = max(r * cutter.across for _, r in move.points) < 0.0 and met.width > _ENTERS
@@ -168,7 +169,7 @@ class EdgeChecks:
             )
 
     def _contour_past_part_off(self, move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
-        """An arc that no part has: it lies on the bar's side of the deepest part-off."""
+        """Check for an arc on the bar side of the deepest part-off, which no part contains."""
         if self.parted_at is None or move.kind is not Kind.ARC or shape.kind not in INSERTS:
             return
         front = max(z for z, _ in move.points)
@@ -183,7 +184,7 @@ class EdgeChecks:
             yield Found("contour-past-part-off", words)
 
     def _past_stock(self, move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
-        """A feed beyond the far end of the stock; the point of a drill may come out of it."""
+        """Check that a feed does not pass the far end of the stock; the point of a drill may."""
         if self.stock is None or not self.stock_given:
             return
         z, allowed = min(z for z, _ in move.points), _BREAKS_THROUGH
@@ -229,16 +230,16 @@ def _turns_wrongly(move: TipMove, shape: ToolShape, tool: int) -> str:
 
 
 def _turns_backwards(shape: ToolShape, rpm: float) -> bool:
-    """Whether the spindle turns against the rake of a tool in front, which lies face up.
+    """Return whether the spindle turns against the rake of a front tool that is mounted face up.
 
-    A tool mounted upside down cuts the other way along Z than its hand says, and is not examined.
+    A tool mounted upside down cuts along Z opposite to its hand and is not checked.
     """
     upright = {Hand.RIGHT: -1, Hand.LEFT: 1}.get(shape.hand) == shape.direction[0]
     return shape.kind in INSERTS and upright and not shape.behind and rpm < 0.0
 
 
 def _off_axis(move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
-    """A round tool that is held still makes its hole on the axis alone."""
+    """Check that a stationary round tool is on the axis when it cuts."""
     off = min(abs(r) for _, r in move.points)
     if shape.kind in _DRILLS and move.rpm and off > _OFF_AXIS:
         words = Message(
@@ -250,7 +251,7 @@ def _off_axis(move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
 
 
 def _without_limit(move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
-    """A round tool under constant surface speed: on the axis that asks for any speed."""
+    """Check that a round tool does not cut on the axis under constant surface speed without an rpm limit."""
     off = min(abs(r) for _, r in move.points)
     if shape.kind in _DRILLS and move.modal.css and move.modal.css_max is None and off < _OFF_AXIS:
         words = Message(
@@ -261,7 +262,7 @@ def _without_limit(move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found
 
 
 def _turning(move: TipMove) -> float:
-    """By how many degrees the path of an arc turns; 0 of another move."""
+    """Return the angle in degrees by which the path of an arc turns; 0 for any other move."""
     if move.kind is not Kind.ARC or len(move.points) < 3:
         return 0.0
     headings = np.unwrap(np.arctan2(*np.diff(np.array(move.points), axis=0).T[::-1]))
@@ -272,7 +273,7 @@ def _turning(move: TipMove) -> float:
 def _hollow_at_edge(
     move: TipMove, shape: ToolShape, cutter: Cutter, part: TurnedPart, tool: int
 ) -> Iterator[Found]:
-    """A small quarter circle that begins along Z at the face, and so is hollow."""
+    """Check for a small quarter circle that starts along Z at the face and is therefore concave."""
     if not (cutter.held and shape.kind is ToolKind.TURNING and cutter.side is Side.OUTSIDE):
         return
     if not _QUARTER[0] < _turning(move) < _QUARTER[1] or shape.direction[0] >= 0:
@@ -293,16 +294,16 @@ def _hollow_at_edge(
 
 
 def part_depth(move: TipMove, stock: Stock | None) -> float:
-    """How deep a move ends behind the face of the stock, mm."""
+    """Return the depth in mm of the end of a move, measured from the face of the stock."""
     return (stock.front if stock is not None else 0.0) - min(z for z, _ in move.points)
 
 
 def _wrong_side(
     move: TipMove, cuts: Sequence[Cut], shape: ToolShape, cutter: Cutter, part: TurnedPart, tool: int
 ) -> Iterator[Found]:
-    """Yield what the back of an insert cuts: fed backwards at depth, or down a wall steeper than it clears.
+    """Check for cuts with the back of an insert: deep backward feeds, or walls that are too steep for it.
 
-    ``cuts`` has what each straight piece of the move has met.
+    ``cuts`` are the cuts of the straight pieces of the move.
     """
     forward, across = shape.direction
     if not forward or not across:
@@ -340,7 +341,7 @@ def _wrong_side(
 
 
 def _stands_behind(part: TurnedPart, met: Cut, forward: int, r: float, side: Side) -> bool:
-    """Whether metal above the tip is left right behind what was cut: a wall that the back has met."""
+    """Return whether material above the tip remains right after the cut, as a wall that the back has hit."""
     step = part.columns.step
     edge = met.front + step if forward < 0 else met.back - step
     at = part.columns.at(edge)
@@ -359,9 +360,9 @@ def _goes_back(start: Point, end: Point, forward: int) -> bool:
 def _steep_runs(
     points: Sequence[Point], cuts: Sequence[Cut], shape: ToolShape, steepest: float
 ) -> Iterator[tuple[Point, Point, Cut, float]]:
-    """Yield the stretches of a move that go in more steeply than ``steepest`` degrees.
+    """Yield the parts of a move that enter more steeply than ``steepest`` degrees.
 
-    Each is its start, its end, what it has met, and its greatest angle.
+    Each item is the start, the end, the cut, and the greatest angle.
     """
     forward, across = shape.direction
     start, end, met, angle = points[0], points[0], NOTHING, 0.0

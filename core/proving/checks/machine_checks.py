@@ -1,4 +1,4 @@
-"""Checks of the machine: soft limits; tool, collet, live tool and inputs while it cuts."""
+"""Checks against the machine: travel limits, and tool, collet, live tool and inputs while cutting."""
 
 from __future__ import annotations
 
@@ -28,8 +28,9 @@ from core.tool_edges import edge_name
 LIVE = "live"
 """The names of outputs that turn a live tool begin with it in the machine file."""
 
-_QUICK = 100 * 25.4 / 60  # mm/s; what moves by G94 at this or more goes to a place and cuts nothing
-_FASTEST = 1000.0 * 1000.0 / 60.0  # mm/s of surface speed; more is for tools that small lathes do not have
+_QUICK = 100 * 25.4 / 60  # mm/s; a feed per minute at this speed or more is a positioning move
+# mm/s of surface speed; higher speeds need tools that small lathes do not have
+_FASTEST = 1000.0 * 1000.0 / 60.0
 _MILLING = frozenset({Kind.PLANE_LINE, Kind.PLANE_ARC})
 _METAL = _MILLING | {Kind.ARC, Kind.THREAD}
 _WAYS = _METAL | {Kind.FEED}
@@ -38,46 +39,46 @@ MM_PER_INCH = 25.4
 
 
 def cuts(block: Block) -> bool:
-    """Whether a move is one that would take metal off: no rapid, no quick feed to another place."""
+    """Return whether a move would cut material, so that it is not a rapid or a fast feed."""
     return block.kind in _WAYS and (block.per_rev or block.feed < _QUICK or block.kind is Kind.THREAD)
 
 
 @dataclass(slots=True)
 class CuttingChecks:
-    """Goes with the blocks of a program in their order; ``findings`` at the end.
+    """Checks called with the blocks of a program in their order; ``findings`` returns the results.
 
-    One finding for each time that something was wrong, at the first block of it. Of other languages than
-    OmniTurn, whose frames and collets are others, tool and spindle alone are looked at.
+    A continuing fault gives one finding, at its first block. For languages other than OmniTurn, whose frames
+    and collets differ, only tool and spindle are checked.
     """
 
     machine: Machine
     dialect: Dialect
-    single: bool = False  # a line of MDI: whoever types it sees which tool is in force
-    placed: bool = False  # where the slides stand is known: no start of a program, or a move has said it
+    single: bool = False  # an MDI line, for which the operator sees the active tool
+    placed: bool = False  # the axis positions are known from a move, or this is not the start of a program
     _found: list[Diagnostic] = field(default_factory=list)
-    _without_tool: list[Diagnostic] = field(default_factory=list)  # how much they weigh is known at the end
+    _without_tool: list[Diagnostic] = field(default_factory=list)  # their severity is decided at the end
     _names_tool: bool = False
-    _tool_off: int = 0  # line of a T0
-    _preset: bool = False  # G92 has said where the point stands since the last T
+    _tool_off: int = 0  # =
+    _preset: bool = False  # G92 has set the position since the last T
     _has_run: bool = False  # the program has turned the spindle
-    _reported: frozenset[str] = frozenset()  # what is wrong now and has been told
-    _cut_before_collet: int = 0  # line of the first cut in the collet as the program has met it
-    _collet: bool = False  # M12 or M13 has come
+    _reported: frozenset[str] = frozenset()  # present faults that have been reported
+    _cut_before_collet: int = 0  # line of the first cut before any M12 or M13
+    _collet: bool = False  # M12 or M13 has been executed
     _asked: frozenset[str] = frozenset()
-    _like: tuple[Modal, Kind] | None = None  # of the move before: one such as it is no news
+    _like: tuple[Modal, Kind] | None = None  # state of the previous move; a similar move needs no check
 
     def twin(self) -> CuttingChecks:
-        """The same place in a program, for one of its other ways; what was found before is left behind."""
+        """Return a copy in the same state for another path through the program, without the findings."""
         return replace(self, _found=[], _without_tool=[])
 
     @property
     def findings(self) -> list[Diagnostic]:
-        """What was found, in the order of the blocks."""
+        """The findings in the order of the blocks."""
         weight = Severity.ERROR if self._names_tool else Severity.WARNING
         return [*self._found, *(replace(each, severity=weight) for each in self._without_tool)]
 
     def look(self, blocks: Sequence[Block]) -> None:
-        """Look at the next blocks of the program."""
+        """Check the next blocks of the program."""
         if not blocks:
             return
         own = self.dialect is Dialect.OMNITURN
@@ -97,7 +98,7 @@ class CuttingChecks:
                     (self._cut if own else self._cut_elsewhere)(block)
 
     def _place(self, block: Block) -> None:
-        """An incremental first move leads from wherever the slides stand, and was proved from home."""
+        """Warn about an incremental first move, whose start was not known in the proof."""
         self.placed = True
         if block.modal.absolute is False:
             text = (
@@ -148,7 +149,7 @@ class CuttingChecks:
             self._spindle_off(block)
 
     def _surface_speed(self, block: Block) -> None:
-        """G96: what it asks of the spindle at both ends of a cut, against the limits in force."""
+        """Check the speeds that G96 requires at both ends of a cut against the limits in force."""
         modal, most = block.modal, self.machine.spindle.rpm_max
         speed = block.css or 0.0
         radii = sorted((abs(block.x0), abs(block.x)))
@@ -163,7 +164,7 @@ class CuttingChecks:
             self._report(
                 block, Severity.ERROR, "surface-speed", text, "Correct S, or write G97 if S is in rpm."
             )
-        limited = abs(block.x) <= abs(block.x0) and abs(block.rpm) < most  # as G26 does
+        limited = abs(block.x) <= abs(block.x0) and abs(block.rpm) < most  # as G26 limits it
         if modal.css_max is None and fastest > most and not limited:
             text = Message(
                 "G96 has no speed limit, so the spindle reaches its maximum of {maximum} rpm in this move.",
@@ -175,7 +176,7 @@ class CuttingChecks:
             self._report(block, Severity.WARNING, "no-speed-limit", text, hint)
 
     def _cut_elsewhere(self, block: Block) -> None:
-        """A cut of Klartext or SINUMERIK; of a mill's spindle at rest its interpreter tells."""
+        """Check a cut in Klartext or SINUMERIK. The Klartext interpreter checks the spindle itself."""
         modal = block.modal
         if not (modal.tool or self.single):
             self._no_tool(block)
@@ -205,7 +206,7 @@ class CuttingChecks:
         self._reported |= {"no-tool"}
 
     def _collet_open(self, block: Block) -> None:
-        """Bar work moves a stop or a gripper while the collet is open; nothing is cut in it."""
+        """Check a cut with an open collet. Bar work may move a stop or gripper, but must not cut."""
         if block.per_rev or block.kind in _METAL or block.modal.c_locked:
             text = "This move cuts with the collet open, so the part is not clamped."
             self._report(
@@ -225,7 +226,7 @@ class CuttingChecks:
             code for code, (name, on) in self.machine.m_codes.items() if on and name.startswith(LIVE)
         )
         if not codes:
-            return  # a live tool that this control does not switch
+            return  # this control does not switch the live tool
         hint = Message(
             "Turn on the live tool with {code} before this move.",
             code=" or ".join(f"M{code:02d}" for code in codes),
@@ -277,7 +278,7 @@ class CuttingChecks:
         )
 
     def _report(self, block: Block, severity: Severity, check: str, text: str, hint: str) -> None:
-        """Once until it is right again; an error also behind a warning."""
+        """Add a finding once until the fault is corrected. An error is added even after a warning."""
         key = f"{check} {severity}"
         if key not in self._reported:
             self._reported |= {key}
@@ -292,7 +293,7 @@ class CuttingChecks:
 
 
 def _unlike(series: Series) -> Iterator[Block]:
-    """The first move of a series, and the first that cuts: by the minute others may be too quick for that."""
+    """Yield the first move of a series, and its first cut if the first move is too fast to cut."""
     yield series[0]
     if series.feed is not None and not cuts(series[0]):
         yield from (series[at] for at in (series.feed < _QUICK).nonzero()[0][:1].tolist())
@@ -305,7 +306,7 @@ def _finding(block: Block, severity: Severity, check: str, text: str, hint: str)
 def travel_findings(
     blocks: Sequence[Block], machine: Machine, dialect: Dialect = Dialect.OMNITURN
 ) -> Iterator[Diagnostic]:
-    """An error for each block whose machine positions leave the travel; curved ways all along."""
+    """Yield an error for each block whose machine positions leave the travel, along the whole move."""
     limits = [(axis, *axis.reach) for axis in machine.axes]
     for block in _outside(blocks, limits):
         for (axis, least, most), (low, high) in zip(limits, block.machine_reach(), strict=True):
@@ -314,7 +315,7 @@ def travel_findings(
 
 
 def _outside(blocks: Sequence[Block], limits: Sequence[tuple[Axis, float, float]]) -> Iterator[Block]:
-    """Blocks that may leave the travel: straight moves of a lathe, which are most, are seen by their ends."""
+    """Yield blocks that may leave the travel. Straight moves of a lathe are checked at their ends."""
     (_, x_least, x_most), (_, z_least, z_most) = limits[:2]
     endless = all(least == -math.inf for _, least, _ in limits[2:])
     if endless and isinstance(blocks, Series):
@@ -381,8 +382,8 @@ def _hint(machine: Machine, dialect: Dialect, block: Block, axis: Axis) -> str:
 
 
 def c_findings(blocks: Sequence[Block], machine: Machine) -> Iterator[Diagnostic]:
-    """An error for each block that moves C while the spindle, which is this machine's C, turns."""
-    if not machine.spindle_is_c or isinstance(blocks, Series):  # which moves X and Z alone
+    """Yield an error for each block that moves C while the spindle turns, if the spindle is C."""
+    if not machine.spindle_is_c or isinstance(blocks, Series):  # a series moves only X and Z
         return
     for block in blocks:
         if block.c != block.c0 and block.modal.spindle:

@@ -1,4 +1,4 @@
-"""The checks of the proof: one entry each, from which the findings and ``docs/checks.md`` come."""
+"""The checks of the proof, with one entry each, used for the findings and for ``docs/checks.md``."""
 
 from __future__ import annotations
 
@@ -13,10 +13,11 @@ _ERROR, _WARNING = Severity.ERROR, Severity.WARNING
 
 @dataclass(frozen=True, slots=True)
 class Check:
-    """One check: what it looks for, how it decides, and what to do when it finds something.
+    """One check: its purpose, its condition, and the remedy.
 
-    ``rests_on`` is what it takes from stock and tools: where these are not stated, it is only assumed.
-    ``KIND`` is the kind of tool, which a comment may give; ``HOLES`` are those of drills without a size.
+    ``rests_on`` lists the data of stock and tools on which it depends. If they are not specified, the finding
+    is only assumed. ``KIND`` is the kind of tool, which a comment may state. ``HOLES`` are those of drills
+    without a diameter.
     """
 
     severity: Severity
@@ -422,7 +423,7 @@ PROGRAM_CHECKS: Mapping[str, Check] = {
 
 
 def is_serious(found: Diagnostic) -> bool:
-    """Return whether a finding is an error, or would be one if what it assumes were stated."""
+    """Return whether a finding is an error, or would be one if the assumed data were specified."""
     if found.severity is Severity.ERROR:
         return True
     return bool(found.assumed) and not found.silenced and CHECKS[found.check].severity is Severity.ERROR

@@ -1,4 +1,4 @@
-"""What goes wrong between tool and metal, move by move, as the entries of ``part_checks`` have it."""
+"""Findings about tool and material, move by move, according to the entries of ``part_checks``."""
 
 from __future__ import annotations
 
@@ -37,17 +37,17 @@ RAPID = 0.0254
 _MOST = 100
 _CHUCK_STEP = 0.05  # mm
 _SLENDER = 5.0
-_STUB = (0.05, 1.0)  # mm of radius that a part-off leaves
+_STUB = (0.05, 1.0)  # mm, range of the stub radius that a part-off may leave
 _SQUARE = 0.02  # mm of Z
 _LONG = 2.54  # mm of Z
-_CLEARANCE = 0.25  # mm of Z before the chuck
-_TOUCHES = 0.045  # mm of Z: .001 in and what bodies may overlap without a finding
-_SAFE = 0.5  # of the speed at which a bar begins to whirl
+_CLEARANCE = 0.25  # mm of clearance in Z to the chuck
+_TOUCHES = 0.045  # mm of Z: .001 in plus the overlap of bodies that gives no finding
+_SAFE = 0.5  # fraction of the speed at which a bar begins to whirl
 
 
 @dataclass(slots=True)
 class PartFindings:
-    """Goes with the moves in their order, and lets each take off its metal."""
+    """Checks the moves in their order and lets each one remove its material."""
 
     shape: Callable[[int], ToolShape | None]
     stock: Stock | None
@@ -55,16 +55,16 @@ class PartFindings:
     neighbours: Neighbours | None = None
     threads: ThreadChecks = field(default_factory=ThreadChecks)
     not_said: Callable[[tuple[str, ...]], tuple[str, ...]] = lambda _rests_on: ()
-    silenced: Mapping[str, str] = field(default_factory=dict)  # why, by check
+    silenced: Mapping[str, str] = field(default_factory=dict)  # reason by check
     parted_at: float | None = None  # Z of the deepest part-off
-    _left: tuple[int, TipMove] | None = None  # T, and its part-off that has stopped before the axis
+    _left: tuple[int, TipMove] | None = None  # T with its part-off that stopped before the axis
     into_clamping: dict[tuple[str, int], Cut] = field(default_factory=dict)  # by check and line
     _edges: EdgeChecks = field(init=False)
     _airs: AirChecks = field(init=False)
     _found: dict[tuple[str, int], Diagnostic] = field(default_factory=dict)
     _chuck: TurnedPart | None = None
     _tailstock: TurnedPart | None = None
-    _whirls: float = 0.0  # rpm at which the stock begins to whirl; 0: not known
+    _whirls: float = 0.0  # rpm at which the stock begins to whirl; 0: unknown
     _before: TipMove | None = None
 
     def __post_init__(self) -> None:
@@ -72,7 +72,7 @@ class PartFindings:
         self._edges = EdgeChecks(self.stock, stock_given=given, parted_at=self.parted_at)
         self._airs = AirChecks(self.stock)
         if self.clamping is not None and self.clamping.diameter and self.stock is not None:
-            if not self.clamping.quill:  # what is held at both ends whirls much later
+            if not self.clamping.quill:  # stock supported at both ends whirls at a much higher speed
                 self._whirls = whirling_rpm(self.stock, self.clamping.stick_out)
             self._chuck = TurnedPart(self.clamping.around(self.stock), _CHUCK_STEP)
         tailstock = self.clamping.tailstock if self.clamping is not None else None
@@ -80,17 +80,17 @@ class PartFindings:
 
     @property
     def bodies(self) -> dict[str, TurnedPart]:
-        """Chuck and tailstock as bodies, by the check that looks after them; only those that are known."""
+        """Chuck and tailstock as bodies, by the check that supervises them; unknown ones are left out."""
         known = {"into-chuck": self._chuck, "into-tailstock": self._tailstock}
         return {check: body for check, body in known.items() if body is not None}
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
-        """The findings, each once a line."""
+        """The findings, each once per line."""
         return tuple(self._found.values())
 
     def look(self, move: TipMove, cutter: Cutter, part: TurnedPart, tool: int) -> None:
-        """Cut, and look at what was met."""
+        """Cut the material of a move and check the result."""
         if self._leaves_thread(move, cutter):
             self._found_by(move, self.threads.look(move, NOTHING, part, self.shape(tool), tool))
             self._found_by(move, self._airs.rapid(move, NOTHING, tool))
@@ -139,9 +139,10 @@ class PartFindings:
         self._before = move
 
     def _leaves_thread(self, move: TipMove, cutter: Cutter) -> bool:
-        """Whether a rapid leaves the groove that a pass has just cut: straight, and away from the material.
+        """Return whether a rapid leaves the groove of a thread pass straight away from the material.
 
-        Where on the part the pass ends is not known, so what the edge meets on this move is in the groove.
+        The end position of the pass is not exactly known, so the material that the edge meets is in the
+        groove.
         """
         if not move.quick or self._before is None or self._before.kind is not Kind.THREAD:
             return False
@@ -153,7 +154,7 @@ class PartFindings:
             self._add(check, at or move, text)
 
     def _clamped(self, move: TipMove, cutter: Cutter, tool: int) -> None:
-        """Chuck or collet, and tailstock: what runs into them, and how fast the chuck turns."""
+        """Check for collisions with chuck, collet and tailstock, and the speed of the chuck."""
         if self.clamping is None:
             return
         if met := _reached(self._chuck, move, cutter):
@@ -195,7 +196,7 @@ class PartFindings:
             self._add("stock-whips", move, text)
 
     def _rapid(self, move: TipMove, met: Cut, *, certain: bool) -> None:
-        """A rapid that takes off material; ``certain``: the tip itself is in it, whatever tool it is."""
+        """Check a rapid that removes material. ``certain`` means that the tip itself is in the material."""
         if met.depth <= RAPID or met.width <= RAPID:
             return
         deep, fed = _depth(met, move), move.kind is not Kind.RAPID
@@ -213,7 +214,7 @@ class PartFindings:
         self._add("through-part" if behind_cut else "rapid-into-stock", move, text, certain=certain)
 
     def _rubs(self, move: TipMove, met: Cut, cutter: Cutter, part: TurnedPart, tool: int) -> None:
-        """A described insert that goes back by a rapid along what it has just turned."""
+        """Check for a specified insert that returns in rapid along the surface that it has just turned."""
         (z0, r0), (z1, r1) = move.points[0], move.points[-1]
         before, shape = self._before, self.shape(tool)
         if shape is None or shape.kind is not ToolKind.TURNING or not cutter.held:
@@ -233,11 +234,11 @@ class PartFindings:
             )
 
     def pause(self) -> None:
-        """The program waits, or switches something."""
+        """Record that the program waits or switches an output."""
         self._airs.pause()
 
     def finish(self) -> None:
-        """The program has ended."""
+        """Add the findings that are known only at the end of the program."""
         self._tell_left()
         for check, text, at in self.threads.finish():
             if at is not None:
@@ -259,7 +260,7 @@ class PartFindings:
             )
 
     def standing(self, line: int, n: int, tool: int) -> None:
-        """A tool has met material while nothing turns."""
+        """Report that a tool cuts material while neither tool nor spindle turns."""
         self._tell(
             "cut-standing",
             line,
@@ -268,13 +269,13 @@ class PartFindings:
         )
 
     def nothing_cut(self, line: int, n: int, text: str) -> None:
-        """What the moves of a tool, or of a whole program, should have cut."""
+        """Report that a tool, or the whole program, cuts nothing."""
         self._tell("unmade-cut", line, n, text)
 
     def milled(
         self, move: MillMove, met: Taken, shape: ToolShape, modal: Modal, tool: int, *, touches: Touches
     ) -> None:
-        """A live tool has moved; ``touches`` tells whether it has gone along metal where it has met none."""
+        """Check a move of a live tool. ``touches`` returns whether it followed material without a cut."""
         if not move.axial and not _drills_across(move) and self._over_axis(move):
             self._tell(
                 "through-part",
@@ -296,14 +297,14 @@ class PartFindings:
             )
 
     def _over_axis(self, move: MillMove) -> bool:
-        """Whether a tool on a radius goes to the other side of the axis beside the stock."""
+        """Return whether a radial live tool crosses the axis within the stock."""
         ends, front = (float(move.path[0, 0]), float(move.path[-1, 0])), -math.inf
         if self.stock is not None:
             front = self.stock.front
         return ends[0] * ends[1] < 0.0 and float(move.path[:, 1].min()) < front
 
     def _part_off(self, move: TipMove, met: Cut, shape: ToolShape | None, tool: int) -> None:
-        """What a parting tool leaves at the axis, until it goes on to it."""
+        """Record the stub that a parting tool leaves at the axis, until it cuts the stub."""
         if self._left is not None and self._left[0] != tool:
             self._tell_left()
         r = abs(move.points[-1][1])
@@ -326,7 +327,7 @@ class PartFindings:
         self._left = None
 
     def parted(self, move: TipMove, piece: Piece) -> None:
-        """A piece has come off."""
+        """Check a piece that has been parted off."""
         self._left = None
         if not piece.outside:
             return
@@ -343,7 +344,7 @@ class PartFindings:
         self._tell(check, move.line, move.n, text, certain=certain)
 
     def _tell(self, check: str, line: int, n: int, text: str, *, certain: bool = False) -> None:
-        """Keep a finding; ``certain``: it is so with every tool, and rests on the stock alone."""
+        """Store a finding. ``certain`` means that it applies to every tool and depends only on the stock."""
         if len(self._found) < _MOST and (check, line) not in self._found:
             entry, why = CHECKS[check], self.silenced.get(check, "")
             rests_on = tuple(each for each in entry.rests_on if each == STOCK) if certain else entry.rests_on
@@ -360,19 +361,19 @@ class PartFindings:
 
 
 def _drills_across(move: MillMove) -> bool:
-    """Whether a live tool goes straight along a radius, as for a hole through both walls."""
+    """Return whether a live tool moves straight along a radius, as for a hole through both walls."""
     return float(np.ptp(move.path[:, 1:], axis=0).max(initial=0.0)) < _SQUARE
 
 
 def _weight(entry: Check, assumed: tuple[str, ...], silenced: str) -> Severity:
-    """Weight of a finding: what depends on an assumed value is a warning at most."""
+    """Return the severity of a finding. A finding that depends on an assumption is at most a warning."""
     if silenced:
         return Severity.NOTE
     return Severity.WARNING if assumed else entry.severity
 
 
 def _reached(body: TurnedPart | None, move: TipMove, cutter: Cutter) -> Cut:
-    """What of a body that stays whole a tool would meet."""
+    """Return the material of a body that a tool would hit. The body is not cut."""
     met = NOTHING
     if body is not None:
         for start, end in pairwise(move.points):
@@ -381,15 +382,15 @@ def _reached(body: TurnedPart | None, move: TipMove, cutter: Cutter) -> Cut:
 
 
 def _deeper_in_z(move: TipMove, by: float) -> TipMove:
-    """The same move nearer to the chuck, by a clearance that it should have, mm."""
+    """Return the move shifted toward the chuck by a clearance in mm."""
     return move._replace(points=tuple((z - by, r) for z, r in move.points))
 
 
 def _executed(move: TipMove, cutter: Cutter, part: TurnedPart) -> tuple[list[Cut], Cut]:
-    """What the edges met on each straight piece of a move, and the body on all; both have been taken off."""
+    """Cut a move and return the cuts of its straight pieces, and the collision of the holder."""
     cuts, struck = list[Cut](), NOTHING
     turns = 0.0
-    part.holds = True  # until the holder has been tried: what it hits must not have fallen off before
+    part.holds = True  # The holder is checked before parted material drops, because it may hit that material.
     for start, end in pairwise(move.points):
         if move.kind is Kind.THREAD and move.per_rev:
             cuts.append(cutter.thread(part, start, end, move.per_rev, turns))
@@ -402,7 +403,7 @@ def _executed(move: TipMove, cutter: Cutter, part: TurnedPart) -> tuple[list[Cut
 
 
 def _together(move: TipMove, cuts: Iterable[Cut]) -> Cut:
-    """All that the edges met on a move; in a thread each turn deepens the cut, along a path none does."""
+    """Return the total cut of a move. In a thread, revolutions deepen the cut; along a path they do not."""
     met = NOTHING
     for cut in cuts:
         met = met.joined(cut) if move.kind is Kind.THREAD else met.followed(cut)

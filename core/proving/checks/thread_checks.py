@@ -1,4 +1,4 @@
-"""Checks of threads and taps: run-up and end of a pass, depth and pitch, a tap that is turned back."""
+"""Checks of threads and taps: run-up and end of a pass, depth and pitch, and reversal of a tap."""
 
 from __future__ import annotations
 
@@ -18,12 +18,13 @@ from core.proving.tip_moves import TipMove
 from core.tool_edges import edge_name
 
 _LATENCY = 0.08  # s before a drive follows a new command
-_POINT = 60.0  # degrees, of a thread that nobody has described
-_DEEPER = 1.02  # of a sharp V
-_SOLID = 1.0  # of a pitch in r: a thread is .6 deep, and holes for taps are never so small
-_OTHER_PITCH = 0.08  # of a pitch: 1/2-12 and 1/2-13; holders that give are fed a few hundredths slower
-_OTHER_FEED = 0.15  # of the feed in: how much faster or slower a tap may be drawn out
-_GIVES = 12.7  # mm by which a tap holder gives
+_POINT = 60.0  # degrees, assumed angle of an unspecified thread
+_DEEPER = 1.02  # fraction of the depth of a sharp V
+_SOLID = 1.0  # pitches of depth in r; a thread is 0.6 deep, and tap holes are never that small
+# fraction of a pitch, as between 1/2-12 and 1/2-13; floating holders are fed slightly slower
+_OTHER_PITCH = 0.08
+_OTHER_FEED = 0.15  # fraction of the feed in by which the feed out may differ
+_GIVES = 12.7  # mm of length compensation of a tap holder
 _IN_HOLE = 0.05  # mm
 _NEAR = 1e-6  # mm
 _MOST_STARTS = 24
@@ -32,7 +33,7 @@ _SAME_END = 1.0  # mm of Z between passes of one thread
 
 
 class Found(NamedTuple):
-    """What a check has to say about the move that it has just seen; ``at``: about another one."""
+    """The result of a check for the move just checked, or for the move ``at``."""
 
     check: str
     text: str
@@ -40,7 +41,7 @@ class Found(NamedTuple):
 
 
 class Drives(NamedTuple):
-    """What slide and spindle can do: mm/s² along Z, rpm/s of the spindle as it slows down; 0: not known."""
+    """Limits of axis and spindle: mm/s² along Z and rpm/s of the spindle deceleration; 0 if unknown."""
 
     slide_accel: float = 0.0
     spindle_decel: float = 0.0
@@ -51,28 +52,29 @@ UNKNOWN = Drives()
 
 @dataclass(slots=True)
 class ThreadChecks:
-    """Goes with the moves in their order; ``before_cut`` and ``look`` stand around the cut of each.
+    """Checks of threads, called with the moves in their order: ``before_cut`` and ``look`` for each cut.
 
-    ``releases`` tells by T whether the holder of a tap turns it back, or lets it go, by itself.
+    ``releases`` returns by T whether a tap holder reverses or releases the tap automatically.
     """
 
     drives: Drives = UNKNOWN
     releases: Callable[[int], bool] = lambda _: False
-    stock_given: bool = False  # and not assumed
-    _crest: tuple[int, int, FloatArray, float] | None = None  # line, first column, radii, 1: towards the axis
-    _pass: tuple[TipMove, Cut] | None = None  # of a thread, until it is known how it ends
+    stock_given: bool = False  # the stock is specified instead of assumed
+    # line, first column, radii, and 1 for an outside thread
+    _crest: tuple[int, int, FloatArray, float] | None = None
+    _pass: tuple[TipMove, Cut] | None = None  # the last thread pass, until its end is known
     _fed: TipMove | None = None  # the last feed of a tap into its hole
-    _entry: float = 0.0  # Z of the metal that it has met first
-    _idle: int = 0  # passes one after the other that stay outside the metal
-    _uncut: tuple[int, TipMove] | None = None  # T and first pass of a thread that has met no metal yet
-    _begun: TipMove | None = None  # the last pass of the thread that is being cut
+    _entry: float = 0.0  # Z of the first material of the tap
+    _idle: int = 0  # consecutive passes that stay outside the material
+    _uncut: tuple[int, TipMove] | None = None  # T and first pass of a thread that has not cut yet
+    _begun: TipMove | None = None  # =
 
     def before_cut(self, move: TipMove, part: TurnedPart) -> None:
-        """The radii of the metal, before the first pass of a thread is cut into it."""
+        """Record the radii of the material before the first pass of a thread is cut."""
         if move.kind is not Kind.THREAD or (self._crest is not None and self._crest[0] == move.line):
             return
         z0, z1 = move.points[0][0], move.points[-1][0]
-        short = math.copysign(min(move.per_rev, abs(z1 - z0) / 2.0), z0 - z1)  # what is beside a shoulder
+        short = math.copysign(min(move.per_rev, abs(z1 - z0) / 2.0), z0 - z1)  # the length next to a shoulder
         low, high = sorted((z0, z1 + short))
         there = slice(part.columns.at(low), part.columns.at(high))
         inside = self._in_bore(move, part, there)
@@ -81,7 +83,7 @@ class ThreadChecks:
 
     @staticmethod
     def _in_bore(move: TipMove, part: TurnedPart, there: slice) -> bool:
-        """Whether the thread is cut in a bore: its metal lies further out than its edge."""
+        """Return whether the thread is in a bore, with its material outside its edge."""
         inner = part.innermost[there]
         bored = inner[inner > 0.0]
         if not len(bored):
@@ -92,8 +94,8 @@ class ThreadChecks:
     def look(
         self, move: TipMove, met: Cut, part: TurnedPart, shape: ToolShape | None, tool: int
     ) -> Iterator[Found]:
-        """What is wrong with a move that has just been cut."""
-        goes_on = self._pass is not None and move.kind is Kind.THREAD  # out of the thread at its end
+        """Yield the faults of a move that has just been cut."""
+        goes_on = self._pass is not None and move.kind is Kind.THREAD  # the pull-out of the thread
         yield from self._end_of_pass(move)
         if shape is not None and shape.kind is ToolKind.TAP:
             yield from self._tap(move, met, shape, tool)
@@ -104,7 +106,7 @@ class ThreadChecks:
             self._pass = move, met
 
     def finish(self) -> Iterator[Found]:
-        """Yield what is wrong with the last thread of a program, or of a tool."""
+        """Yield the faults of the last thread of a program or of a tool."""
         uncut, self._uncut, self._begun = self._uncut, None, None
         if uncut is not None and self.stock_given:
             tool, move = uncut
@@ -114,10 +116,10 @@ class ThreadChecks:
                 move,
             )
 
-    # --- threads that are cut
+    # --- threads cut by an insert
 
     def _counted(self, move: TipMove, tool: int, *, cuts: bool) -> Iterator[Found]:
-        """Record a thread pass; passes with another lead or Z range belong to another thread."""
+        """Record a thread pass. Passes with another lead or Z range belong to another thread."""
         before = self._begun
         if before is None or not _of_one_thread(before, move):
             yield from self.finish()
@@ -174,7 +176,7 @@ class ThreadChecks:
             yield Found("thread-run-up", words)
 
     def _depth(self, move: TipMove, part: TurnedPart) -> float:
-        """How deep the edge stands under what was there before the first pass, mm; 0 where nothing was."""
+        """Return the depth in mm of the edge below the material before the first pass, or 0."""
         if self._crest is None:
             return 0.0
         _, first, radii, inwards = self._crest
@@ -192,18 +194,18 @@ class ThreadChecks:
         return z0 - met.front if z1 < z0 else met.back - z0
 
     def _braking(self, move: TipMove) -> float:
-        """The way in which the slide reaches the speed of the lead, or comes to rest from it, mm."""
+        """Return the distance in mm in which the axis reaches the speed of the lead, or stops from it."""
         accel = self.drives.slide_accel
         return (move.per_rev * abs(move.rpm) / 60.0) ** 2 / (2.0 * accel) if accel else 0.0
 
     def _end_of_pass(self, move: TipMove) -> Iterator[Found]:
-        """A slide that brakes before it pulls straight out cuts less than its lead on the last of its way."""
+        """Check for an axis that brakes in the material, because the last turns then have a smaller lead."""
         if self._pass is None:
             return
         (cut, met), self._pass = self._pass, None
         needed = self._braking(cut)
         if move.kind is Kind.THREAD or needed <= cut.per_rev or not met:
-            return  # the slide goes on while it pulls out, or the last turn is all that it spoils
+            return  # the axis continues during the pull-out, or only the last turn is affected
         z0, z1 = cut.points[0][0], cut.points[-1][0]
         left = met.back - z1 if z1 < z0 else z1 - met.front
         if left < needed:
@@ -266,7 +268,7 @@ class ThreadChecks:
 
     def _out(self, move: TipMove, fed: TipMove, tool: int) -> Iterator[Found]:
         if not fed.rpm:
-            return  # a spindle that is switched by hand
+            return  # a manually switched spindle
         if move.quick:
             yield Found(
                 "tap-reversal", Message("{tool} retracts from the thread at rapid.", tool=edge_name(tool))
@@ -321,5 +323,5 @@ def _of_one_thread(before: TipMove, move: TipMove) -> bool:
 
 
 def _per_turn(move: TipMove) -> float:
-    """The feed of a turn, mm, of one by time too; 0 where the spindle stands."""
+    """Return the feed of a move per revolution of the spindle in mm, or 0 if the spindle is stopped."""
     return move.per_rev or (move.speed * 60.0 / abs(move.rpm) if move.rpm else 0.0)

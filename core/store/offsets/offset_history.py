@@ -1,4 +1,4 @@
-"""History of the offsets: what was when, and undo of a step, without changing other rows unseen."""
+"""History of the offsets: changes, past states, and undo that does not affect other rows."""
 
 from __future__ import annotations
 
@@ -25,15 +25,18 @@ from core.tool_edges import edge_name, tool_of
 
 
 def undo(connection: sqlite3.Connection, reason: Reason, kind: Kind) -> tuple[Change, ...]:
-    """Take back the last step of a table that is not undone yet; return the changes that this made.
+    """Undo the latest step of a table that is not undone yet and return the resulting changes.
 
-    Calling it again takes back the step before it. Raise StoreError if there is no step left.
+    Another call undoes the step before it. Raises StoreError if no step is left.
     """
     return _undo(connection, reason, TABLES[kind].log, kind)
 
 
 def undo_any(connection: sqlite3.Connection, reason: Reason) -> tuple[Change, ...]:
-    """The same for the youngest step of all tables."""
+    """Undo the latest step of all tables and return the resulting changes.
+
+    Another call undoes the step before it. Raises StoreError if no step is left.
+    """
     last = {log: _last_step(connection, log, None) or 0 for log in LOGS}
     log = max(LOGS, key=lambda each: last[each] if isinstance(last[each], int) else MOST_STEPS)
     return _undo(connection, reason, log, None)
@@ -42,7 +45,10 @@ def undo_any(connection: sqlite3.Connection, reason: Reason) -> tuple[Change, ..
 def _last_step(
     connection: sqlite3.Connection, log: Log, kind: Kind | None, number: int | None = None
 ) -> int | None:
-    """Return the last step that is not undone yet; None without one. ``number``: of this row."""
+    """Return the latest step that is not undone yet, or None.
+
+    ``number`` limits the search to the steps that changed this row.
+    """
     step: int | None
     (step,) = connection.execute(
         f"SELECT max(step) FROM {log.name}"
@@ -67,39 +73,40 @@ def _step_to_undo(
     step = _last_step(connection, log, kind, number)
     rows = select(connection, log, "WHERE step = ? ORDER BY id", (step,)) if step is not None else ()
     first = rows[0].id if rows else 0
-    for entry in row_sums.broken(connection, log.name, first):  # of this step, or a later one that it hides
+    # damage in this step, or in a later step that is hidden by the damage
+    for entry in row_sums.broken(connection, log.name, first):
         raise damaged_entry(entry)
     return rows
 
 
 def backward(rows: Sequence[Change]) -> Changes:
-    """Return these changes in the opposite direction."""
+    """Return the opposite of these changes: from the new values to the old values."""
     return {row.number: (row.new, row.old) for row in rows}
 
 
 def undoable(connection: sqlite3.Connection, kind: Kind, number: int | None) -> tuple[Change, ...]:
-    """Return the changes of the step that ``undo_step`` would take back; none when nothing is left.
+    """Return the changes of the step that ``undo_step`` would undo; () if no step is left.
 
-    ``number`` restricts it to the last step that changed this row; None: the last step of the table.
+    ``number`` selects the latest step that changed this row; None selects the latest step of the table.
     """
     return _step_to_undo(connection, TABLES[kind].log, kind, number)
 
 
 def history(connection: sqlite3.Connection, kind: Kind, limit: int) -> tuple[Change, ...]:
-    """Return the last changes of a table, newest first."""
+    """Return the latest changes of a table, newest first."""
     log = TABLES[kind].log
     return select(connection, log, f"WHERE {log.kind} = ? ORDER BY id DESC LIMIT ?", (kind.value, limit))
 
 
 def history_any(connection: sqlite3.Connection, limit: int) -> tuple[Change, ...]:
-    """The last changes of all tables, newest first; a limit below nought, as SQLite has it, is none."""
+    """Return the latest changes of all tables, newest first. A negative ``limit`` returns all changes."""
     tail = "ORDER BY id DESC LIMIT ?"
     found = [each for log in LOGS for each in select(connection, log, tail, (limit,))]
     return tuple(sorted(found, key=lambda each: each.step, reverse=True)[: limit if limit >= 0 else None])
 
 
 def as_of(connection: sqlite3.Connection, kind: Kind, moment: str) -> dict[int, Row]:
-    """The offsets of a table as they were set at a moment (UTC), by number."""
+    """Return the offsets of a table as they were at ``moment`` (UTC), by number."""
     log = TABLES[kind].log
     changes = select(connection, log, f"WHERE {log.kind} = ? AND at <= ? ORDER BY id", (kind.value, moment))
     rows = {each.number: each.new for each in changes}
@@ -109,9 +116,9 @@ def as_of(connection: sqlite3.Connection, kind: Kind, moment: str) -> dict[int, 
 def undo_step(
     connection: sqlite3.Connection, reason: Reason, kind: Kind, number: int | None, step: int
 ) -> tuple[Change, ...]:
-    """Take back exactly this step; return the changes that this made.
+    """Undo exactly this step and return the resulting changes.
 
-    Raises StoreError if it is no longer the last step of the row, or if a row of it has changed since.
+    Raises StoreError if a later step has changed the row, or if another row of the step has changed since.
     """
     rows, now = undoable(connection, kind, number), offset_tables.current(connection, kind)
     changed_since = [str(row.number) for row in rows if now.get(row.number) != row.new]
@@ -129,7 +136,7 @@ def undo_step(
 
 
 def _check(kind: Kind, rows: Mapping[int, Row]) -> None:
-    """Raise StoreError if the table would have two masters, or a cutting edge without its tool."""
+    """Raise StoreError if the table would have two master tools, or a cutting edge without its tool."""
     if kind is not Kind.TOOL:
         return
     masters = [edge_name(n) for n, row in rows.items() if isinstance(row, ToolRow) and row.master]

@@ -28,61 +28,62 @@ if TYPE_CHECKING:
 
 
 class OffsetTable(Generic[RowT]):
-    """One table of offsets: rows by number, in mm and degrees, X as a radius.
+    """One table of offsets, with rows by number, in mm and degrees, X as a radius.
 
-    ``why`` and ``who`` of a change are stored in its history. Methods raise StoreError as described in
-    ``StoreAccess``; the future of a change also raises it for a number or value out of range.
+    ``why`` and ``who`` of a change are stored in the history. Methods raise StoreError as described in
+    ``StoreAccess``. The future of a change also raises StoreError if a number or value is out of range.
     """
 
     def __init__(self, store: StoreAccess, kind: Kind, row: type[RowT]) -> None:
         self._store, self._kind, self._row = store, kind, row
 
     def read_rows(self) -> dict[int, RowT]:
-        """Return the rows that have been set, by number. Damaged rows are left out."""
+        """Return the rows that have been set, by number. Damaged rows are omitted."""
         return self._store.query(offset_tables.rows_of, self._kind, self._row)
 
     def read_rows_at(self, moment: str) -> dict[int, RowT]:
-        """Return the rows as they were set at ``moment``, a UTC time as in the history."""
+        """Return the rows as they were at ``moment``, a UTC time as in the history, by number."""
         rows = self._store.query(offset_history.as_of, self._kind, moment)
         return {number: row for number, row in rows.items() if isinstance(row, self._row)}
 
     def change_row(
         self, number: int, why: str, values: Mapping[str, Value], *, who: str = "operator"
     ) -> Future[Row]:
-        """Set the fields in ``values``, by name, and leave the others; the result is the new row."""
+        """Set the fields in ``values``, by name, and leave the other fields. The result is the new row."""
         reason, wanted = Reason(why, who), dict(values)
         return self._store.write(lambda c: offset_tables.change(c, self._kind, number, reason, wanted))
 
     def remove_row(self, number: int, why: str, *, who: str = "operator") -> Future[bool]:
-        """Remove a row; the result is whether it was set."""
+        """Remove a row. The result is whether the row was set."""
         return self._store.write(lambda c: offset_tables.remove(c, self._kind, number, Reason(why, who)))
 
     def remove_all_rows(self, why: str, *, who: str = "operator") -> Future[int]:
-        """Remove all rows as one step of the history; the result is the number of rows removed."""
+        """Remove all rows as one step of the history. The result is the number of rows removed."""
         return self._store.write(lambda c: offset_tables.clear(c, self._kind, Reason(why, who)))
 
     def read_history(self, limit: int = 100) -> tuple[Change, ...]:
-        """Return the last changes of this table, newest first."""
+        """Return the latest changes of this table, newest first."""
         return self._store.query(offset_history.history, self._kind, limit)
 
     def find_undoable(self, number: int | None = None) -> tuple[Change, ...]:
-        """Return the changes that ``undo_step`` would take back; () if there are none.
+        """Return the changes that ``undo_step`` would undo; () if no step is left.
 
-        They are the last step that changed the row ``number``; None: the last step of the table.
+        The changes are those of the latest step that changed the row ``number``. None selects the latest step
+        of the table.
         """
         return self._store.query(offset_history.undoable, self._kind, number)
 
     def undo_last_step(self, why: str = "undo", *, who: str = "operator") -> Future[tuple[Change, ...]]:
-        """Take the last step of this table back; calling it again takes the step before it back.
+        """Undo the latest step of this table. Another call undoes the step before it.
 
-        The result is the changes made. The future raises StoreError if there is no step left.
+        The result is the changes made. The future raises StoreError if no step is left.
         """
         return self._store.write(lambda c: offset_history.undo(c, Reason(why, who), self._kind))
 
     def undo_step(
         self, number: int | None, step: int, why: str = "undo", *, who: str = "operator"
     ) -> Future[tuple[Change, ...]]:
-        """Take back exactly this step of ``find_undoable``; the result is the changes made.
+        """Undo exactly this step of ``find_undoable``. The result is the changes made.
 
         The future raises StoreError if the rows of the step have changed since.
         """
@@ -99,16 +100,16 @@ class ToolTable(OffsetTable[ToolRow]):
     def touch_off(
         self, number: int, touch: Touch, why: str, *, who: str = "operator"
     ) -> Future[tuple[Change, ...]]:
-        """Set a tool to the position where it touched; all tools follow the master tool.
+        """Set the offset of a tool to the position at which it touched part zero.
 
-        The result is the changes made.
+        If the tool is the master tool, all other tools move with it. The result is the changes made.
         """
         return self._store.write(lambda c: touch_off.touch_off(c, number, touch, Reason(why, who)))
 
     def choose_master(self, number: int, why: str, *, who: str = "operator") -> Future[tuple[Change, ...]]:
-        """Make a tool the master that other tools are relative to; 0: no tool. Tool tips do not move.
+        """Make a tool the master tool, to which other tools are relative; 0 clears the master tool.
 
-        The result is the changes made.
+        The positions of the tool tips do not change. The result is the changes made.
         """
         return self._store.write(lambda c: touch_off.choose_master(c, number, Reason(why, who)))
 
@@ -126,16 +127,16 @@ class OffsetTables:
         self.presets = OffsetTable(store, Kind.PRESET, PresetRow)
 
     def table(self, kind: Kind) -> OffsetTable[Row]:
-        """Return the table of this kind, where the type of its rows does not matter."""
+        """Return the table of this kind, for callers that do not need the type of its rows."""
         return OffsetTable(self._store, kind, offset_tables.TABLES[kind].row)
 
     def read_history(self, limit: int = 100) -> tuple[Change, ...]:
-        """Return the last changes of all tables, newest first."""
+        """Return the latest changes of all tables, newest first."""
         return self._store.query(offset_history.history_any, limit)
 
     def undo_last_step(self, why: str = "undo", *, who: str = "operator") -> Future[tuple[Change, ...]]:
-        """Take the last step of all tables back; calling it again takes the step before it back.
+        """Undo the latest step of all tables. Another call undoes the step before it.
 
-        The result is the changes made. The future raises StoreError if there is no step left.
+        The result is the changes made. The future raises StoreError if no step is left.
         """
         return self._store.write(lambda c: offset_history.undo_any(c, Reason(why, who)))

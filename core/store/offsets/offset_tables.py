@@ -1,7 +1,7 @@
-"""Tool, secondary and zero offsets and tool shapes: what is valid now, and every change that made it so.
+"""Tables of the tool, secondary and zero offsets, the tool shapes and the presets, with their history.
 
-One model for the four tables: each keeps rows under numbers, and a history of steps. A step is what one
-entry has changed; taking it back is a step of the history itself.
+All tables have the same structure: rows by number, and a history of steps. A step contains all changes of one
+entry. Undoing a step adds another step to the history.
 """
 
 from __future__ import annotations
@@ -41,11 +41,11 @@ from core.tool_edges import edge_name, tool_of
 
 Changes = Mapping[int, tuple[Row | None, Row | None]]
 _NO_SHAPE = "no tool shape change to undo"
-MOST_STEPS = 2**62  # SQLite counts as far as twice that
+MOST_STEPS = 2**62  # the largest integer of SQLite is about twice this value
 
 
 class Reason(NamedTuple):
-    """Why an offset is changed and by whom."""
+    """The reason for a change of an offset, and the user or function that makes the change."""
 
     why: str
     who: str
@@ -53,12 +53,15 @@ class Reason(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Log:
-    """A history table: the column that holds the number, and the columns of a row before and after."""
+    """A history table, with the column of the row's number and the columns of a row.
+
+    The columns occur twice, with the values before and after a change.
+    """
 
     name: str
     key: str
     columns: tuple[str, ...]
-    kind: str  # what tells the kind of a row in SQL
+    kind: str  # SQL expression for the kind of a row
     nothing_left: str
 
     @property
@@ -68,7 +71,7 @@ class Log:
 
 @dataclass(frozen=True, slots=True)
 class _Table:
-    """A table of offsets: name, letter and numbers, its rows and its history."""
+    """A table of offsets: its name, letter, valid numbers, row type and history."""
 
     name: str
     letter: str
@@ -81,7 +84,8 @@ def _columns(kind: Kind) -> tuple[str, ...]:
     return tuple(field.column for field in FIELDS[kind].values())
 
 
-# Columns of a secondary offset are the first of those of a tool: both share one history.
+# Tool offsets and secondary offsets share one history. The columns of a secondary offset are the first
+# columns of a tool offset.
 _OFFSET_LOG = Log("offset_changes", "number", _columns(Kind.TOOL), "kind", "no offset change to undo")
 _ZEROS = Log("zero_offset_changes", "code", _columns(Kind.ZERO), "'zero'", "no G54…G59 change to undo")
 _SHAPES = Log("tool_shape_changes", "number", _columns(Kind.SHAPE), "'shape'", _NO_SHAPE)
@@ -111,7 +115,7 @@ TABLES = {
 
 
 def current(connection: sqlite3.Connection, kind: Kind) -> dict[int, Row]:
-    """All offsets of one table that have been set, by number; not those that are not as they were saved."""
+    """Return the rows of a table that have been set, by number. Damaged rows are omitted."""
     table = TABLES[kind]
     columns = ", ".join((table.log.key, *_columns(kind)))
     rows = row_sums.raw(connection, f"SELECT {columns} FROM {table.name} ORDER BY {table.log.key}")
@@ -124,21 +128,22 @@ def current(connection: sqlite3.Connection, kind: Kind) -> dict[int, Row]:
 
 
 def rows_of(connection: sqlite3.Connection, kind: Kind, row: type[RowT]) -> dict[int, RowT]:
-    """The same by the type of its rows."""
+    """Return the rows of a table that have the type ``row``, by number. Damaged rows are omitted."""
     return {number: each for number, each in current(connection, kind).items() if isinstance(each, row)}
 
 
 def tools(connection: sqlite3.Connection) -> dict[int, ToolRow]:
-    """The tool offsets that have been set."""
+    """Return the tool offsets that have been set, by number."""
     return rows_of(connection, Kind.TOOL, ToolRow)
 
 
 def change(
     connection: sqlite3.Connection, kind: Kind, number: int, reason: Reason, wanted: Mapping[str, Value]
 ) -> Row:
-    """Sets the fields that ``wanted`` names and keeps the rest; answers the new offset.
+    """Set the fields in ``wanted``, leave the other fields, and return the new row.
 
-    A tool that becomes the master takes that from the one before. Raises StoreError for what cannot be kept.
+    If a tool becomes the master tool, the previous master tool is cleared. Raises StoreError for an unknown
+    number and for a value that the store does not accept.
     """
     check_number(kind, number)
     rows = current(connection, kind)
@@ -165,7 +170,7 @@ def change(
 
 
 def _check_edge(kind: Kind, number: int, rows: Mapping[int, Row], wanted: Mapping[str, Value]) -> None:
-    """Raises StoreError for an edge of a tool that was never set, and for one that is to be the master."""
+    """Raise StoreError if a cutting edge has no tool yet, or is to become the master tool."""
     if kind is not Kind.TOOL or tool_of(number) == number:
         return
     if tool_of(number) not in rows:
@@ -193,7 +198,7 @@ def _other_masters(rows: Mapping[int, Row], number: int) -> list[tuple[int, Tool
 
 
 def never_set(number: int) -> str:
-    """Why a tool cannot be the master."""
+    """Return the message that a tool without an offset cannot be the master tool."""
     return Message(
         "the offset of {number} has never been set, so the offsets of other tools "
         "cannot be relative to this tool; touch off this tool first",
@@ -202,7 +207,7 @@ def never_set(number: int) -> str:
 
 
 def check_number(kind: Kind, number: int) -> None:
-    """Raises StoreError for an offset that does not exist."""
+    """Raise StoreError if no offset of this kind has the number."""
     table = TABLES[kind]
     if number in table.numbers:
         return
@@ -233,7 +238,7 @@ def check_number(kind: Kind, number: int) -> None:
 
 
 def changed(kind: Kind, number: int, old: Row | None, wanted: Mapping[str, Value]) -> Row:
-    """The row with the fields of ``wanted``. Raises StoreError for a value that is not kept."""
+    """Return the row with the fields in ``wanted`` replaced. Raises StoreError if a value is out of range."""
     fields, table = FIELDS[kind], TABLES[kind]
     for name, value in wanted.items():
         field = fields.get(name)
@@ -257,7 +262,7 @@ def _told(field: Field, value: Value) -> str:
 
 
 def _row(kind: Kind, values: Sequence[Value | None]) -> Row:
-    """A row from its columns; those that were not kept yet when it was written are as they were then."""
+    """Return a row made from its columns. NULL columns, from older versions, get zero or empty values."""
     whole = [_plain(field, value) for field, value in zip(FIELDS[kind].values(), values, strict=True)]
     return TABLES[kind].row._make(whole)
 
@@ -271,9 +276,9 @@ def _plain(field: Field, value: Value | None) -> Value:
 
 
 def remove(connection: sqlite3.Connection, kind: Kind, number: int, reason: Reason) -> bool:
-    """Removes one offset or shape as one step; answers whether there was one.
+    """Remove one offset or shape as one step; return whether it was set.
 
-    Raises StoreError for a tool that has further cutting edges, which would stand without it.
+    Raises StoreError if the tool still has other cutting edges.
     """
     check_number(kind, number)
     rows = current(connection, kind)
@@ -294,7 +299,7 @@ def remove(connection: sqlite3.Connection, kind: Kind, number: int, reason: Reas
 
 
 def clear(connection: sqlite3.Connection, kind: Kind, reason: Reason) -> int:
-    """Removes every offset of a table as one step; answers how many there were."""
+    """Remove all rows of a table as one step; return the number of rows removed."""
     rows = current(connection, kind)
     if rows:
         apply(connection, kind, {number: (old, None) for number, old in rows.items()}, reason)
@@ -304,10 +309,10 @@ def clear(connection: sqlite3.Connection, kind: Kind, reason: Reason) -> int:
 def apply(
     connection: sqlite3.Connection, kind: Kind, changes: Changes, reason: Reason, undoes: int | None = None
 ) -> tuple[Change, ...]:
-    """Writes offsets and their history as one step; answers what it is in the history."""
+    """Write changes and their history as one step; return the step's history entries."""
     table, log = TABLES[kind], TABLES[kind].log
     step, at, columns = _next_step(connection), utc_now(), _columns(kind)
-    # All go before any comes: there is never more than one master.
+    # All old rows are deleted first, so that the table never has two master tools.
     connection.executemany(f"DELETE FROM {table.name} WHERE {log.key} = ?", [(number,) for number in changes])
     _insert(
         connection,
@@ -338,16 +343,23 @@ def _insert(
 
 
 def _next_step(connection: sqlite3.Connection) -> int:
-    """Return the step number after those of all histories, so that a changed clock cannot reorder them."""
+    """Return the next step number over all histories.
+
+    A changed clock cannot reorder the steps, because their order follows these numbers.
+    """
     return 1 + max(_newest_step(connection, log) for log in LOGS)
 
 
 def _newest_step(connection: sqlite3.Connection, log: Log) -> int:
-    """The last step that is a number; what else was put there by nobody of ours."""
+    """Return the latest valid step number of a history, ignoring invalid values.
+
+    Invalid values can only come from another program or from damage.
+    """
     asked = f"SELECT coalesce(max(step), 0) FROM {log.name}"
     (last,) = connection.execute(asked).fetchone()
     if not isinstance(last, int) or last >= MOST_STEPS:
-        only = "WHERE typeof(step) = 'integer' AND step < ?"  # looks through all of them: only then
+        # a scan of the whole table, needed only for an invalid value
+        only = "WHERE typeof(step) = 'integer' AND step < ?"
         (last,) = connection.execute(f"{asked} {only}", (MOST_STEPS,)).fetchone()
     return int(last)
 
@@ -380,7 +392,7 @@ def damaged_entry(entry: object) -> StoreError:
 
 
 def _change(log: Log, row: Sequence[Any]) -> Change:
-    """Raises StoreError for one that holds what was never written: nothing may be undone by it."""
+    """Return a history row as a change. Raises StoreError if the row contains invalid values."""
     half, (i, step, undoes, at, kind, number, why, who, *both) = len(log.columns), row
     try:
         old, new = _side(kind, both[:half]), _side(kind, both[half:])
@@ -390,7 +402,7 @@ def _change(log: Log, row: Sequence[Any]) -> Change:
 
 
 def _side(kind: str, values: list[Value | None]) -> Row | None:
-    """A row of the history, None where the offset was not set."""
+    """Return the row before or after a change; None if the offset was not set."""
     if values[0] is None:
         return None
     return _row(Kind(kind), values[: len(FIELDS[Kind(kind)])])

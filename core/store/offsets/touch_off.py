@@ -1,8 +1,9 @@
-"""Tools together: touching one off, and the master tool that the others are relative to.
+"""Functions that affect several tools: touch-off, and the choice of the master tool.
 
-The store keeps for every tool the machine position at which its tip stands on part zero. Relative to the
-master is the difference of two of these. Touching the master off moves part zero, so every tool follows by
-the same way and no difference changes; choosing another master changes no position at all.
+The store has, for every tool, the machine position at which its tip is at part zero. The difference of two of
+these positions is the offset of a tool relative to the master tool. Touching off the master tool moves part
+zero, so every tool moves by the same distance and no difference changes. Choosing another master tool changes
+no position.
 """
 
 from __future__ import annotations
@@ -19,9 +20,10 @@ from core.tool_edges import edge_name
 
 
 class Touch(NamedTuple):
-    """Where a tip stands on part zero, machine mm and X a radius; None: that axis was not touched.
+    """Machine position in mm, X as a radius, at which a tip is at part zero.
 
-    ``alone``: also the master is set for itself, because its tip has changed and part zero has not.
+    An axis is None if it was not touched off. ``alone`` changes only this tool, even if it is the master
+    tool, because its tip has changed and part zero has not.
     """
 
     x: float | None = None
@@ -32,10 +34,11 @@ class Touch(NamedTuple):
 def touch_off(
     connection: sqlite3.Connection, number: int, touch: Touch, reason: Reason
 ) -> tuple[Change, ...]:
-    """Sets what was touched; the wear of that axis is in the new geometry and begins again at nought.
+    """Store a touched-off position and set the wear of that axis to zero.
 
-    The master takes all others along, as one step of the history. Raises StoreError outside the ranges, and
-    for half of a tool that was never set; then nothing has changed.
+    Touching off the master tool moves all other tools by the same distance, as one step of the history.
+    Raises StoreError if a value is out of range, or if only one axis of a new tool was touched off. The store
+    is then unchanged.
     """
     offset_tables.check_number(Kind.TOOL, number)
     rows = offset_tables.tools(connection)
@@ -61,21 +64,24 @@ def touch_off(
 
 def _tool(number: int, old: ToolRow | None, wanted: dict[str, float]) -> ToolRow:
     row = offset_tables.changed(Kind.TOOL, number, old, wanted)
-    assert isinstance(row, ToolRow)  # of the table of tools
+    assert isinstance(row, ToolRow)  # always true for the table of tools
     return row
 
 
 def _followers(
     rows: dict[int, ToolRow], master: int, x: float, z: float
 ) -> dict[int, tuple[Row | None, Row | None]]:
-    """Every other tool moved along with part zero."""
+    """Return the changes that move all other tools together with part zero, by ``x`` and ``z`` in mm."""
     return {
         n: (row, _tool(n, row, {"x": row.x + x, "z": row.z + z})) for n, row in rows.items() if n != master
     }
 
 
 def choose_master(connection: sqlite3.Connection, number: int, reason: Reason) -> tuple[Change, ...]:
-    """Makes a tool the master, 0: none; no offset changes. Raises StoreError for one never set."""
+    """Make a tool the master tool, or clear the master tool with 0; no position changes.
+
+    Raises StoreError if the tool has never been set.
+    """
     rows = offset_tables.tools(connection)
     if number and number not in rows:
         raise StoreError(offset_tables.never_set(number), "never-set")

@@ -1,7 +1,7 @@
-"""The queue of jobs as it is kept: programs, how many parts of each, and how many of these are made.
+"""The job queue: programs, with the number of parts to make and the number of parts made.
 
-A job counts nothing by itself: its parts are those that the store counts of its program while it is under
-way. One at most is under way, the one that the operator has put on the desk last.
+A job has no counter. Its parts are the parts counted for its program while the job is active. At most one job
+is active: the job that the operator loaded last.
 """
 
 from __future__ import annotations
@@ -26,15 +26,16 @@ NOTE_LONGEST = 80
 
 
 class JobRow(NamedTuple):
-    """One job. ``base``: the count of its program from which it counts, None: it is not under way.
+    """One job of the queue.
 
-    ``counted`` is what the store has counted of its program by now.
+    ``base`` is the part count of the program from which the job counts; None if the job is not active.
+    ``counted`` is the present part count of the program.
     """
 
     id: int
     program: str
     wanted: int
-    before: int = 0  # parts that were made of it before ``base``
+    before: int = 0  # parts of the job that were made before ``base`` was set
     base: int | None = None
     note: str = ""
     added: str = ""
@@ -42,27 +43,27 @@ class JobRow(NamedTuple):
 
     @property
     def under_way(self) -> bool:
-        """Whether parts of its program are counted for it."""
+        """Whether the job is active, so that parts of its program count for it."""
         return self.base is not None
 
     @property
     def made(self) -> int:
-        """Parts of it that are made."""
+        """Number of parts that the job has made."""
         return max(0, self.before + (self.counted - self.base if self.base is not None else 0))
 
     @property
     def left(self) -> int:
-        """Parts that are still to be made."""
+        """Number of parts that the job has still to make."""
         return max(0, self.wanted - self.made)
 
     @property
     def done(self) -> bool:
-        """Whether all of them are made."""
+        """Whether all parts of the job are made."""
         return self.made >= self.wanted
 
     @property
     def target(self) -> int:
-        """The part count of its program at which it is done; 0 while it is not under way."""
+        """Part count of the program at which the job is done; 0 if the job is not active."""
         return max(1, self.base + self.wanted - self.before) if self.base is not None else 0
 
 
@@ -71,14 +72,20 @@ Held = Mapping[str, tuple[bool, int]]
 
 
 def jobs(connection: sqlite3.Connection, held: Held | None = None) -> tuple[JobRow, ...]:
-    """The queue in its order; a job that is not as it was saved is left out."""
+    """Return the jobs of the queue in order. Damaged rows are omitted.
+
+    The second argument has the part counts that wait in memory for the disk.
+    """
     rows = (row_sums.readable(row) for row in row_sums.whole_rows(connection, "jobs").values())
     placed = sorted((place, number, rest) for number, place, *rest in rows)
     return tuple(_job(connection, JobRow._make((number, *rest, 0)), held or {}) for _, number, rest in placed)
 
 
 def _job(connection: sqlite3.Connection, row: JobRow, held: Held) -> JobRow:
-    """A count that is put to nought only in memory yet takes nothing from a job: ``base`` follows it then."""
+    """Return a job with its present part count.
+
+    If a reset of the count waits in memory, the parts made before the reset still count for the job.
+    """
     counted = program_records.parts(connection, row.program)
     reset, more = held.get(program_records.key_of(connection, row.program), (False, 0))
     if reset and row.base is not None:
@@ -88,7 +95,10 @@ def _job(connection: sqlite3.Connection, row: JobRow, held: Held) -> JobRow:
 
 
 def add(connection: sqlite3.Connection, program: str, wanted: int, note: str = "") -> int:
-    """One more job at the end of the queue; answers its id. Raises StoreError."""
+    """Add a job at the end of the queue; return its id.
+
+    Raises StoreError if the name, the number of parts or the note is invalid, or if the queue is full.
+    """
     program_records.check_name(program)
     _check(wanted, note)
     count, last = connection.execute("SELECT count(*), coalesce(max(place), 0) FROM jobs").fetchone()
@@ -105,14 +115,14 @@ def add(connection: sqlite3.Connection, program: str, wanted: int, note: str = "
 
 
 def change(connection: sqlite3.Connection, job: int, wanted: int, note: str) -> None:
-    """Another number of parts, another note. Raises StoreError."""
+    """Change the number of parts and the note of a job. Raises StoreError if one is invalid."""
     _check(wanted, note)
     _demand(connection, job)
     connection.execute("UPDATE jobs SET wanted = ?, note = ? WHERE id = ?", (wanted, note, job))
 
 
 def move(connection: sqlite3.Connection, job: int, to: int) -> None:
-    """To this place of the queue, counted from 1. Raises StoreError."""
+    """Move a job to place ``to`` of the queue, counted from 1. Raises StoreError if the job is unknown."""
     _demand(connection, job)
     order = [number for (number,) in connection.execute("SELECT id FROM jobs ORDER BY place, id")]
     order.remove(job)
@@ -123,13 +133,13 @@ def move(connection: sqlite3.Connection, job: int, to: int) -> None:
 
 
 def remove(connection: sqlite3.Connection, job: int) -> None:
-    """Take it out of the queue; the counts of its program stay. Raises StoreError."""
+    """Remove a job from the queue; part counts remain. Raises StoreError if the job is unknown."""
     _demand(connection, job)
     connection.execute("DELETE FROM jobs WHERE id = ?", (job,))
 
 
 def clear(connection: sqlite3.Connection, *, everything: bool) -> int:
-    """Take out what is done, or everything; also what is not as it was saved. Answers how many went."""
+    """Remove the finished and damaged jobs, or all jobs; return the number of jobs removed."""
     whole = {row.id: row for row in jobs(connection)}
     numbers = [number for (number,) in connection.execute("SELECT id FROM jobs")]
     gone = [each for each in numbers if everything or each not in whole or whole[each].done]
@@ -138,7 +148,10 @@ def clear(connection: sqlite3.Connection, *, everything: bool) -> int:
 
 
 def begin(connection: sqlite3.Connection, job: int) -> None:
-    """It is on the desk now: parts of its program count for it, and for no other job. Raises StoreError."""
+    """Activate a job: from now on parts of its program count for this job only.
+
+    Raises StoreError if the job is unknown or damaged.
+    """
     _demand(connection, job)
     put_away(connection)
     row = next((row for row in jobs(connection) if row.id == job), None)
@@ -152,14 +165,14 @@ def begin(connection: sqlite3.Connection, job: int) -> None:
 
 
 def put_away(connection: sqlite3.Connection) -> None:
-    """None is under way; what was made of it stays."""
+    """Deactivate the active job. The parts that it made remain counted."""
     for row in jobs(connection):
         if row.under_way:
             connection.execute("UPDATE jobs SET made = ?, base = NULL WHERE id = ?", (row.made, row.id))
 
 
 def count_reset(connection: sqlite3.Connection, program: str) -> None:
-    """The part count of a program is about to be put to nought: its job keeps what was made."""
+    """Save the parts made by the active job before the part count of its program is reset."""
     key = program_records.key_of(connection, program)
     for row in jobs(connection):
         if row.under_way and program_records.key_of(connection, row.program) == key:
@@ -167,7 +180,10 @@ def count_reset(connection: sqlite3.Connection, program: str) -> None:
 
 
 def load_text(connection: sqlite3.Connection, program: str, text: str) -> None:
-    """State that ``text``, a record key, is loaded under this name; its job retains what was made."""
+    """Record that ``text``, a record key, is loaded under the name ``program``.
+
+    The active job of the program retains the parts that it has made.
+    """
     before = program_records.key_of(connection, program)
     if before == text:
         return
@@ -212,15 +228,16 @@ class JobQueue:
         self._store = store
 
     def read_jobs(self) -> tuple[JobRow, ...]:
-        """Return the jobs in their order, with the parts that wait in memory for the disk."""
+        """Return the jobs in order, including part counts that wait in memory for the disk."""
         with self._store.read() as connection:
             held = self._store.backlog
             return jobs(connection, held.counts if held is not None else None)
 
     def add_job(self, program: str, wanted: int, note: str = "") -> Future[int]:
-        """Add a job for ``wanted`` parts at the end of the queue; the result is its id.
+        """Add a job for ``wanted`` parts at the end of the queue. The result is its id.
 
-        The future raises StoreError for an invalid program name, count or note, and for a full queue.
+        The future raises StoreError if the program name, the number of parts or the note is invalid, or if
+        the queue is full.
         """
         return self._store.write(lambda c: add(c, program, wanted, note))
 
@@ -233,5 +250,5 @@ class JobQueue:
         return self._store.write(lambda c: remove(c, job))
 
     def clear_jobs(self, *, everything: bool) -> Future[int]:
-        """Remove the finished and damaged jobs, or all jobs; the result is the number of jobs removed."""
+        """Remove the finished and damaged jobs, or all jobs. The result is the number of jobs removed."""
         return self._store.write(lambda c: clear(c, everything=everything))

@@ -1,4 +1,7 @@
-"""Features of a program's parts and their readings; what was measured stays when a feature goes."""
+"""Measured features of parts, and their readings.
+
+The readings of a feature remain when the feature is retired.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +16,10 @@ from core.store.store_rows import utc_now
 
 
 class FeatureRow(NamedTuple):
-    """A feature as it is kept, mm; see the tables. ``id`` 0: not kept yet."""
+    """A measured feature as stored, in mm. ``id`` is 0 for a feature that is not stored yet.
+
+    The table ``part_features`` in ``store.table_keys`` describes the columns.
+    """
 
     id: int
     program: str
@@ -30,7 +36,10 @@ class FeatureRow(NamedTuple):
 
 
 class ReadingRow(NamedTuple):
-    """One reading, mm. ``offset_change`` of the cycle that made its part, -1: nobody knows which."""
+    """One reading of a feature, in mm.
+
+    ``offset_change`` is the newest offset change at the start of the part's cycle; -1 if it is unknown.
+    """
 
     id: int
     feature: int
@@ -47,9 +56,9 @@ _COLUMNS = ", ".join(FeatureRow._fields)
 
 
 def features(connection: sqlite3.Connection, program: str | None = None) -> tuple[FeatureRow, ...]:
-    """Those that are measured, in the order of entry; without a program of all.
+    """Return the features that are measured, in the order of entry; None as ``program`` selects all programs.
 
-    One that is not as it was saved is left out: a wear correction is reckoned with its figures.
+    Damaged rows are omitted, because wear corrections are calculated from these values.
     """
     rows = connection.execute(
         f"SELECT {_COLUMNS} FROM part_features WHERE retired = 0 AND (?1 IS NULL OR program = ?1)"
@@ -61,7 +70,10 @@ def features(connection: sqlite3.Connection, program: str | None = None) -> tupl
 
 
 def save_feature(connection: sqlite3.Connection, row: FeatureRow) -> int:
-    """A new feature, or other figures of one that is kept; answers its id. Raises StoreError."""
+    """Add a feature, or change a stored feature; return its id.
+
+    Raises StoreError if the program has another feature of this name, or if the feature no longer exists.
+    """
     taken = connection.execute(
         "SELECT id FROM part_features WHERE program = ? AND name = ? AND retired = 0 AND id <> ?",
         (row.program, row.name, row.id),
@@ -98,12 +110,15 @@ def save_feature(connection: sqlite3.Connection, row: FeatureRow) -> int:
 
 
 def retire_feature(connection: sqlite3.Connection, feature: int) -> None:
-    """It is measured no more; its readings stay."""
+    """Stop measuring a feature. Its readings remain."""
     connection.execute("UPDATE part_features SET retired = 1 WHERE id = ?", (feature,))
 
 
 def add_reading(connection: sqlite3.Connection, row: ReadingRow) -> int:
-    """One reading, at this moment; answers its id. Raises StoreError for a feature that is not there."""
+    """Add a reading, with the present time if it has none; return its id.
+
+    Raises StoreError if the value is not finite, or if the feature does not exist or is retired.
+    """
     if not math.isfinite(row.value):
         raise StoreError("a reading must be a number; measure again", "not-a-number")
     there = connection.execute(
@@ -123,17 +138,14 @@ def add_reading(connection: sqlite3.Connection, row: ReadingRow) -> int:
 
 
 def void_reading(connection: sqlite3.Connection, reading: int) -> None:
-    """Take a reading out; it stays in the file and counts no more. Raises StoreError where there is none."""
+    """Mark a reading as deleted; its row remains. Raises StoreError if the reading does not exist."""
     done = connection.execute("UPDATE part_readings SET void = 1 WHERE id = ? AND void = 0", (reading,))
     if not done.rowcount:
         raise StoreError("that reading has already been deleted", "already-removed")
 
 
 def readings(connection: sqlite3.Connection, program: str, limit: int) -> tuple[ReadingRow, ...]:
-    """The newest readings of a program's features, in the order in which they were taken.
-
-    One that is not as it was saved is left out, here and of those of a shift.
-    """
+    """Return the latest readings of a program's features, oldest first. Damaged rows are omitted."""
     rows = connection.execute(
         "SELECT r.id, r.feature, r.part, r.value, r.unit, r.at, r.source, r.gauge,"
         " coalesce((SELECT c.offset_change FROM part_cycles AS c WHERE c.program = f.program"
@@ -146,12 +158,12 @@ def readings(connection: sqlite3.Connection, program: str, limit: int) -> tuple[
 
 
 def _whole(connection: sqlite3.Connection, rows: list[Any]) -> list[Any]:
-    """Those of them whose reading, by the id in front, is as it was saved."""
+    """Return the rows whose reading, identified by the first column, matches its checksum."""
     return [row for row in rows if row_sums.whole_row(connection, "part_readings", row[0]) is not None]
 
 
 def last_corrections(connection: sqlite3.Connection) -> dict[tuple[str, int, str], int]:
-    """By kind, number and axis of an offset the id of the newest change that moved it, geometry or wear."""
+    """Return the id of the newest change of each offset, by kind, number and axis; wear is included."""
     rows = connection.execute(
         "SELECT kind, number, 'x', max(id) FROM offset_changes"
         " WHERE old_x IS NOT new_x OR coalesce(old_wear_x, 0) IS NOT coalesce(new_wear_x, 0)"
@@ -166,7 +178,10 @@ def last_corrections(connection: sqlite3.Connection) -> dict[tuple[str, int, str
 def readings_between(
     connection: sqlite3.Connection, since: str, until: str
 ) -> tuple[tuple[FeatureRow, ReadingRow], ...]:
-    """Readings that were taken within this time (UTC), each with its feature, measured any more or not."""
+    """Return the readings from ``since`` to before ``until`` (UTC), each with its feature.
+
+    Readings of retired features are included. Damaged rows are omitted.
+    """
     columns = ", ".join(f"f.{name}" for name in FeatureRow._fields)
     rows = connection.execute(
         f"SELECT r.id, r.feature, r.part, r.value, r.unit, r.at, r.source, r.gauge, {columns}"

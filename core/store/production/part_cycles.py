@@ -1,4 +1,4 @@
-"""Cycles and stops as they are kept: one row a part that was begun, one a time that production stood."""
+"""Stored cycles and stops: one row for each part that was started and for each stop of production."""
 
 from __future__ import annotations
 
@@ -12,7 +12,10 @@ if TYPE_CHECKING:
 
 
 class CycleRow(NamedTuple):
-    """One part: UTC, seconds without stops; ``part`` 0: none was counted, ``ended`` None: cut off."""
+    """The cycle of one part, with UTC times and the cycle time in seconds without stops.
+
+    ``part`` is 0 if no part was counted. ``ended`` is None if TurnDesk ended during the cycle.
+    """
 
     key: str
     program: str
@@ -25,7 +28,7 @@ class CycleRow(NamedTuple):
 
 
 class CycleTime(NamedTuple):
-    """When a part ran, of a ``CycleRow``: there are thousands of them in a night."""
+    """Start, end and cycle time of a ``CycleRow``, for lists of thousands of cycles."""
 
     started: str
     ended: str | None
@@ -33,7 +36,10 @@ class CycleTime(NamedTuple):
 
 
 class StopRow(NamedTuple):
-    """Production stood: since when (UTC), seconds, why, at which line; ``cycle`` empty: between two."""
+    """One stop of production: its start (UTC), duration in seconds, reason and program line.
+
+    ``cycle`` is empty for a stop between two cycles.
+    """
 
     key: str
     cycle: str
@@ -45,7 +51,10 @@ class StopRow(NamedTuple):
 
 
 class CorrectionRow(NamedTuple):
-    """A change of wear or of a secondary offset, mm, X a radius, and the parts made before it."""
+    """A change of wear or of a secondary offset, in mm, X as a radius.
+
+    ``part`` is the number of parts that were started before the change.
+    """
 
     id: int
     at: str
@@ -64,7 +73,7 @@ _CYCLE = ", ".join(CycleRow._fields)
 
 
 def save_cycle(connection: sqlite3.Connection, row: CycleRow) -> None:
-    """A cycle that begins, or the same one when it has ended: what it began with stays."""
+    """Save a cycle when it starts, or update the same cycle when it has ended."""
     connection.execute(
         f"INSERT INTO part_cycles ({_CYCLE}, offset_change)"
         " VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, (SELECT coalesce(max(id), 0) FROM offset_changes))"
@@ -74,7 +83,7 @@ def save_cycle(connection: sqlite3.Connection, row: CycleRow) -> None:
 
 
 def save_stop(connection: sqlite3.Connection, row: StopRow) -> None:
-    """A stop that is over; the same one again tells its length anew."""
+    """Save a stop that has ended, or update the duration and reason of the same stop."""
     marks = ", ".join("?" * len(row))
     connection.execute(
         f"INSERT INTO production_stops ({', '.join(StopRow._fields)}) VALUES ({marks})"
@@ -84,12 +93,12 @@ def save_stop(connection: sqlite3.Connection, row: StopRow) -> None:
 
 
 def programs(connection: sqlite3.Connection) -> set[str]:
-    """The programs of which a part was begun."""
+    """Return the names of the programs for which a part was started."""
     return {name for (name,) in connection.execute("SELECT DISTINCT program FROM part_cycles")}
 
 
 def cycles(connection: sqlite3.Connection, program: str | None, limit: int) -> tuple[CycleRow, ...]:
-    """The newest cycles in the order of their beginnings; without a program of all."""
+    """Return the latest cycles, oldest first; None as ``program`` selects all programs."""
     rows = connection.execute(
         f"SELECT {_CYCLE} FROM part_cycles WHERE ?1 IS NULL OR program = ?1 ORDER BY id DESC LIMIT ?2",
         (program, limit),
@@ -98,7 +107,10 @@ def cycles(connection: sqlite3.Connection, program: str | None, limit: int) -> t
 
 
 def times_since(connection: sqlite3.Connection, since: str) -> tuple[CycleTime, ...]:
-    """When those of all programs ran that began at this time (UTC) or later, of the newest 20 000."""
+    """Return the times of the cycles of all programs that started at ``since`` (UTC) or later.
+
+    Only the latest 20 000 cycles are searched.
+    """
     rows = connection.execute(
         "SELECT started, ended, seconds FROM part_cycles"
         " WHERE id > (SELECT max(id) FROM part_cycles) - 20000 AND started >= ? ORDER BY id",
@@ -108,7 +120,7 @@ def times_since(connection: sqlite3.Connection, since: str) -> tuple[CycleTime, 
 
 
 def stops(connection: sqlite3.Connection, program: str | None, limit: int) -> tuple[StopRow, ...]:
-    """The newest stops in their order; without a program of all."""
+    """Return the latest stops, oldest first; None as ``program`` selects all programs."""
     rows = connection.execute(
         f"SELECT {', '.join(StopRow._fields)} FROM production_stops WHERE ?1 IS NULL OR program = ?1"
         " ORDER BY id DESC LIMIT ?2",
@@ -118,9 +130,10 @@ def stops(connection: sqlite3.Connection, program: str | None, limit: int) -> tu
 
 
 def corrections(connection: sqlite3.Connection, program: str, limit: int) -> tuple[CorrectionRow, ...]:
-    """Changes of wear and of secondary offsets in their order, with how many parts were begun before.
+    """Return the latest changes of wear and secondary offsets, oldest first.
 
-    What they are after the change and were before it: wear of a tool, X and Z of a secondary offset.
+    ``part`` counts the parts of ``program`` started before the change. The values before and after the change
+    are the wear of a tool, or X and Z of a secondary offset.
     """
     rows = connection.execute(
         "SELECT id, at, kind, number,"
@@ -141,7 +154,7 @@ def corrections(connection: sqlite3.Connection, program: str, limit: int) -> tup
 
 
 def cycles_between(connection: sqlite3.Connection, since: str, until: str) -> tuple[CycleRow, ...]:
-    """Those of all programs that ran within this time (UTC), or were under way at one of its ends."""
+    """Return the cycles of all programs that overlap the time from ``since`` to ``until`` (UTC)."""
     rows = connection.execute(
         f"SELECT {_CYCLE} FROM part_cycles"
         " WHERE started < ?2 AND max(started, coalesce(ended, started)) >= ?1 ORDER BY id",
@@ -151,7 +164,7 @@ def cycles_between(connection: sqlite3.Connection, since: str, until: str) -> tu
 
 
 def stops_between(connection: sqlite3.Connection, since: str, until: str) -> tuple[StopRow, ...]:
-    """Stops that are over and lay within this time (UTC), or over one of its ends."""
+    """Return the ended stops that overlap the time from ``since`` to ``until`` (UTC)."""
     rows = connection.execute(
         f"SELECT {', '.join(StopRow._fields)} FROM production_stops"
         " WHERE at < ?2 AND julianday(at) + seconds / 86400.0 > julianday(?1) ORDER BY id",
@@ -161,16 +174,16 @@ def stops_between(connection: sqlite3.Connection, since: str, until: str) -> tup
 
 
 class CycleRecords:
-    """Records of cycles and stops in an open store. Methods raise StoreError as in ``StoreAccess``.
+    """Records of cycles and stops in an open store. Methods raise StoreError as described in ``StoreAccess``.
 
-    A full disk does not lose a record: the record waits in memory and is written later.
+    A record is not lost if the disk is full. It waits in memory and is written later.
     """
 
     def __init__(self, store: StoreAccess) -> None:
         self._store = store
 
     def record_cycle(self, row: CycleRow) -> Future[None]:
-        """Record a cycle that starts, or the end of a cycle recorded before."""
+        """Record the start of a cycle, or the end of a recorded cycle."""
         return self._store.keep_latest(("cycle", row.key), lambda c: save_cycle(c, row))
 
     def record_stop(self, row: StopRow) -> Future[None]:

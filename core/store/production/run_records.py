@@ -21,32 +21,33 @@ class LoadedTexts:
         self._keys = dict[str, str]()
 
     def add(self, name: str, key: str) -> None:
-        """State that the text with this record key is loaded under ``name``."""
+        """Record that the text with this record key is loaded under ``name``."""
         self._keys[name] = key
 
     def rename(self, old: str, new: str) -> None:
-        """Transfer the text that is loaded under ``old``, if any, to ``new``."""
+        """Transfer the text loaded under ``old``, if any, to ``new``."""
         key = self._keys.pop(old, None)
         self._keys.pop(new, None)
         if key is not None:
             self._keys[new] = key
 
     def key_of(self, program: str) -> str:
-        """Return the record key of the text loaded under this name; the name itself if none was loaded."""
+        """Return the record key of the text loaded under this name; the name itself if no text was loaded."""
         return self._keys.get(program, program)
 
 
 class RunRecords:
-    """Records of the text loaded under a program name. Methods raise StoreError as in ``StoreAccess``.
+    """Records of the text that is loaded under a program name.
 
-    A full disk does not lose a change: the change waits in memory and is written later.
+    Methods raise StoreError as described in ``StoreAccess``. A change is not lost if the disk is full. It
+    waits in memory and is written later.
     """
 
     def __init__(self, store: StoreAccess, loaded: LoadedTexts) -> None:
         self._store, self._loaded = store, loaded
 
     def read_records(self) -> tuple[RunRow, ...]:
-        """Return the record of each program, by name."""
+        """Return the record of each program, sorted by name."""
         return self._store.query(program_records.all_of)
 
     def read_records_by_text(self) -> dict[str, RunRow]:
@@ -54,7 +55,7 @@ class RunRecords:
         return self._store.query(program_records.by_text)
 
     def count_parts(self, program: str) -> int:
-        """Return the part count of a program, with the parts that wait in memory for the disk."""
+        """Return the part count of a program, including the parts that wait in memory for the disk."""
         with self._store.read() as connection:
             key = program_records.key_of(connection, self._loaded.key_of(program))
             stored, held = program_records.parts(connection, key), self._store.backlog
@@ -84,7 +85,10 @@ class RunRecords:
         return self._store.keep_latest(("end", key), lambda c: program_records.ended(c, key, outcome))
 
     def end_cut_off_runs(self, outcome: str, template: str) -> Future[None]:
-        """Record ``outcome`` for all runs without an end; log a warning ``template`` for each program."""
+        """Record ``outcome`` for all runs without an end.
+
+        For each program, the warning ``template`` is logged.
+        """
 
         def operation(connection: sqlite3.Connection) -> None:
             cut_off = program_records.cut_off(connection, outcome)
@@ -96,7 +100,7 @@ class RunRecords:
         return self._store.keep_latest(("start", ""), operation)
 
     def record_cycle(self, program: str, seconds: float) -> Future[None]:
-        """Record one whole cycle of this program and its time in seconds."""
+        """Record one complete cycle of a program and its time in seconds."""
         key = self._loaded.key_of(program)
         return self._store.keep(lambda unwritten: unwritten.cycle(key, seconds))
 
@@ -105,7 +109,7 @@ class RunRecords:
     ) -> Future[None]:
         """Record the result of proving ``text``, and the calculated cycle time in seconds.
 
-        None as ``text``: the text that is loaded under the name ``program``.
+        None as ``text`` selects the text that is loaded under the name ``program``.
         """
         key = self._loaded.key_of(program) if text is None else program_records.key_of_text(text)
         at = utc_now()

@@ -1,4 +1,4 @@
-"""Tool life as it is kept: limits, what the insert has made since it was changed, and every change of it."""
+"""Stored tool life: limits, use since the insert was changed, and every change of an insert."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from core.store.store_rows import MILL_TOOLS, OFFSETS, Kind, utc_now
 
 
 class LifeRow(NamedTuple):
-    """Of one tool; seconds at feed, a limit of 0 is none."""
+    """Tool life of one tool, with times at feed in seconds. A limit of 0 means unlimited."""
 
     number: int
     limit_parts: int = 0
@@ -24,7 +24,7 @@ class LifeRow(NamedTuple):
 
 
 class InsertChange(NamedTuple):
-    """An insert, or a tool of a mill, was changed after so many parts and seconds at feed."""
+    """The change of an insert or of a mill tool, with the parts and seconds at feed that it had made."""
 
     id: int
     at: str
@@ -45,7 +45,10 @@ _OF_MILL = (
 
 
 def lives(connection: sqlite3.Connection, kind: Kind = Kind.TOOL) -> dict[int, LifeRow]:
-    """Of all tools that have a limit or have cut, by number; of a mill all that its tool table has."""
+    """Return the tool life of all tools with a limit or with recorded use, by number.
+
+    For a mill, the result has all tools of the tool table. Damaged rows are omitted.
+    """
     of_lathe = f"SELECT {', '.join(LifeRow._fields)} FROM tool_lives ORDER BY number"
     rows = connection.execute(_OF_MILL if kind is Kind.MILL_TOOL else of_lathe).fetchall()
     broken = row_sums.broken(connection, _USE[kind])
@@ -56,7 +59,10 @@ def lives(connection: sqlite3.Connection, kind: Kind = Kind.TOOL) -> dict[int, L
 
 
 def set_limits(connection: sqlite3.Connection, row: LifeRow) -> None:
-    """Limits of a lathe's tool; what it has made stays. Raises StoreError for a number that no tool has."""
+    """Save the limits of a lathe tool; its recorded use remains.
+
+    Raises StoreError if the tool does not exist.
+    """
     _demand_tool(row.number, Kind.TOOL)
     connection.execute(
         "INSERT INTO tool_lives (number, limit_parts, limit_seconds, warn, stops) VALUES (?1, ?2, ?3, ?4, ?5)"
@@ -68,7 +74,7 @@ def set_limits(connection: sqlite3.Connection, row: LifeRow) -> None:
 def set_use(
     connection: sqlite3.Connection, number: int, parts: int, seconds: float, kind: Kind = Kind.TOOL
 ) -> None:
-    """What the insert has made by now, in parts and seconds at feed."""
+    """Save the use of an insert since its last change, in parts and seconds at feed."""
     connection.execute(
         f"INSERT INTO {_USE[kind]} (number, parts, seconds) VALUES (?1, ?2, ?3)"
         " ON CONFLICT (number) DO UPDATE SET parts = ?2, seconds = ?3",
@@ -79,7 +85,10 @@ def set_use(
 def change_insert(
     connection: sqlite3.Connection, number: int, why: str, kind: Kind = Kind.TOOL, who: str = ""
 ) -> None:
-    """A fresh insert: the count begins at nought, and what the old one has made is kept."""
+    """Record the change of an insert: save the use of the old insert and reset the count to zero.
+
+    Raises StoreError if the tool does not exist.
+    """
     _demand_tool(number, kind)
     connection.execute(
         "INSERT INTO insert_changes (at, number, parts, seconds, why, kind, who)"
@@ -91,7 +100,7 @@ def change_insert(
 
 
 def insert_changes(connection: sqlite3.Connection, limit: int) -> tuple[InsertChange, ...]:
-    """Changes of inserts, newest first."""
+    """Return the latest changes of inserts, newest first."""
     rows = connection.execute("SELECT * FROM insert_changes ORDER BY id DESC LIMIT ?", (limit,))
     return tuple(InsertChange(*row) for row in rows)
 

@@ -1,4 +1,4 @@
-"""Work on the bar: feed and loop, part off to the centre or a bore; and the blade that plunges."""
+"""Bar work: bar feed loop, parting off to the center or a bore, and the blade for plunges."""
 
 from __future__ import annotations
 
@@ -38,13 +38,13 @@ def _width(values: Values, setting: Setting) -> Value | None:
 
 
 def _corner(values: Values, setting: Setting) -> Value | None:
-    """The corner that was touched off, as the tool's sheet says; of an unknown tool the one at the chuck."""
+    """Return the touched-off corner from the tool data; for an unknown tool, the corner at the chuck."""
     shape = setting.tool(number(values, "T"))
     return RIGHT if shape is not None and shape.direction[0] > 0 else LEFT
 
 
 def side_of(filled: Filled) -> float:
-    """-1: the tool works at X negative."""
+    """Return -1 if the tool works at negative X, otherwise 1."""
     return -1.0 if filled.t("SIDE") == REAR else 1.0
 
 
@@ -53,9 +53,9 @@ CORNER_FIELD = Field("CORNER", "CORNER USED FOR TOUCH-OFF", Kind.CHOICE, _corner
 
 
 class Blade:
-    """Where the tool is programmed so that one of its corners stands where it should.
+    """Writer of moves that position one corner of a blade.
 
-    ``start``: the radius at which it comes.
+    ``start`` is the radius from which the blade approaches.
     """
 
     def __init__(self, filled: Filled, code: Code, start: float = 0.0) -> None:
@@ -69,37 +69,37 @@ class Blade:
         self._z = self._z if z is None else z
 
     def at(self, chuck: float) -> float:
-        """Programmed Z that has the corner at the chuck there."""
+        """Return the programmed Z that puts the chuck-side corner at ``chuck``."""
         return chuck if self.left else chuck + self.wide
 
     def face(self, front: float) -> float:
-        """Programmed Z that has the corner at the face there."""
+        """Return the programmed Z that puts the face-side corner at ``front``."""
         return self.at(front - self.wide)
 
     def over(self, z: float, r: float) -> None:
-        """Along Z, as far out as it is, then to this radius; what is reached already is not written again."""
+        """Move along Z at the present radius, then to radius ``r``; omit moves that are not necessary."""
         if z != self._z:
             self.rapid(z=z)
         if r != self._r:
             self.rapid(r)
 
     def rapid(self, r: float | None = None, z: float | None = None) -> None:
-        """A rapid to a radius on its side of the axis, and to a programmed Z."""
+        """Write a rapid to a radius on the tool's side of the axis and to a programmed Z."""
         self._at(r, z)
         self._code.rapid(None if r is None else self._side * r, z)
 
     def cut(self, r: float | None = None, z: float | None = None, feed: float = 0.0) -> None:
-        """A cut to there."""
+        """Write a feed move to a radius and a programmed Z."""
         self._at(r, z)
         self._code.cut(None if r is None else self._side * r, z, feed)
 
     def dwell(self, seconds: float) -> None:
-        """Where it stands; of no seconds none."""
+        """Write a dwell; 0 s writes nothing."""
         self._code.dwell(seconds)
 
 
 def reach(filled: Filled, setting: Setting, deep: float, word: str) -> Iterator[Refusal]:
-    """The blade is long enough, and as wide as its sheet says."""
+    """Yield errors if the blade is too short, or if its width differs from the tool data."""
     shape, wide, name = setting.tool(filled.n("T")), filled.n("WIDE"), f"T{filled.n('T'):.0f}"
     if shape is None:
         return
@@ -283,7 +283,7 @@ LOOP = Shape(
 
 
 def no_chuck(setting: Setting, word: str) -> Iterator[Refusal]:
-    """A machine on which a SINUMERIK program cannot open the chuck; told at this field."""
+    """Yield an error at this field if a SINUMERIK program cannot open the chuck of this machine."""
     if setting.shop.chuck is None:
         yield Refusal(
             word,

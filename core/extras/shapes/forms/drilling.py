@@ -1,4 +1,4 @@
-"""Drill and peck on the axis: G81 for a hole in one go, G83 where pecks are said."""
+"""Drilling on the axis: G81 for a hole in one pass, G83 with pecking."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from core.message import Message
 from core.part.tool_shape import ToolKind
 from core.sketch import Dim, Sketch, cut, part, sketch, tool
 
-_DEEP = 5.0  # diameters without pecks
+_DEEP = 5.0  # largest depth without pecking, in diameters
 
 
 def _across(values: Values, setting: Setting) -> Value | None:
@@ -30,7 +30,7 @@ def _across(values: Values, setting: Setting) -> Value | None:
 
 
 def _peck(values: Values, _setting: Setting) -> Value | None:
-    """A diameter, in holes of more than three; else none."""
+    """Return a peck depth of one diameter for holes deeper than three diameters, otherwise 0."""
     across, deep = number(values, "DIA"), number(values, "DEEP")
     return round(across, 3) if across and deep - number(values, "START") > 3.0 * across else 0.0
 

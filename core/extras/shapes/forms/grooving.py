@@ -1,4 +1,4 @@
-"""Groove: plunges of a blade, square or slanted walls, chamfers at both edges, several at one pitch."""
+"""Groove shape: plunges of a blade, square or sloped walls, chamfered edges, several at one pitch."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from core.message import Message
 from core.part.tool_shape import ToolKind
 from core.sketch import Dim, Sketch, cut, part, sketch, tool
 
-_OVERLAP = 0.8  # of the blade from plunge to plunge
+_OVERLAP = 0.8  # distance between plunges as a fraction of the blade width
 
 
 def _plunges(filled: Filled) -> int:
@@ -36,7 +36,7 @@ def _plunges(filled: Filled) -> int:
 
 
 def _slants(filled: Filled) -> tuple[float, float]:
-    """How far the walls at the face and at the chuck lean for each unit of depth."""
+    """Return the slopes of the walls at the face and at the chuck, per unit of depth."""
     return math.tan(math.radians(filled.n("FANGLE"))), math.tan(math.radians(filled.n("CANGLE")))
 
 
@@ -60,7 +60,7 @@ def _groove(filled: Filled, setting: Setting, code: Code) -> None:
 
 
 def _loop(filled: Filled, code: Code, outer: float, first: float) -> None:
-    """Grooves of one plunge each, as a loop of distances."""
+    """Write grooves of one plunge each as a loop with incremental moves."""
     deep = side_of(filled) * (outer - filled.n("BOTTOM") / 2.0)
     code.rapid(z=first)
     code.write("G91", f"LS{filled.n('COUNT'):.0f}", f"G95F{plain(filled.n('FEED'), 6)}{code.x(-deep)}")
@@ -76,7 +76,7 @@ def _one_groove(filled: Filled, blade: Blade, outer: float, chuck: float, free: 
         blade.over(blade.at(at), outer)
         blade.cut(bottom, feed=feed)
         if at == steps[-1] and count > 1:
-            blade.cut(z=blade.face(front))  # along the bottom
+            blade.cut(z=blade.face(front))  # cut along the bottom
         else:
             blade.dwell(filled.n("DWELL"))
         blade.rapid(outer)
@@ -94,7 +94,7 @@ def _one_groove(filled: Filled, blade: Blade, outer: float, chuck: float, free: 
 
 
 def _slanted_groove(filled: Filled, blade: Blade, outer: float, chuck: float, free: float) -> None:
-    """Plunges as deep as both corners of the blade may, then down each wall, and along the bottom."""
+    """Write plunges limited by the corners of the blade, then cuts down each wall and along the bottom."""
     feed, top, bottom = filled.n("FEED"), filled.n("TOP") / 2.0, filled.n("BOTTOM") / 2.0
     deep, front, count = abs(top - bottom), chuck + filled.n("LONG"), _plunges(filled)
     at_face, at_chuck = _slants(filled)
@@ -263,7 +263,7 @@ GROOVE = Shape(
 )
 
 
-# --- SINUMERIK: by CYCLE93 where the tool has two cutting edges
+# --- SINUMERIK: CYCLE93 if the tool has two cutting edges
 
 
 def _by_cycle(values: Values) -> bool:

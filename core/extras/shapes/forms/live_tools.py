@@ -1,4 +1,4 @@
-"""Cross holes, flats and slots: the spindle held as C axis, a live tool, the planes XC and ZC."""
+"""Shapes for a live tool with the spindle as C axis: cross holes, flats and slots in planes XC and ZC."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from core.message import Message
 from core.part.tool_shape import ToolKind
 from core.sketch import Dim, Outline, Sketch, cut, part, sketch, tool
 
-_LIVE_RPM = 3000.0  # of a small live tool; OmniTurn has no word for it
+_LIVE_RPM = 3000.0  # speed of a small live tool, for which OmniTurn has no word
 _TEETH = 2.0
 Checks = Callable[[Filled, Setting], Iterator[Refusal]]
 FRONT, REAR = "FRONT", "REAR"
 
 
 def _rate(work: Work) -> Proposal:
-    """A minute, since the live tool's speed is its own: by ``_LIVE_RPM`` and two teeth of a mill."""
+    """Return a proposal for the feed per minute, from the live tool's speed and two teeth of a mill."""
 
     def proposed(values: Values, setting: Setting) -> Value | None:
         turns = number(values, "LRPM") or _LIVE_RPM
@@ -40,7 +40,7 @@ def _rate(work: Work) -> Proposal:
 
 
 def _lines(filled: Filled, setting: Setting, code: Code) -> LiveLines:
-    """In the language of the program."""
+    """Return a writer for the language of the program."""
     kind = SinumerikLiveLines if setting.dialect is Dialect.SINUMERIK else LiveLines
     return kind(code, filled.n("LRPM"))
 
@@ -50,7 +50,7 @@ def _step(values: Values, _setting: Setting) -> Value | None:
     return round(360.0 / many, 4) if many else None
 
 
-# --- cross holes
+# --- Cross holes
 
 
 def _cross(filled: Filled, setting: Setting, code: Code) -> None:
@@ -124,11 +124,11 @@ CROSS = Shape(
 )
 
 
-# --- flats by the plane XC
+# --- Flats in the plane XC
 
 
 def _flat_path(filled: Filled, setting: Setting) -> tuple[float, list[tuple[float, float]]]:
-    """X of the entry, and the tool's centre round the flats, seen from the front."""
+    """Return X of the entry, and the path of the tool center around the flats, seen from the front."""
     many, radius = int(filled.n("FLATS")), filled.n("DIA") / 2.0
     away = filled.n("ACROSS") / 2.0 + radius
     outside = filled.n("FROM") / 2.0 + radius
@@ -242,7 +242,7 @@ FLATS = Shape(
 )
 
 
-# --- slots by the plane ZC
+# --- Slots in the plane ZC
 
 
 def _slot(filled: Filled, setting: Setting, code: Code) -> None:
@@ -318,7 +318,7 @@ SLOT = Shape(
 )
 
 
-# --- SINUMERIK: the live tool is spindle 2, C and its planes need an axis
+# --- SINUMERIK: the live tool is spindle 2; C and its planes require an axis
 
 
 def _live_checks(checks: Checks) -> Checks:

@@ -1,4 +1,4 @@
-"""Taper, edge and bore: contours that are said in a few figures."""
+"""Taper, edge and bore: contours defined by a few values."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Face, and turn along a profile: roughing by G75, then the contour."""
+"""Facing, and turning along a profile: roughing with G75, then the contour."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from core.part.tool_shape import ToolKind
 from core.sketch import Dim, Sketch, cut, part, sketch, turned
 
 OUTSIDE, INSIDE = "OUTSIDE", "BORE"
-_BESIDE = {False: 0.02, True: 0.5}  # by metric: how far beside the part a contour begins and ends
+_BESIDE = {False: 0.02, True: 0.5}  # by metric; clearance from the part at which a contour begins and ends
 
 
 def _roughs(values: Values) -> bool:
@@ -39,9 +39,9 @@ LOWEST, HIGHEST = "LOWEST", "HIGHEST"
 
 
 def _extent(rows: Sequence[Row]) -> Values:
-    """Return LOWEST and HIGHEST of a contour, whose moves square across the face do not count.
+    """Return LOWEST and HIGHEST of a contour, without moves square across the face.
 
-    Empty where roughing along Z cannot cut the contour.
+    The result is empty if roughing along Z cannot cut the contour.
     """
     there = points(rows)
     turned = [r for a, b in pairwise(there) if abs(a[0] - b[0]) > SAME for r in (a[1], b[1])]
@@ -51,7 +51,7 @@ def _extent(rows: Sequence[Row]) -> Values:
 
 
 def _stock_and_end(values: Values) -> tuple[float, float]:
-    """Return the diameter at which the stock begins and that of the deepest cut; the same where unknown."""
+    """Return the diameters of the stock and of the deepest cut; equal if they are unknown."""
     low = number(values, LOWEST) or number(values, "SMALL")
     high = max(number(values, each) for each in (HIGHEST, "LARGE", "DIAM"))
     if text(values, "SIDE") == INSIDE or "DIAM" in values:
@@ -62,7 +62,7 @@ def _stock_and_end(values: Values) -> tuple[float, float]:
 
 
 def _depth(values: Values, setting: Setting) -> Value | None:
-    """Propose rough passes where more stock is left than two finishing passes take."""
+    """Propose roughing passes if the stock exceeds two finishing passes."""
     stock, end = _stock_and_end(values)
     depth = rough_depth(setting, number(values, "T"), max(stock, end), inside=end > stock)
     return depth if abs(stock - end) / 4.0 > finish_depth(setting, depth) + SAME else 0.0
@@ -87,7 +87,7 @@ LABEL = Field("LABEL", "CONTOUR NUMBER", Kind.COUNT, _next_label, most=9999, onl
 
 
 def begin_spindle(filled: Filled, setting: Setting, code: Code, x: float, z: float | None) -> None:
-    """Tool, spindle and the way to the part; constant surface speed where it is asked for."""
+    """Write tool, spindle and approach to the part, with constant surface speed if specified."""
     code.edge = filled.n("COMP") or 1.0
     code.begin(filled.n("T"), filled.n("RPM"), x, z)
     if filled.n("SURF"):
@@ -95,17 +95,17 @@ def begin_spindle(filled: Filled, setting: Setting, code: Code, x: float, z: flo
 
 
 def end_spindle(filled: Filled, code: Code) -> None:
-    """To where tools change; back to rpm."""
+    """Write the retract to the tool change position, and the return to rpm."""
     code.away()
     if filled.n("SURF"):
         code.constant_speed()
 
 
-# --- along a contour
+# --- Turning a contour
 
 
 def cut_contour(filled: Filled, setting: Setting, code: Code, rows: Sequence[Row], *, inside: bool) -> None:
-    """Tool and spindle, roughing where a depth of a pass is said, the contour, and back."""
+    """Write tool and spindle, roughing if a depth is specified, the contour, and the retract."""
     there = points(rows)
     beside = _beside(filled, setting, there, inside=inside)
     rough, comp = filled.n("ROUGH"), filled.n("COMP")
@@ -121,7 +121,7 @@ def cut_contour(filled: Filled, setting: Setting, code: Code, rows: Sequence[Row
 
 
 def _beside(filled: Filled, setting: Setting, there: Sequence[tuple[float, float]], *, inside: bool) -> float:
-    """The radius beside the metal at which a contour ends, and roughing begins."""
+    """Return the radius clear of the material at which a contour ends and roughing begins."""
     free, radii = _BESIDE[setting.metric], [r for _, r in there]
     if inside:
         hole = filled.n("HOLE") / 2.0 or min(radii)
@@ -162,7 +162,10 @@ def _contour_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
 
 
 def _falls_at_once(there: Sequence[tuple[float, float]], *, inside: bool) -> Iterator[Refusal]:
-    """Roughing comes back across a contour that leads into the metal from its first point on."""
+    """Yield an error if the contour leads into the material at its first point.
+
+    The return path of roughing would cross such a contour.
+    """
     side = -1.0 if inside else 1.0
     if len(there) > 1 and there[1][0] < there[0][0] - SAME and side * (there[0][1] - there[1][1]) > SAME:
         yield Refusal(
@@ -174,7 +177,7 @@ def _falls_at_once(there: Sequence[tuple[float, float]], *, inside: bool) -> Ite
 
 
 def compensated(filled: Filled, setting: Setting) -> Iterator[Refusal]:
-    """Refuse G41 where it does not work."""
+    """Yield an error if G41 would not work."""
     if filled.n("COMP") and setting.called and setting.dialect is Dialect.OMNITURN:
         yield Refusal(
             "COMP",
@@ -184,7 +187,7 @@ def compensated(filled: Filled, setting: Setting) -> Iterator[Refusal]:
 
 
 def cutting_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
-    """Refuse speeds, feeds and depths that machine or insert cannot take."""
+    """Yield errors for speeds, feeds and depths that the machine or the insert does not permit."""
     yield from too_fast(filled, setting)
     yield from per_rev(filled, setting, "FEED", "RFEED")
     rough, leave = filled.n("ROUGH"), filled.n("LEAVE")
@@ -203,7 +206,7 @@ def cutting_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
 
 
 def too_deep_pass(filled: Filled, setting: Setting, word: str, deep: float) -> Iterator[Refusal]:
-    """Refuse a pass that is deeper than the insert takes."""
+    """Yield an error if a pass is deeper than the insert permits."""
     most = most_depth(setting, filled.n("T"))
     if deep > most + SAME:
         yield Refusal(
@@ -265,7 +268,7 @@ TURN = Shape(
 )
 
 
-# --- face
+# --- Face
 
 
 def _face(filled: Filled, setting: Setting, code: Code) -> None:
@@ -284,7 +287,7 @@ def _face(filled: Filled, setting: Setting, code: Code) -> None:
 
 
 def _past_axis(values: Values, setting: Setting) -> Value | None:
-    """Two nose radii beyond the axis: a nose that stops on it leaves a pip."""
+    """Return the end diameter of two nose radii past the axis, because stopping earlier leaves a pip."""
     shape = setting.tool(number(values, "T"))
     nose = shape.nose_radius / setting.mm if shape is not None else 0.0
     return -math.ceil(2000.0 * (nose or 0.4 / setting.mm)) / 1000.0

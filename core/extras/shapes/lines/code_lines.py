@@ -1,4 +1,4 @@
-"""The lines of a shape and of a bar loop: numbers as words, rapids, cuts and feeds of this control."""
+"""Program lines of a shape and of a bar feed loop: words, rapids, cuts and feeds of this control."""
 
 from __future__ import annotations
 
@@ -14,9 +14,11 @@ from core.language.source import Dialect
 
 
 class Bars(NamedTuple):
-    """``many`` parts of ``long``, fed by ``rate`` a minute to the tool ``stop``, which leaves ``stock``.
+    """A bar feed loop.
 
-    ``each``: the bar is fed for each part, else once. ``part`` is the number of its subroutine.
+    ``many`` parts of the length ``long`` are made. The bar is fed at ``rate`` per minute to the tool
+    ``stop``, which leaves ``stock`` on the face. ``each`` feeds the bar for each part, otherwise it is fed
+    once. ``part`` is the number of the part's subroutine.
     """
 
     many: int
@@ -29,17 +31,17 @@ class Bars(NamedTuple):
 
     @property
     def out(self) -> float:
-        """How far the bar comes out at a time."""
+        """Length by which the bar is fed out at a time."""
         return self.long if self.each else self.many * self.long
 
 
 def write_bars(code: Code, bars: Bars) -> None:
-    """In the language of the program."""
+    """Write a bar feed loop in the language of the program."""
     (_sinumerik if code.setting.dialect is Dialect.SINUMERIK else _omniturn)(code, bars)
 
 
 def _omniturn(code: Code, bars: Bars) -> None:
-    """LS … LF. G97 changes nothing: it carries the comment, which has no place inside a loop."""
+    """Write the loop with LS … LF. G97 only carries the comment, which is not allowed inside a loop."""
     call, loop = f"P{bars.part}", f"LS{bars.many}"
     code.write("G97", loop) if bars.each else code.write("G97")
     code.write(f"T{bars.stop:.0f}")
@@ -54,7 +56,7 @@ def _omniturn(code: Code, bars: Bars) -> None:
 
 
 def _sinumerik(code: Code, bars: Bars) -> None:
-    """REPEAT between two labels; a bar that was fed once is gone along by ATRANS."""
+    """Write the loop with REPEAT between two labels; ATRANS shifts zero along a bar that is fed once."""
     opens, closes = code.setting.shop.chuck or (0, 0)
     begin, end = f"BAR_{bars.part}", f"BAR_{bars.part}_END"
     code.write(*([f"{begin}:"] if bars.each else []), f"T{bars.stop:.0f} D1", "M5")
@@ -74,16 +76,16 @@ def _sinumerik(code: Code, bars: Bars) -> None:
 
 
 def _to_stop(code: Code, bars: Bars) -> None:
-    """The stop to the end of the bar."""
+    """Write the move of the stop to the end of the bar."""
     code.rapid(0.0, code.setting.clear)
     code.rapid(z=bars.stock - bars.out)
 
 
 class Along(NamedTuple):
-    """A contour that is turned: roughed in passes of ``rough`` (0: not), then along it once.
+    """Turning of a contour: roughing in passes of ``rough`` (0 for none), then one pass along the contour.
 
-    ``beside`` is the radius beside the metal where it ends, ``offset`` the number of the nose compensation,
-    0 for none, ``label`` a number for the contour where the language names it.
+    The contour ends at a radius clear of the material. ``offset`` is the number of the nose compensation, or
+    0. ``label`` is a number for the contour in languages that label contours.
     """
 
     rows: Sequence[Row]
@@ -98,9 +100,9 @@ class Along(NamedTuple):
 
 
 class Tap(NamedTuple):
-    """A tap on the axis: from ``start`` in to ``end``, by ``pitch`` at ``rpm``, turned by ``into``.
+    """A tap on the axis from ``start`` to ``end`` with ``pitch`` at ``rpm``; ``into`` is its M code.
 
-    ``rigid``: the spindle is held and turned with Z, where the language can; else a holder gives.
+    ``rigid`` turns the spindle in step with Z if the language permits; otherwise a floating holder is used.
     """
 
     start: float
@@ -113,10 +115,13 @@ class Tap(NamedTuple):
 
 
 class Code:
-    """Lines in the modes of a program. X is given as a radius; what is in force is not written again."""
+    """Writer of lines that tracks the modal state of the program.
 
-    loops = True  # a group of lines is repeated by LS … LF
-    edge = 1.0  # the cutting edge of the tools, where the language has several a tool
+    X is given as a radius. Words that are already in force are not repeated.
+    """
+
+    loops = True  # LS … LF can repeat a group of lines
+    edge = 1.0  # cutting edge of the tools, in languages with several edges per tool
 
     def __init__(self, setting: Setting) -> None:
         self.setting = setting
@@ -125,37 +130,37 @@ class Code:
         self._feed = ""
 
     def write(self, *lines: str) -> None:
-        """Lines as they are."""
+        """Add lines unchanged."""
         self.lines += lines
 
     def forget(self) -> None:
-        """Behind lines that were written as they are: nobody knows what flag and feed are in force."""
+        """Clear the tracked modal state, after lines that were added unchanged."""
         self._rapid, self._feed = False, ""
 
-    # --- words
+    # --- Words
 
     def x(self, radius: float, letter: str = "X") -> str:
-        """The word of a radius, as the program has X."""
+        """Return the word of a radius, as a diameter if the program uses diameters."""
         s = self.setting
         value = 2.0 * radius if s.diameter else radius
         return letter + plain(rounded(value, metric=s.metric, twice=s.diameter))
 
     def z(self, value: float, letter: str = "Z") -> str:
-        """The word of a length along Z, or of one that is never a diameter."""
+        """Return the word of a length along Z, or of another length that is never a diameter."""
         return letter + plain(rounded(value, metric=self.setting.metric))
 
     def point(self, x: float | None, z: float | None) -> str:
-        """X and Z of a move; what is None is not written."""
+        """Return the X and Z words of a move; None omits a word."""
         return ("" if x is None else self.x(x)) + ("" if z is None else self.z(z))
 
-    # --- moves
+    # --- Moves
 
     def noted(self, comment: str) -> list[str]:
-        """The lines, the first with this comment."""
+        """Return the lines with a comment on the first line."""
         return [f"{self.lines[0]}({comment})", *self.lines[1:]]
 
     def begin(self, tool: float, rpm: float, x: float, z: float | None, turns: str = "M03") -> None:
-        """Tool, spindle, and rapids to ``x`` at the clear Z and from there to ``z``."""
+        """Write tool, spindle and rapids to ``x`` at the tool change Z, and then to ``z``."""
         self.write(f"T{tool:.0f}")
         if rpm:
             self.write(f"{turns}S{plain(rpm, 0)}")
@@ -165,16 +170,16 @@ class Code:
             self.rapid(z=z)
 
     def rapid(self, x: float | None = None, z: float | None = None) -> None:
-        """A rapid."""
+        """Write a rapid."""
         self.write(("" if self._rapid else "G00") + self.point(x, z))
         self._rapid = True
 
     def cut(self, x: float | None = None, z: float | None = None, feed: float = 0.0, more: str = "") -> None:
-        """A feed move; ``feed`` 0 is the one before. ``more``: words behind the point."""
+        """Write a feed move; 0 as ``feed`` retains the feed rate, and ``more`` follows the point."""
         self.write(self.fed(feed) + self.point(x, z) + more)
 
     def fed(self, feed: float) -> str:
-        """The words that make the next move a cut by ``feed`` a turn: none where that is in force."""
+        """Return the words that make the next move a cut at ``feed`` per revolution; empty if in force."""
         word = f"F{plain(feed, 6)}" if feed else self._feed
         if word == self._feed:
             again = "G01" if self._rapid else ""
@@ -184,31 +189,31 @@ class Code:
         return again
 
     def set_feed(self, feed: float) -> None:
-        """A feed alone on its line, for the moves behind it."""
+        """Write a line with only a feed, for the following moves."""
         self.write(self.fed(feed) or f"F{plain(feed, 6)}")
 
     def line(self, x: float | None, z: float | None, chamfer: float, radius: float) -> None:
-        """A line of a contour, with the corner to the next."""
+        """Write a line of a contour, with the corner to the next line."""
         corner = self.z(chamfer, "C") if chamfer else self.z(radius, "R") if radius else ""
         self.write(self.fed(0.0) + self.point(x, z) + corner)
 
     def arc(self, x: float, z: float, radius: float, *, convex: bool) -> None:
-        """An arc from the last point, convex as the shoulder of a shaft or concave as a fillet."""
+        """Write an arc from the last point: convex like a shoulder of a shaft, or concave like a fillet."""
         self.write(f"{'G02' if convex else 'G03'}{self.point(x, z)}{self.z(radius, 'R')}")
 
     def dwell(self, seconds: float) -> None:
-        """A wait; of no seconds none."""
+        """Write a dwell; 0 s writes nothing."""
         if seconds:
             self.write(f"G04F{plain(seconds)}")
 
     def away(self) -> None:
-        """Along Z to where tools change."""
+        """Write a rapid along Z to the tool change position."""
         self.rapid(z=self.setting.clear)
 
-    # --- along a contour, holes
+    # --- Contours and holes
 
     def along(self, way: Along) -> None:
-        """Roughing by G75 where a depth of a pass is said, then the contour, compensated where asked for."""
+        """Write roughing with G75 if specified, then the contour, with compensation if specified."""
         there = points(way.rows)
         first = there[0]
         if way.rough:
@@ -228,7 +233,7 @@ class Code:
             self.cut(x=way.beside)
 
     def contour(self, rows: Sequence[Row]) -> None:
-        """The lines from the first point on, which the tool has reached already."""
+        """Write the lines of a contour after its first point, which the tool has already reached."""
         for (_, before), (row, here) in pairwise(zip(rows, points(rows), strict=True)):
             x = here[1] if row.x is not None and (row.arc or abs(here[1] - before[1]) > SAME) else None
             z = here[0] if row.z is not None and (row.arc or abs(here[0] - before[0]) > SAME) else None
@@ -238,12 +243,15 @@ class Code:
                 self.line(x, z, row.chamfer, row.radius)
 
     def let_go(self, offset: float) -> None:
-        """Compensation off, where a contour was compensated by this offset."""
+        """Cancel the compensation if a contour used this offset."""
         if offset:
             self.write("G40")
 
     def drill(self, end: float, peck: float, feed: float, start: float) -> None:
-        """From where the tool stands to ``end``, in pecks of so much or in one go; begun ``start`` deep."""
+        """Write a hole from the present position to ``end``, with pecks or in one pass.
+
+        ``start`` is the depth of an existing hole.
+        """
         word = f"F{plain(feed, 6)}"
         self.write("G95")
         if peck:
@@ -254,21 +262,21 @@ class Code:
         self.forget()
 
     def tap(self, tool: float, tap: Tap) -> None:
-        """In at the pitch, the spindle turned back, out at the pitch."""
+        """Write a tap: feed in at the pitch, reverse the spindle, feed out."""
         self.begin(tool, tap.rpm, 0.0, tap.start, tap.into)
         self.cut(z=tap.end, feed=tap.pitch)
         self.write("M03" if tap.into == "M04" else "M04")
         self.dwell(tap.dwell)
         self.cut(z=tap.start)
 
-    # --- spindle
+    # --- Spindle
 
     def surface_speed(self, surface: float, most: float) -> None:
-        """Constant surface speed up to ``most`` rpm."""
+        """Write constant surface speed, limited to ``most`` rpm."""
         self.write(f"G96S{plain(surface, 0)}", f"G77S{plain(most, 0)}")
 
     def constant_speed(self) -> None:
-        """Back to rpm, before another tool."""
+        """Write the return to rpm, before another tool."""
         self.write("G97")
 
 
@@ -276,7 +284,8 @@ def _feed(value: float) -> str:
     return f"{value:.6f}".rstrip("0").replace("0.", ".", 1) if value < 1 else f"{value:g}"
 
 
-_STEPS = {False: 0.00005, True: 0.0005}  # by metric: what a word is rounded to; a diameter twice of it
+# by metric; step to which a word is rounded, twice as large for a diameter
+_STEPS = {False: 0.00005, True: 0.0005}
 _NUMBER = re.compile(r"(M?)(\d+)(?:P(\d+))?(?:MM)?")
 _NO_ZERO = re.compile(r"(?<![\d.])\.(?=\d)")
 _NAME = str.maketrans({"/": "S", "-": "A", ".": "P", "#": "N"})
@@ -284,7 +293,7 @@ _BACK = str.maketrans({"S": "/", "A": "-", "P": ".", "N": "#"})
 
 
 def plain(value: float, places: int = 5) -> str:
-    """``value`` as programs have it: no zero before the point nor behind it: .5, -.035, 2."""
+    """Return a number as programs write it, without zeros before the point or at the end: .5, -.035, 2."""
     text = f"{value:.{places}f}"
     if "." in text:
         text = text.rstrip("0").rstrip(".")
@@ -294,36 +303,39 @@ def plain(value: float, places: int = 5) -> str:
 
 
 def figure(value: float, places: int = 5) -> str:
-    """``value`` as SINUMERIK programs have it: 0.5, -0.035, 2."""
+    """Return a number as SINUMERIK programs write it: 0.5, -0.035, 2."""
     return with_zero(plain(value, places))
 
 
 def with_zero(word: str) -> str:
-    """A word of ``plain`` with the zero before its point."""
+    """Return a word from ``plain`` with a zero before its point."""
     return _NO_ZERO.sub("0.", word)
 
 
 def rounded(value: float, *, metric: bool, twice: bool = False) -> float:
-    """A length on the step of the control; ``twice``: on that of a diameter."""
+    """Return a length rounded to the step of the control; ``twice`` rounds to the step of a diameter."""
     step = _STEPS[metric] * (2.0 if twice else 1.0)
     return round(value / step) * step
 
 
 def rounded_up(radius: float, *, metric: bool) -> float:
-    """A depth on the step of the control or above it: in passes of equal chip a hair less is a pass more."""
+    """Return a depth rounded up to the step of the control.
+
+    In passes of equal chip area, a slightly smaller depth would require one more pass.
+    """
     step = _STEPS[metric]
     return math.ceil(radius / step - 1e-6) * step
 
 
 def in_comment(value: float, places: int = 5) -> str:
-    """A number of a comment: P stands for the point, a leading M for minus: 0P5, M0P035."""
+    """Return a number for a comment, with P for the point and a leading M for minus: 0P5, M0P035."""
     text = f"{abs(value):.{places}f}".rstrip("0").rstrip(".")
     sign = "M" if value < 0 and text.strip("0.") else ""
     return sign + text.replace(".", "P")
 
 
 def from_comment(text: str) -> float | None:
-    """The number of ``in_comment``; None where it is none."""
+    """Return the number written by ``in_comment``; None if the text has another format."""
     found = _NUMBER.fullmatch(text)
     if found is None:
         return None
@@ -332,10 +344,10 @@ def from_comment(text: str) -> float | None:
 
 
 def name_in_comment(name: str) -> str:
-    """The name of a size in letters and digits: 1/2 is 1S2, 1-1/8 is 1A1S8, M10X1.25 is M10X1P25."""
+    """Return a thread size in letters and digits: 1/2 is 1S2, 1-1/8 is 1A1S8, M10X1.25 is M10X1P25."""
     return name.translate(_NAME)
 
 
 def name_from_comment(text: str) -> str:
-    """The name that was written so."""
+    """Return the name that ``name_in_comment`` has written."""
     return text.translate(_BACK)

@@ -1,4 +1,4 @@
-"""The lines of a live tool, also in SINUMERIK: the spindle held as C, and the planes XC and ZC."""
+"""Program lines for a live tool, also in SINUMERIK: spindle as C axis, and the planes XC and ZC."""
 
 from __future__ import annotations
 
@@ -8,11 +8,14 @@ from typing import NamedTuple
 from core.extras.shapes.lines.code_lines import Code, figure, plain
 from core.extras.shapes.shape_fields import Setting
 
-QUICK = 50.0  # in/min: beside the part, in the plane
+QUICK = 50.0  # in/min, clear of the part in the plane
 
 
 class Holes(NamedTuple):
-    """``many`` holes from radius ``out`` to ``deep`` at Z ``at``, from ``angle`` on by ``step``."""
+    """Radial holes: ``many`` holes at Z ``at``, from ``angle`` on in steps of ``step``.
+
+    Each hole goes from the radius ``out`` to the radius ``deep``.
+    """
 
     out: float
     deep: float
@@ -24,10 +27,10 @@ class Holes(NamedTuple):
 
 
 class Faces(NamedTuple):
-    """The centre of a mill round the end of a part: ``path`` of (x, y) from the axis, once for each depth.
+    """Milling around the end of a part: ``path`` of the tool center as (x, y) from the axis, for each depth.
 
-    ``entry`` is X beside the part at Y 0, to which it goes back behind each round; not where the ``path``
-    leads ``around`` the part: there it goes straight on to the first point, which lies beside it, too.
+    ``entry`` is X clear of the part at Y 0, to which the tool returns after each round. If the path leads
+    ``around`` the part, the tool goes directly to its first point, which is also clear of the part.
     """
 
     entry: float
@@ -38,9 +41,10 @@ class Faces(NamedTuple):
 
 
 class Slots(NamedTuple):
-    """Slots in a cylinder of ``across``, by angle; each ``along`` Z and ``turn`` degrees round it.
+    """Slots in a cylinder of diameter ``across``, each ``along`` Z and ``turn`` degrees around it.
 
-    ``depths`` are radii of the mill's end, one for each pass to and fro; ``out`` that beside the part.
+    ``depths`` are the radii of the mill's end, one for each pass in alternating directions. ``out`` is the
+    radius clear of the part.
     """
 
     across: float
@@ -54,7 +58,10 @@ class Slots(NamedTuple):
 
 
 class LiveLines:
-    """In OmniTurn: M19 holds the spindle, CA and CI turn it, ~PLXC and ~PLZC are the planes."""
+    """Writer for a live tool in OmniTurn.
+
+    M19 holds the spindle, CA and CI turn it, and ~PLXC and ~PLZC select the planes.
+    """
 
     def __init__(self, code: Code, rpm: float) -> None:
         self._code, self._rpm = code, rpm
@@ -68,7 +75,7 @@ class LiveLines:
         return f"F{plain(QUICK * 25.4 / self._setting.mm, 0)}"
 
     def _held(self, tool: float, x: float, z: float) -> None:
-        """The tool beside the part, the spindle stopped and held, the live tool on."""
+        """Write the approach, stop and hold the spindle, and start the live tool."""
         self._code.begin(tool, 0.0, x, z)
         self._code.write("M05", f"M{self._setting.shop.live[0]:02d}", "M19")
 
@@ -83,7 +90,7 @@ class LiveLines:
             self._code.write(f"{word}{plain(degrees, 3)}", wait)
 
     def holes(self, tool: float, holes: Holes) -> None:
-        """Drilled and indexed, as a loop where there are several."""
+        """Write drilled and indexed holes, as a loop if there are several."""
         code = self._code
         self._held(tool, holes.out, holes.at)
         self._angle("CA", holes.angle)
@@ -96,12 +103,12 @@ class LiveLines:
         self._released()
 
     def faces(self, tool: float, faces: Faces) -> None:
-        """In the plane XC, from the side where X is negative."""
+        """Write milling in the plane XC, from the side of negative X."""
         code, rate = self._code, f"F{plain(faces.rate)}"
         entry, (first, *rest) = plain(faces.entry, 4), faces.path
         begin = f"X{plain(first[0], 4)}Y{plain(first[1], 4)}"
         self._held(tool, -faces.entry, self._setting.near)
-        code.write(f"G94{rate}", "(~PLXC)")  # a shape before may have left feeds by the turn
+        code.write(f"G94{rate}", "(~PLXC)")  # an earlier shape may have left feed per revolution in force
         for k, z in enumerate(faces.levels):
             if k:
                 code.write(f"({begin if faces.around else f'X{entry}Y0'}{self._quick})")
@@ -113,7 +120,7 @@ class LiveLines:
         self._released()
 
     def slots(self, tool: float, slots: Slots) -> None:
-        """In the plane ZC, from where C stands at each angle."""
+        """Write slots in the plane ZC, starting at each angle of C."""
         code, rate = self._code, plain(slots.rate)
         around = slots.turn / 360.0 * math.pi * slots.across
         self._held(tool, -slots.out, slots.at)
@@ -133,12 +140,12 @@ class LiveLines:
 
 
 def _wait(degrees: float, c_rpm: float) -> float:
-    """Seconds of dwell in which C has arrived: the drive gives no word of it."""
+    """Return the dwell in seconds until C is in position, because the drive does not report it."""
     return math.ceil(10.0 * (abs(degrees) / (6.0 * c_rpm) + 0.5)) / 10.0
 
 
 class SinumerikLiveLines(LiveLines):
-    """M5 holds the spindle: what moves C behind it, or begins a plane, finds the part at rest."""
+    """Writer for a live tool in SINUMERIK: M5 stops the spindle before C moves or a plane begins."""
 
     def _held(self, tool: float, x: float, z: float) -> None:
         self._code.begin(tool, 0.0, x, z)
@@ -154,12 +161,12 @@ class SinumerikLiveLines(LiveLines):
         return f"{name}{'' if len(name) == 1 else '='}{figure(degrees, 3)}"
 
     def _words(self, degrees: bool) -> None:
-        """X as a radius and back: TRANSMIT counts X and Y alike."""
+        """Switch X between radius and diameter, because TRANSMIT measures X and Y in the same unit."""
         if self._setting.diameter:
             self._code.write("DIAMON" if degrees else "DIAMOF")
 
     def holes(self, tool: float, holes: Holes) -> None:
-        """Each hole with its angle; words of C are absolute."""
+        """Write each hole with its absolute angle of C."""
         code = self._code
         self._held(tool, holes.out, holes.at)
         for k in range(holes.many):
@@ -170,7 +177,7 @@ class SinumerikLiveLines(LiveLines):
         self._released()
 
     def faces(self, tool: float, faces: Faces) -> None:
-        """In TRANSMIT, round the face from where X is positive."""
+        """Write milling with TRANSMIT around the face, from the side of positive X."""
         code, rate = self._code, f"F{figure(faces.rate)}"
         self._held(tool, faces.entry, self._setting.near)
         self._words(degrees=False)
@@ -192,7 +199,10 @@ class SinumerikLiveLines(LiveLines):
         return f"X{figure(x, 4)} Y{figure(y, 4)}"
 
     def slots(self, tool: float, slots: Slots) -> None:
-        """In TRACYL, where Y counts round the part from C0, against C."""
+        """Write slots with TRACYL.
+
+        Y is measured around the part from C0, in the opposite direction of C.
+        """
         code, degree = self._code, math.pi * slots.across / 360.0
         self._held(tool, slots.out, slots.at)
         code.write("G19", f"TRACYL({figure(slots.across)})")

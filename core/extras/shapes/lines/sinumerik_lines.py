@@ -1,6 +1,6 @@
-"""The lines of a shape in SINUMERIK: words apart, zeros before the point, CYCLE95, CYCLE81 and CYCLE83.
+"""Program lines of a shape in SINUMERIK: separated words, leading zeros, CYCLE95, CYCLE81 and CYCLE83.
 
-Grooves are cut by G1, or by CYCLE93 where the form is told the second cutting edge of the blade.
+Grooves use G1, or CYCLE93 if the form specifies the second cutting edge of the blade.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ _TURNS = {"M03": "M3", "M04": "M4"}
 
 
 class SinumerikCode(Code):
-    """Lines under G18, G90 and G95; the motion in force is not written again, but in each contour."""
+    """Writer of lines under G18, G90 and G95 that repeats the motion word only in contours."""
 
     loops = False
 
@@ -23,26 +23,26 @@ class SinumerikCode(Code):
         self._motion = ""
 
     def forget(self) -> None:
-        """Behind lines that were written as they are."""
+        """Clear the tracked modal state, after lines that were added unchanged."""
         super().forget()
         self._motion = ""
 
     def noted(self, comment: str) -> list[str]:
-        """The lines, the first with this comment."""
+        """Return the lines with a comment on the first line."""
         return [f"{self.lines[0]} ; {comment}", *self.lines[1:]]
 
-    # --- words
+    # --- Words
 
     def x(self, radius: float, letter: str = "X") -> str:
-        """The word of a radius, as the program has X."""
+        """Return the word of a radius, as a diameter if the program uses diameters."""
         return with_zero(super().x(radius, letter))
 
     def z(self, value: float, letter: str = "Z") -> str:
-        """The word of a length along Z."""
+        """Return the word of a length along Z."""
         return with_zero(super().z(value, letter))
 
     def point(self, x: float | None, z: float | None) -> str:
-        """X and Z of a move; what is None is not written."""
+        """Return the X and Z words of a move; None omits a word."""
         return " ".join(([] if x is None else [self.x(x)]) + ([] if z is None else [self.z(z)]))
 
     def _move(self, motion: str, *words: str) -> None:
@@ -50,10 +50,10 @@ class SinumerikCode(Code):
         self._motion = motion
         self.write(" ".join([*begin, *(word for word in words if word)]))
 
-    # --- moves
+    # --- Moves
 
     def begin(self, tool: float, rpm: float, x: float, z: float | None, turns: str = "M03") -> None:
-        """Tool and cutting edge, spindle, and rapids to ``x`` at the clear Z and from there to ``z``."""
+        """Write tool, cutting edge, spindle and rapids to ``x`` at the tool change Z, and then to ``z``."""
         self.write(f"T{tool:.0f} D{self.edge:.0f}")
         if rpm:
             self.write(f"G95 S{figure(rpm, 0)} {_TURNS[turns]}")
@@ -63,45 +63,46 @@ class SinumerikCode(Code):
             self.rapid(z=z)
 
     def rapid(self, x: float | None = None, z: float | None = None) -> None:
-        """A rapid."""
+        """Write a rapid."""
         self._move("G0", self.point(x, z))
 
     def cut(self, x: float | None = None, z: float | None = None, feed: float = 0.0, more: str = "") -> None:
-        """A feed move; ``feed`` 0 is the one before. ``more``: words behind the point."""
+        """Write a feed move; 0 as ``feed`` retains the feed rate, and ``more`` follows the point."""
         self._move("G1", self.point(x, z), more, self._fresh(feed))
 
     def _fresh(self, feed: float) -> str:
-        """The word of a feed; none where it is in force."""
+        """Return the word of a feed; empty if the feed is in force."""
         word = f"F{figure(feed, 6)}" if feed else self._feed
         said, self._feed = ("" if word == self._feed else word), word
         return said
 
     def set_feed(self, feed: float) -> None:
-        """A feed alone on its line, for the cycle behind it."""
+        """Write a line with only a feed, for the following cycle."""
         self.write(self._fresh(feed) or f"F{figure(feed, 6)}")
 
     def line(self, x: float | None, z: float | None, chamfer: float, radius: float) -> None:
-        """A line of a contour, with the corner to the next."""
+        """Write a line of a contour, with the corner to the next line."""
         corner = self.z(chamfer, "CHR=") if chamfer else self.z(radius, "RND=") if radius else ""
         self._move("G1", self.point(x, z), corner)
 
     def arc(self, x: float, z: float, radius: float, *, convex: bool) -> None:
-        """An arc from the last point, convex as the shoulder of a shaft or concave as a fillet."""
+        """Write an arc from the last point: convex like a shoulder of a shaft, or concave like a fillet."""
         self._motion = ""
         self._move("G3" if convex else "G2", self.point(x, z), self.z(radius, "CR="))
         self._motion = ""
 
     def dwell(self, seconds: float) -> None:
-        """A wait; of no seconds none."""
+        """Write a dwell; 0 s writes nothing."""
         if seconds:
             self.write(f"G4 F{figure(seconds)}")
 
-    # --- along a contour, holes
+    # --- Contours and holes
 
     def along(self, way: Along) -> None:
-        """CYCLE95 on the contour between two labels where it is roughed; then the contour once.
+        """Write CYCLE95 for the contour between two labels if it is roughed, then one pass along the contour.
 
-        The cycle takes the metal up to the outermost point of its contour, so the way off the part is one.
+        The cycle removes material up to the outermost point of its contour, so the contour includes the move
+        away from the part.
         """
         there, name = points(way.rows), f"CONTOUR_{way.label or 1.0:.0f}"
         (z, x), feed = there[0], self._fresh(way.feed)
@@ -138,10 +139,10 @@ class SinumerikCode(Code):
             self.write(off)
 
     def let_go(self, offset: float) -> None:
-        """Compensation is off: the move away from the contour has done it."""
+        """Write nothing, because the move away from the contour has canceled the compensation."""
 
     def drill(self, end: float, peck: float, feed: float, start: float) -> None:
-        """CYCLE81 or CYCLE83 under G17, which drills along Z."""
+        """Write CYCLE81 or CYCLE83 under G17, for drilling along Z."""
         near = self.setting.near
         planes = f"{figure(near)}, {figure(-start)}, {figure(near / 2.0)}, {figure(end)}"
         self.write(f"G17 {self._fresh(feed)}".rstrip())
@@ -155,7 +156,7 @@ class SinumerikCode(Code):
         self.forget()
 
     def tap(self, tool: float, tap: Tap) -> None:
-        """CYCLE840, or CYCLE84 with the spindle held as C, under G17."""
+        """Write CYCLE840, or CYCLE84 with the spindle as C axis, under G17."""
         self.begin(tool, 0.0 if tap.rigid else tap.rpm, 0.0, tap.start, tap.into)
         hole = f"{figure(tap.start)}, 0, {figure(tap.start)}, {figure(tap.end)}, , {figure(tap.dwell)}"
         self.write("G17")
@@ -176,14 +177,14 @@ class SinumerikCode(Code):
         self.write("G18")
         self.forget()
 
-    # --- spindle
+    # --- Spindle
 
     def surface_speed(self, surface: float, most: float) -> None:
-        """Constant surface speed up to ``most`` rpm."""
+        """Write constant surface speed, limited to ``most`` rpm."""
         self.write(
             Message("G96 S{surface} LIMS={maximum}", surface=figure(surface, 0), maximum=figure(most, 0))
         )
 
     def constant_speed(self) -> None:
-        """Back to rpm, before another tool."""
+        """Write the return to rpm, before another tool."""
         self.write("G97")

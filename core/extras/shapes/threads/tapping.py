@@ -1,4 +1,4 @@
-"""Tap on the axis in a holder that gives, and the drill for its hole as drills are sold."""
+"""Tapping on the axis with a floating holder, and the standard drill size for the hole."""
 
 from __future__ import annotations
 
@@ -31,27 +31,28 @@ _NUMBERS = (
     *(1730, 1695, 1660, 1610, 1590, 1570, 1540, 1520, 1495, 1470, 1440, 1405, 1360, 1285, 1200, 1160),
     *(1130, 1110, 1100, 1065, 1040, 1015, 995, 980, 960, 935, 890, 860, 820, 810, 785, 760, 730, 700),
     *(670, 635, 595, 550, 520, 465, 430, 420, 410, 400),
-)  # from #1, in 1/10000 in
+)  # =
 _LETTERS = (
     *(234, 238, 242, 246, 250, 257, 261, 266, 272, 277, 281, 290, 295),
     *(302, 316, 323, 332, 339, 348, 358, 368, 377, 386, 397, 404, 413),
-)  # from A, in 1/1000 in
+)  # =
 _INCH = {f"#{n}": size / 10_000 for n, size in enumerate(_NUMBERS, 1)}
 _INCH |= {chr(ord("A") + n): size / 1000 for n, size in enumerate(_LETTERS)}
 _INCH |= {str(Fraction(n, 64)): n / 64 for n in range(3, 97)}
-_OVER = 0.025  # mm: as much over the middle a metric drill may be, whose steps are wide
+_OVER = 0.025  # mm, permitted excess over the middle of the limits for metric drills, whose steps are large
 
 
 def _metric() -> Iterator[float]:
-    """Tenths up to 14 mm, quarters up to 50."""
+    """Yield metric drill sizes: tenths up to 14 mm, quarters up to 50 mm."""
     yield from (n / 10 for n in range(10, 140))
     yield from (n / 4 for n in range(56, 201))
 
 
 def drill_for(least: float, most: float, *, metric: bool) -> tuple[str, float] | None:
-    """Name and size of the drill for a hole between these, mm or inches; None where none is sold.
+    """Return name and size of the drill for a hole between two limits, in mm or inches; or None.
 
-    The largest that is not over the middle, since drills cut wide; else the next above it.
+    The drill is the largest that is not above the middle, because drills cut oversize. Otherwise the next
+    larger drill is used.
     """
     sold = {f"{size:g}": size for size in _metric()} if metric else _INCH
     fits = sorted((size, name) for name, size in sold.items() if least <= size <= most)
@@ -61,10 +62,10 @@ def drill_for(least: float, most: float, *, metric: bool) -> tuple[str, float] |
     return None if chosen is None else (chosen[1], chosen[0])
 
 
-_SLOW = 0.4  # of the speed of a drill: the flanks of a tap rub
+_SLOW = 0.4  # fraction of the speed of a drill, because the flanks of a tap rub
 _MOST_RPM = 600.0
-_SHORT = 1.0  # pitches before the depth: the spindle runs on while it turns back
-_COARSEST = 0.2  # in/rev: the control feeds no more without G35
+_SHORT = 1.0  # pitches before the depth, because the spindle overruns while it reverses
+_COARSEST = 0.2  # in/rev, the highest feed of the control without G35
 
 
 FLOATING, RIGID = "FLOATING", "RIGID"
@@ -186,7 +187,7 @@ def _says(filled: Filled, setting: Setting) -> tuple[str, ...]:
 
 
 def _called(name: str, size: float, series: Series, setting: Setting) -> str:
-    """By its name, and its size in the unit of the program where the name is another."""
+    """Return the name of a drill, with its size in the program's unit if the name is in another unit."""
     size = in_unit(size, series, metric=setting.metric)
     shown = plain(size, 3 if setting.metric else 4)
     named = Message("{unit} mm", unit=name) if series in METRIC else name
@@ -263,7 +264,7 @@ def _sinumerik_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
 
 
 def _held_turns(values: Values, setting: Setting) -> Value | None:
-    """Of a rigid tap no more than C turns."""
+    """Return the proposed rpm, limited to that of the C axis for a rigid tap."""
     turns = _turns(values, setting)
     most = setting.shop.c_rpm if _rigid(values) else math.inf
     return min(turns, most) if isinstance(turns, float) else turns

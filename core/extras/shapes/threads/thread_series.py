@@ -1,4 +1,4 @@
-"""Thread series by name, and limits of a thread by its class from the formulas of the standards.
+"""Thread series by name, and limits of a thread by class, from the formulas of the standards.
 
 Unified: ASME B1.1. Metric: ISO 965-1, whose tolerances are rounded to preferred numbers (R 40). Pipe:
 B1.20.1, ISO 7-1, ISO 228-1. ACME: B1.5, general purpose.
@@ -13,7 +13,7 @@ from fractions import Fraction
 
 
 class Series(StrEnum):
-    """The standard series, and one that is said by its figures."""
+    """The standard thread series, and OWN for a thread defined by dimensions."""
 
     UNC = "UNC"
     UNF = "UNF"
@@ -34,9 +34,10 @@ TAPERED = frozenset({Series.NPT, Series.BSPT})
 
 @dataclass(frozen=True, slots=True)
 class ThreadSize:
-    """``diameter`` is the basic major one; of a pipe thread that of the pipe (NPT) or at the gauge plane.
+    """A thread size in the unit of its series.
 
-    ``gauge``: of a tapered one how far the gauge plane lies from the small end. Unit: that of the series.
+    ``diameter`` is the basic major diameter; for a pipe thread it is the diameter of the pipe (NPT) or at the
+    gauge plane. ``gauge`` is the distance of the gauge plane from the small end of a tapered thread.
     """
 
     name: str
@@ -69,7 +70,10 @@ def _metric_series(listed: str, *, fine: bool) -> tuple[ThreadSize, ...]:
 
 
 def _listed(unit: float, listed: str) -> tuple[ThreadSize, ...]:
-    """Name, diameter, turns an inch and, of tapered ones, the gauge length; ``unit`` of an inch."""
+    """Return sizes from name, diameter, threads per inch and, for tapered threads, gauge length.
+
+    ``unit`` is the length of an inch in the unit of the series.
+    """
     found = []
     for each in listed.split():
         name, diameter, turns, *gauge = each.split(":")
@@ -130,9 +134,9 @@ SIZES: dict[Series, tuple[ThreadSize, ...]] = {
 
 
 def size_of(series: Series, name: str) -> ThreadSize | None:
-    """The size of this name: 1/2, 1/2-13, #10, M10X1.25; also 10 and 10-32, 10X1.25. None: it has none.
+    """Return the size with this name, such as 1/2, 1/2-13, #10, M10X1.25, 10, 10-32 or 10X1.25; or None.
 
-    1 is the inch, #1 the number.
+    If a name is ambiguous, 1 is the size in inches and #1 the number.
     """
     wanted = name.strip().upper().replace(" ", "")
     sizes = SIZES.get(series, ())
@@ -144,17 +148,17 @@ def size_of(series: Series, name: str) -> ThreadSize | None:
 
 
 def _names(series: Series, size: ThreadSize) -> tuple[str, ...]:
-    """With and without its pitch."""
+    """Return the names of a size with and without its pitch."""
     if series in {Series.M, Series.MF}:
         return size.name, f"{size.name.partition('X')[0]}X{size.pitch:g}"
     turns = (25.4 if series in METRIC else 1.0) / size.pitch
     return size.name, f"{size.name}-{round(turns, 2):g}"
 
 
-V60 = math.sqrt(3.0) / 2.0  # height of a sharp V of 60° in pitches
-_V55 = 0.960491  # the same of 55°
-_PIPE_HEIGHT = 0.8  # of an NPT thread, in pitches; ASME B1.20.1
-_WHITWORTH = 2.0 / 3.0 * _V55  # height of a 55° thread, a sixth rounded off at crest and root; ISO 228-1
+V60 = math.sqrt(3.0) / 2.0  # =
+_V55 = 0.960491  # height of a sharp V of 55° in pitches
+_PIPE_HEIGHT = 0.8  # height of an NPT thread in pitches; ASME B1.20.1
+_WHITWORTH = 2.0 / 3.0 * _V55  # height of a 55° thread with a sixth rounded off at crest and root; ISO 228-1
 _TAPER = 1.0 / 16.0  # on the diameter
 
 CLASSES = {
@@ -168,10 +172,10 @@ CLASSES = {
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """Least and most of each diameter in the unit of the series; at the small end of a tapered thread.
+    """Limits of the diameters of a thread in the unit of its series, at the small end of a tapered thread.
 
-    ``root`` is where the point of a tool of the standard profile ends when the pitch diameter is in the
-    middle of its limits; ``crest`` is the diameter that is turned or bored before.
+    ``root`` is the final diameter of the tip of a standard tool when the pitch diameter is in the middle of
+    its limits. ``crest`` is the diameter to be turned or bored before threading.
     """
 
     major: tuple[float, float]
@@ -183,12 +187,12 @@ class Limits:
 
     @property
     def height(self) -> float:
-        """From crest to root, of a radius."""
+        """Height from crest to root, as a radius."""
         return abs(self.crest - self.root) / 2.0
 
 
 def classes(series: Series, *, inside: bool) -> tuple[str, ...]:
-    """The classes of a series, the usual one first; none where its standard has one only."""
+    """Return the classes of a series, the usual class first; () if the standard has only one."""
     if series in UNIFIED:
         return CLASSES["unified"][inside]
     if series in {Series.M, Series.MF}:
@@ -197,14 +201,17 @@ def classes(series: Series, *, inside: bool) -> tuple[str, ...]:
 
 
 def angle_of(series: Series) -> float | None:
-    """The angle between both flanks, degrees; None where the series does not say it."""
+    """Return the included angle of the flanks in degrees; None if the series does not specify it."""
     if series is Series.OWN:
         return None
     return 29.0 if series is Series.ACME else 55.0 if series in {Series.BSP, Series.BSPT} else 60.0
 
 
 def limits(series: Series, size: ThreadSize, tolerance: str, *, inside: bool, nose: float = 0.0) -> Limits:
-    """What a thread measures. ``nose``: radius of the tool's point, 0: that of the standard profile."""
+    """Return the limits of a thread.
+
+    ``nose`` is the tip radius of the tool in the unit of the series; 0 means the standard profile.
+    """
     if series in UNIFIED:
         return _unified(series, size, tolerance, nose, inside=inside)
     if series in {Series.M, Series.MF}:
@@ -221,9 +228,10 @@ def _middle(pair: tuple[float, float]) -> float:
 
 
 def _v_root(pitch_diameter: float, pitch: float, nose: float, *, inside: bool) -> float:
-    """Where a point of radius ``nose`` ends: half the sharp V from the pitch line, less what the nose lacks.
+    """Return the final diameter of a tip with radius ``nose``: half the sharp V, minus the tip truncation.
 
-    The standard's own: H/6 outside (rounded root), a flat of P/8 inside, which lacks H/8.
+    A nose of 0 means the standard profile: H/6 outside (rounded root), and inside a flat of P/8, which
+    truncates H/8.
     """
     high = V60 * pitch
     lack = nose or high / (8.0 if inside else 6.0)
@@ -235,7 +243,7 @@ def _v_root(pitch_diameter: float, pitch: float, nose: float, *, inside: bool) -
 
 
 def _printed(value: float) -> float:
-    """B1.1 rounds each tolerance, the allowance and the basic diameters, half upwards, before adding them."""
+    """Return a value rounded half up, as B1.1 rounds tolerances, allowance and basic diameters."""
     return math.floor(value * 10_000.0 + 0.5 + 1e-9) / 10_000.0
 
 
@@ -258,12 +266,12 @@ def _unified(series: Series, size: ThreadSize, tolerance: str, nose: float, *, i
     major = d - allowance - major_wide, d - allowance
     pitch = basic_pitch - allowance - wide, basic_pitch - allowance
     root = _v_root(_middle(pitch), p, nose, inside=False)
-    deepest = d - allowance - 17.0 / 12.0 * V60 * p  # UNR, reference
+    deepest = d - allowance - 17.0 / 12.0 * V60 * p  # UNR, reference value
     return Limits(major, pitch, (-math.inf, deepest), _middle(major), root)
 
 
 def _minor_tolerance(d: float, p: float, grade: int) -> float:
-    """Of an internal thread; B1.1 section 5.8, by size and class."""
+    """Return the tolerance of an internal minor diameter by size and class; B1.1 section 5.8."""
     formula = 0.05 * math.pow(p, 2 / 3) + 0.03 * p / d - 0.002
     if grade < 3:
         if d >= 0.25:
@@ -279,7 +287,7 @@ _R40 = (
     *(100, 106, 112, 118, 125, 132, 140, 150, 160, 170, 180, 190, 200, 212, 224, 236, 250, 265, 280, 300),
     *(315, 335, 355, 375, 400, 425, 450, 475, 500, 530, 560, 600, 630, 670, 710, 750, 800, 850, 900, 950),
 )
-_STEPS = (0.99, 1.4, 2.8, 5.6, 11.2, 22.4, 45.0, 90.0, 180.0)  # mm: ranges of diameters
+_STEPS = (0.99, 1.4, 2.8, 5.6, 11.2, 22.4, 45.0, 90.0, 180.0)  # mm, ranges of diameters
 _GRADES = {3: 0.5, 4: 0.63, 5: 0.8, 6: 1.0, 7: 1.25, 8: 1.6}
 _MINOR_6 = {0.35: 100, 0.4: 112, 0.45: 125, 0.5: 140, 0.6: 160, 0.7: 180, 0.75: 190, 0.8: 200, 1.0: 236}
 _MINOR_6 |= {
@@ -295,7 +303,7 @@ _MINOR_6 |= {
     5.0: 710,
 }
 
-# Where the table has others than the formula: pitch diameter by pitch and range, major diameter by pitch.
+# Values where the table differs from the formula: pitch diameter by pitch and range, major diameter by pitch.
 _PITCH_6 = {(0.5, 2.8): 75.0, (5.0, 45.0): 250.0}
 _MAJOR_6 = {4.0: 475.0}
 _PLACE_G = {0.35: 19, 0.4: 19, 0.45: 20, 0.5: 20, 0.6: 21, 0.7: 22, 0.75: 22, 0.8: 24, 1.0: 26, 1.25: 28}
@@ -303,7 +311,7 @@ _PLACE_G |= {1.5: 32, 1.75: 34, 2.0: 38, 2.5: 42, 3.0: 48, 3.5: 53, 4.0: 60, 4.5
 
 
 def _preferred(value: float, *, up: bool = False) -> float:
-    """The nearest preferred number of R 40; ``up``: the first that is not over 1 % less."""
+    """Return the nearest preferred number of R 40, or with ``up`` the first at least 99 % of the value."""
     scale = 10.0 ** math.floor(math.log10(value / 100.0))
     numbers = [n * scale for n in (*_R40, 1000)]
     if up:
@@ -336,7 +344,7 @@ def _metric(size: ThreadSize, tolerance: str, nose: float, *, inside: bool) -> L
     return Limits(major, pitch, (-math.inf, d + shift - 1.25 * V60 * p), _middle(major), root)
 
 
-# --- pipe threads, ACME
+# --- Pipe threads, ACME
 
 
 _PIPE_PITCH = {28: 0.107, 19: 0.125, 14: 0.142, 11: 0.180}
@@ -345,7 +353,7 @@ _PIPE_MINOR = {28: 0.282, 19: 0.445, 14: 0.541, 11: 0.640}
 
 
 def _parallel_pipe(size: ThreadSize, tolerance: str, nose: float, *, inside: bool) -> Limits:
-    """ISO 228-1; inside there is one class."""
+    """Return the limits of a parallel pipe thread of ISO 228-1, which has one class inside."""
     d, p, turns = size.diameter, size.pitch, round(25.4 / size.pitch)
     wide, basic_pitch, basic_minor = _PIPE_PITCH[turns], d - _WHITWORTH * p, d - 2.0 * _WHITWORTH * p
     if inside:
@@ -362,7 +370,7 @@ def _parallel_pipe(size: ThreadSize, tolerance: str, nose: float, *, inside: boo
 
 
 def _pipe_root(pitch_diameter: float, pitch: float, angle: float, nose: float, *, inside: bool) -> float:
-    """Where a point of radius ``nose`` ends; 0: where the standard's own profile does."""
+    """Return the final diameter of a tip with radius ``nose``; 0 means the standard profile."""
     if nose:
         sharp = _V55 if angle == 55.0 else V60
         high = sharp * pitch - 2.0 * nose * (1.0 / math.sin(math.radians(angle / 2.0)) - 1.0)
@@ -372,10 +380,10 @@ def _pipe_root(pitch_diameter: float, pitch: float, angle: float, nose: float, *
 
 
 def _pipe(series: Series, size: ThreadSize, nose: float, *, inside: bool) -> Limits:
-    """At the small end outside; inside at the mouth, which is the large one."""
+    """Return the limits at the small end outside, or at the mouth inside, which is the large end."""
     d, p = size.diameter, size.pitch
     if series is Series.NPT:
-        small = d - (0.05 * d + 1.1) * p  # E0 of B1.20.1
+        small = d - (0.05 * d + 1.1) * p  # =
         high, angle = _PIPE_HEIGHT, 60.0
     else:
         small = d - size.gauge * _TAPER - _WHITWORTH * p
@@ -388,9 +396,9 @@ def _pipe(series: Series, size: ThreadSize, nose: float, *, inside: bool) -> Lim
 
 
 def pipe_length(series: Series, size: ThreadSize) -> float:
-    """How long the full thread of a tapered pipe thread is; 0 where it is to be said.
+    """Return the length of the full thread of a tapered pipe thread; 0 if it must be specified.
 
-    L2 of B1.20.1; gauge length and fitting allowance of ISO 7-1.
+    The source is L2 of B1.20.1, or the gauge length and fitting allowance of ISO 7-1.
     """
     if series is Series.NPT:
         return (0.8 * size.diameter + 6.8) * size.pitch
@@ -399,7 +407,10 @@ def pipe_length(series: Series, size: ThreadSize) -> float:
 
 
 def _acme(size: ThreadSize, tolerance: str, *, inside: bool) -> Limits:
-    """B1.5, general purpose: height P/2 and a clearance of .010 (over 10 an inch .005) at the root."""
+    """Return the limits of an ACME thread by B1.5, general purpose.
+
+    The height is P/2 with a clearance of .010 in at the root, or .005 in above 10 threads per inch.
+    """
     d, p = size.diameter, size.pitch
     clear = 0.020 if 1.0 / p <= 10.0 + 1e-9 else 0.010
     grade = tolerance[0]
@@ -417,7 +428,7 @@ def _acme(size: ThreadSize, tolerance: str, *, inside: bool) -> Limits:
 
 
 def in_unit(value: float, series: Series, *, metric: bool) -> float:
-    """A length of a series in the unit of a program."""
+    """Return a length of a series in the unit of a program."""
     return value * (
         1.0 / 25.4 if series in METRIC and not metric else 25.4 if metric and series not in METRIC else 1.0
     )

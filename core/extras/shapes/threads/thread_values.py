@@ -1,4 +1,4 @@
-"""What is proposed for a thread by its size and tool, and what is refused of it."""
+"""Proposals for a thread from its size and tool, and checks of its values."""
 
 from __future__ import annotations
 
@@ -27,18 +27,18 @@ from core.part.tool_shape import ToolKind
 OUTSIDE, INSIDE = "OUTSIDE", "BORE"
 RIGHT, LEFT = "RIGHT", "LEFT"
 YES, NO = "YES", "NO"
-_MOST_RPM = 1000.0  # of a thread on a small lathe: the slide has to follow
-_TURNS_BEFORE = 3.0  # of run-up, where nobody knows the slide's acceleration
+_MOST_RPM = 1000.0  # for a thread on a small lathe, because the axis must follow
+_TURNS_BEFORE = 3.0  # revolutions of run-up if the acceleration of the axis is unknown
 _TAPER = 1.0 / 16.0
 
 
 def series_of(values: Values) -> Series:
-    """The series that is chosen."""
+    """Return the chosen series."""
     return Series(text(values, "SERIES") or Series.OWN)
 
 
 def limits_of(values: Values, setting: Setting) -> Limits | None:
-    """Limits by series, size and class in the unit of the series; None where they are not known."""
+    """Return the limits by series, size and class in the unit of the series; None if they are unknown."""
     series, inside = series_of(values), text(values, "SIDE") == INSIDE
     found = size_of(series, text(values, "SIZE"))
     if found is None:
@@ -53,7 +53,7 @@ def limits_of(values: Values, setting: Setting) -> Limits | None:
 
 
 def from_limits(of: str) -> Proposal:
-    """Propose a diameter by the standard: ``of`` is crest or root."""
+    """Return a proposal for a diameter of the standard; ``of`` is crest or root."""
 
     def proposed(values: Values, setting: Setting) -> Value | None:
         known = limits_of(values, setting)
@@ -66,7 +66,7 @@ def from_limits(of: str) -> Proposal:
 
 
 def proposed_pitch(values: Values, setting: Setting) -> Value | None:
-    """Propose the pitch of the size."""
+    """Propose the pitch of the thread size."""
     series = series_of(values)
     found = size_of(series, text(values, "SIZE"))
     if found is None:
@@ -75,18 +75,18 @@ def proposed_pitch(values: Values, setting: Setting) -> Value | None:
 
 
 def proposed_class(values: Values, _setting: Setting) -> Value | None:
-    """Propose the first class of the series."""
+    """Propose the usual class of the series."""
     allowed = classes(series_of(values), inside=text(values, "SIDE") == INSIDE)
     return allowed[0] if allowed else ""
 
 
 def class_choices(values: Values) -> tuple[str, ...]:
-    """The classes that this series has on this side."""
+    """Return the classes of this series for the chosen side."""
     return classes(series_of(values), inside=text(values, "SIDE") == INSIDE)
 
 
 def is_named(values: Values) -> bool:
-    """Return whether the thread has a series, and so a size."""
+    """Return whether the thread has a standard series and therefore a size."""
     return series_of(values) is not Series.OWN
 
 
@@ -104,36 +104,39 @@ def proposed_length(values: Values, setting: Setting) -> Value | None:
 
 
 def proposed_passes(values: Values, setting: Setting) -> Value | None:
-    """As makers of inserts have it: by pitch, four for the finest and sixteen for the coarsest."""
+    """Propose the number of passes by pitch, from 4 for the finest to 16 for the coarsest.
+
+    Insert makers recommend these numbers.
+    """
     pitch = number(values, "PITCH") * setting.mm / 25.4
     return float(min(16, max(4, round(4 + 80 * pitch)))) if pitch else None
 
 
 def flank_angle(values: Values, setting: Setting) -> float:
-    """Between both flanks, by the series; of a thread of its own figures by the sheet of its tool."""
+    """Return the included angle of the flanks from the series, from the tool data, or 60 degrees."""
     shape = setting.tool(number(values, "T"))
     point = shape.point if shape is not None and shape.kind is ToolKind.THREADING else 0.0
     return angle_of(series_of(values)) or point or 60.0
 
 
 def proposed_infeed(values: Values, setting: Setting) -> Value | None:
-    """Along a flank, less half a degree at least: 29 of 60°, as the control has it by itself."""
+    """Propose an infeed angle at least half a degree less than the flank: 29 for 60°, as in the control."""
     return math.ceil(flank_angle(values, setting) / 2.0) - 1.0
 
 
 def proposed_rpm(values: Values, setting: Setting) -> Value | None:
-    """Propose a speed that the slide can follow."""
+    """Propose a speed that the axis can follow."""
     lead = number(values, "PITCH") * number(values, "STARTS")
     across = number(values, "CREST")
     if not lead or not across:
         return None
     most = min(rpm(Work.THREAD, across, setting), _MOST_RPM)
-    fastest = 60.0 * 25.4 / setting.mm / lead  # in/min that a slide reaches in a short run-up
+    fastest = 60.0 * 25.4 / setting.mm / lead  # in/min that the axis reaches in a short run-up
     return max(10.0, 10.0 * math.floor(min(most, fastest) / 10.0))
 
 
 def proposed_run_up(values: Values, setting: Setting) -> Value | None:
-    """What the slide needs to reach the lead, twice, and never less than two pitches."""
+    """Propose the distance that the axis needs to reach the lead, at least two pitches."""
     lead, turns = number(values, "PITCH") * number(values, "STARTS"), number(values, "RPM")
     if not lead or not turns:
         return None
@@ -143,15 +146,15 @@ def proposed_run_up(values: Values, setting: Setting) -> Value | None:
 
 
 def filled_depth(filled: Filled) -> float:
-    """Of the thread, per side."""
+    """Return the depth of the thread per side."""
     return abs(filled.n("CREST") - filled.n("ROOT")) / 2.0
 
 
-COARSE = (0.2, 1.0, 2.0)  # in/rev: without G35, under G35, under G35F2
+COARSE = (0.2, 1.0, 2.0)  # in/rev, largest lead without G35, with G35 and with G35F2
 
 
 def thread_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
-    """Yield what is wrong with a thread, by figures, machine and tool."""
+    """Yield the errors of a thread: its dimensions, the machine's limits and the tool."""
     inside = filled.t("SIDE") == INSIDE
     crest, root, pitch = filled.n("CREST"), filled.n("ROOT"), filled.n("PITCH")
     if inside and root <= crest:
@@ -197,7 +200,10 @@ def thread_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
 
 
 def _flank_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
-    """Passes that come in flatter than the flank cut away what the last one leaves."""
+    """Yield an error if the infeed is flatter than the flank.
+
+    Passes would then cut into the flank that the previous pass has left.
+    """
     angle, flank = filled.n("INFEED"), flank_angle(filled.values, setting) / 2.0
     if angle > flank + 1e-9:
         yield Refusal(
@@ -240,7 +246,7 @@ def _lead_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
 
 
 def _relief(filled: Filled) -> Iterator[Refusal]:
-    """A pass that ends without pulling out while it goes on needs a groove to end in."""
+    """Yield an error if a pass that ends without pulling out has no relief groove."""
     lead = filled.n("PITCH") * filled.n("STARTS")
     relief = filled.n("RELIEF")
     if relief <= 0.0:
@@ -248,7 +254,7 @@ def _relief(filled: Filled) -> Iterator[Refusal]:
             "Thread relief missing: the tool cuts a ring where it stops. Enter the relief width, "
             "or set pull-out to YES."
         )
-        if filled.t("PULL") != NO:  # of a language in which no pass pulls out
+        if filled.t("PULL") != NO:  # a language without pull-out
             text_ = "Thread relief missing: the tool cuts a ring where it stops. Enter the relief width."
         yield Refusal("RELIEF", text_)
     elif relief < 1.5 * lead:
@@ -297,7 +303,7 @@ def _by_sheet(filled: Filled, setting: Setting) -> Iterator[Refusal]:
 
 
 def unknown_name(filled: Filled, _setting: Setting) -> Iterator[Refusal]:
-    """A size or a class that the series has not: nothing is proposed then."""
+    """Yield an error if the series does not have this size or class; no values are then proposed."""
     series, allowed = series_of(filled.values), class_choices(filled.values)
     size, tolerance = filled.t("SIZE"), filled.t("CLASS")
     if series is not Series.OWN and size and size_of(series, size) is None:
@@ -321,7 +327,10 @@ def unknown_name(filled: Filled, _setting: Setting) -> Iterator[Refusal]:
 
 
 def coarse_step(filled: Filled, setting: Setting) -> float:
-    """Of the slide, in the unit of the program, under the G35 or G35F2 that a lead needs; 0 without."""
+    """Return the step of the axis under the G35 or G35F2 that a lead requires, or 0.
+
+    The step is in the unit of the program.
+    """
     lead = filled.n("PITCH") * max(1.0, filled.n("STARTS")) * setting.mm / 25.4
     inch = 0.0 if lead <= COARSE[0] else 0.00025 if lead <= COARSE[1] else 0.0005
     return inch * 25.4 / setting.mm

@@ -1,4 +1,4 @@
-"""Threads by series, size and class, or by their figures: outside, in a bore, tapered, several starts."""
+"""Threads by series, size and class or by dimensions: outside, in a bore, tapered, multi-start."""
 
 from __future__ import annotations
 
@@ -43,18 +43,18 @@ from core.sketch import Dim, Sketch, cut, part, sketch
 
 
 def first_depth(filled: Filled) -> float:
-    """Per side: constant chip area, so the depth of N passes over the root of N."""
+    """Return the depth of the first pass per side for a constant chip area: the depth divided by √N."""
     return filled_depth(filled) / math.sqrt(max(1.0, filled.n("PASSES")))
 
 
 def first_word(filled: Filled, setting: Setting) -> float:
-    """The same as it is written."""
+    """Return the depth of the first pass, rounded up to the step of its word."""
     deep, coarse = first_depth(filled), coarse_step(filled, setting)
     return math.ceil(deep / coarse - 1e-6) * coarse if coarse else rounded_up(deep, metric=setting.metric)
 
 
 def _cycle97(filled: Filled, _setting: Setting, code: Code) -> None:
-    """It stops where the thread ends, so it needs a relief there."""
+    """Write a thread with CYCLE97, which stops at the end of the thread and therefore needs a relief."""
     crest, far = filled.n("CREST"), _far(filled)
     turns = "M04" if filled.t("HAND") == LEFT else "M03"
     inside = filled.t("SIDE") == INSIDE
@@ -65,13 +65,13 @@ def _cycle97(filled: Filled, _setting: Setting, code: Code) -> None:
 
 
 def _far(filled: Filled) -> float:
-    """The diameter before it is cut where a tapered thread ends."""
+    """Return the diameter before threading at the far end of a tapered thread."""
     outwards = -1.0 if filled.t("SIDE") == INSIDE else 1.0
     return filled.n("CREST") + outwards * filled.n("TAPER") * filled.n("LONG")
 
 
 def write_cycle97(filled: Filled, code: Code) -> None:
-    """CYCLE97 in passes of equal chip."""
+    """Write CYCLE97 with passes of equal chip area."""
     starts = max(1.0, filled.n("STARTS"))
     begin, end = -filled.n("AT"), -(filled.n("AT") + filled.n("LONG"))
     ends = (begin, end, filled.n("CREST"), _far(filled), filled.n("RUNUP"), 0.0)
@@ -90,8 +90,8 @@ def _thread(filled: Filled, setting: Setting, code: Code) -> None:
     starts = max(1, int(filled.n("STARTS")))
     lead, first = filled.n("PITCH") * starts, first_word(filled, setting)
     begin, end = filled.n("RUNUP") - filled.n("AT"), -(filled.n("AT") + filled.n("LONG"))
-    taper = filled.n("TAPER") / 2.0  # of the radius
-    down = -outwards * taper * filled.n("RUNUP")  # at the start of a pass
+    taper = filled.n("TAPER") / 2.0  # taper of the radius
+    down = -outwards * taper * filled.n("RUNUP")  # radius change at the start of a pass
     crest, root = filled.n("CREST") / 2.0 + down, filled.n("ROOT") / 2.0 + down
     at, root, begin, end = near(crest - outwards * first), near(root), near(begin), near(end)
     turns = "M04" if filled.t("HAND") == LEFT else "M03"
@@ -100,7 +100,7 @@ def _thread(filled: Filled, setting: Setting, code: Code) -> None:
     coarse = lead * setting.mm / 25.4 > COARSE[0]
     for k in range(starts):
         start_z = near(begin + k * filled.n("PITCH"))
-        on_cone = -outwards * taper * k * filled.n("PITCH")  # the same cone, begun farther away
+        on_cone = -outwards * taper * k * filled.n("PITCH")  # the same cone, started farther away
         code.rapid(near(at + on_cone), start_z if k else None)
         if coarse and k == 0:
             f2 = "F2" if lead * setting.mm / 25.4 > COARSE[1] else ""
@@ -128,7 +128,7 @@ def _thread(filled: Filled, setting: Setting, code: Code) -> None:
 
 
 def _says(filled: Filled, setting: Setting) -> tuple[str, ...]:
-    """What it is measured by, and the cone that is turned or bored before a tapered one."""
+    """Return notes about the measured diameters, and about the cone to be cut before a tapered thread."""
     known = limits_of(filled.values, setting)
     if known is None:
         return ()

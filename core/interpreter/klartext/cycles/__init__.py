@@ -1,1 +1,1 @@
-"""Cycles of Klartext: holes, pockets, contours and the patterns of their places."""
+"""Klartext cycles: holes, pockets, contours and point patterns."""

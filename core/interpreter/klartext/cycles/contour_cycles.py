@@ -1,8 +1,8 @@
-"""SL cycles: pockets and islands of a contour of their own (20 to 24), contours along which is milled (25).
+"""SL cycles: pockets and islands of closed contours (20 to 24), and milling along open contours (25).
 
-They promise what the manual does: no point of the pocket that the tool reaches is left standing, and none
-outside it or in an island is touched. The way is this control's own: rings from the inside out, and down by
-a ramp of 3 degrees.
+As in the manual, every point of the pocket that the tool can reach is cleared, and no point outside the
+pocket or in an island is touched. The tool path is TurnDesk's own: rings from the inside out, and a ramp of 3
+degrees.
 """
 
 from __future__ import annotations
@@ -23,15 +23,15 @@ from core.language.klartext.q_parameters import MAX_FEED
 
 _RAMP = math.tan(math.radians(3.0))
 _MOST_OVERLAP = 2.0
-_MOST_RAMP = 1000.0  # times the ring: a ramp that goes round oftener has no room
-_ABOVE = 2.0  # mm over the surface where cycle 25, which has no Q6, goes on at Q11
-_TRIES = 6  # halvings of the arc to a wall, until it fits
+_MOST_RAMP = 1000.0  # maximum number of rounds of a ramp along a ring
+_ABOVE = 2.0  # mm above the surface; cycle 25 has no Q6 and continues at Q11 from there
+_TRIES = 6  # number of times that the arc to a wall is halved until it fits
 
 Figures = Sequence[ContourFigure]
 
 
 class Clearing:
-    """What cycle 20 says (Q1 to Q9), the feeds of the cycle that is run, and the area to be cleared."""
+    """Data of cycle 20 (Q1 to Q9), feeds of the active cycle, and the area to be cleared."""
 
     def __init__(self, tool: CycleTool, area: Sequence[Loop] = (), above: float | None = None) -> None:
         self.tool, self.area = tool, area
@@ -48,12 +48,15 @@ class Clearing:
 
     @property
     def against(self) -> bool:
-        """Whether pockets are gone round clockwise: up-cut milling (Q9 under 0) with M3."""
+        """Whether pockets are milled clockwise: up-cut milling (negative Q9) with M3."""
         return (self.tool.plain(9, 1.0) < 0.0) != (self.tool.rpm < 0.0)
 
     @property
     def step(self) -> float:
-        """From ring to ring: Q2 tool radii, and no more than one, which leaves nothing standing."""
+        """Distance between rings in mm: Q2 times the tool radius.
+
+        It is at most the tool radius, so that no material remains. Raises ProgramError for an invalid Q2.
+        """
         overlap = self.tool.plain(2, 1.0)
         text = "With path overlap {named}={overlap}, the cycle cannot clear the area."
         hint = "Enter a value between 0.0001 and 1.9999."
@@ -61,11 +64,11 @@ class Clearing:
         return min(overlap, 1.0) * self.tool.radius
 
     def levels(self, bottom: float) -> list[float]:
-        """Heights of the infeeds, the bottom last."""
+        """Return the heights of the infeeds; the last one is the bottom."""
         return levels(self.tool, self.surface, bottom, lambda: abs(self.tool.length(10)))
 
     def plan(self, radius: float) -> list[Cut]:
-        """The rings that clear one level with a tool of this radius, mm."""
+        """Return the rings that clear one level with a tool of this radius in mm."""
         share = self.step / self.tool.radius * radius
         here = self.tool.here
         try:
@@ -74,17 +77,17 @@ class Clearing:
             raise self.unfit(problem) from None
 
     def unfit(self, problem: AreaError | GougeError) -> ProgramError:
-        """What is told where a contour cannot be followed at the tool's radius."""
+        """Return the error for a contour that does not fit the tool radius."""
         text = "The contour cannot be milled with tool radius {radius} mm plus the allowance: {problem}."
         hint, radius = "Use a smaller tool, or correct the contour.", f"{self.tool.radius:.10g}"
         return self.tool.refuse(text, hint, radius=radius, problem=problem)
 
     def above(self) -> Iterator[Block]:
-        """To the clearance height."""
+        """Yield a rapid to the clearance height."""
         yield self.tool.to(max(self.safe, self.tool.height))
 
     def home(self) -> Iterator[Block]:
-        """Out at Q208, to the clearance height."""
+        """Yield the retract at Q208 to the clearance height."""
         tool = self.tool
         asked = tool.plain(208, MAX_FEED)
         back = None if asked >= MAX_FEED else tool.feed(208) if asked else tool.cut(12)
@@ -94,7 +97,7 @@ class Clearing:
 
 
 def contour_data(tool: CycleTool) -> None:
-    """20: the data are kept in Q1 to Q9; looked at where they are told. Raises ProgramError."""
+    """Check the data of cycle 20, which remain in Q1 to Q9. Raises ProgramError if they are invalid."""
     tool.check(tool.length(1) <= 0.0, "Depth Q1 is positive (upward).", "Enter the depth with a minus sign.")
     text = "With the programmed path overlap Q2, the cycle cannot clear the area."
     tool.check(0.0 < tool.plain(2, 1.0) < _MOST_OVERLAP, text, "Set Q2 to a value between 0.0001 and 1.9999.")
@@ -104,7 +107,7 @@ def contour_data(tool: CycleTool) -> None:
 
 
 def pilot_drilling(tool: CycleTool, area: Sequence[Loop]) -> Iterator[Block]:
-    """21: a hole at every place where cycle 22 goes down with the tool Q13."""
+    """Yield the blocks of cycle 21: a hole at each position at which cycle 22 plunges with tool Q13."""
     told = Clearing(tool, area)
     radius = tool.radius_of(int(tool.plain(13)))
     if radius is None or radius <= SMALLEST:
@@ -124,7 +127,10 @@ def pilot_drilling(tool: CycleTool, area: Sequence[Loop]) -> Iterator[Block]:
 
 
 def rough_out(tool: CycleTool, area: Sequence[Loop]) -> Iterator[Block]:
-    """22: level by level to the allowances of cycle 20; Q401 slows the ways through full material."""
+    """Yield the blocks of cycle 22: clearing by levels, with the allowances of cycle 20.
+
+    Q401 reduces the feed in full cuts.
+    """
     told = Clearing(tool, area)
     if tool.plain(18, 0.0):
         tool.tell(
@@ -145,7 +151,7 @@ def rough_out(tool: CycleTool, area: Sequence[Loop]) -> Iterator[Block]:
 
 
 def _down_to(told: Clearing, cut: Cut, top: float, z: float, slow: float) -> Iterator[Block]:
-    """To the start of a ring at its depth, or where a ramp along it has ended."""
+    """Yield the moves to the start of a ring at its depth, or along a ramp."""
     tool = told.tool
     if not cut.straight:
         yield from tool.over(cut.ramp[0].start, told.clear)
@@ -155,7 +161,7 @@ def _down_to(told: Clearing, cut: Cut, top: float, z: float, slow: float) -> Ite
 
 
 def _ramp(told: Clearing, cut: Cut, top: float, z: float, slow: float) -> Iterator[Block]:
-    """Straight down at Q11 where Q19 is 0, else along the ring at Q19, and round it to where that began."""
+    """Yield the plunge: straight down at Q11 if Q19 is 0, otherwise along the ring at Q19."""
     tool = told.tool
     yield tool.to(top, told.tool.cut(11))
     if not tool.plain(19, 0.0):
@@ -186,7 +192,7 @@ def _element(tool: CycleTool, element: Element, z: float, feed: float) -> Block:
 
 
 def floor_finishing(tool: CycleTool, area: Sequence[Loop]) -> Iterator[Block]:
-    """23: the floor at its depth, as far as the walls with their allowance."""
+    """Yield the blocks of cycle 23: the floor at its depth, up to the walls with their allowance."""
     told = Clearing(tool, area)
     feed, plunge = told.tool.cut(12), told.tool.cut(11)
     plan = told.plan(tool.radius)
@@ -206,7 +212,7 @@ def floor_finishing(tool: CycleTool, area: Sequence[Loop]) -> Iterator[Block]:
 
 
 def side_finishing(tool: CycleTool, area: Sequence[Loop]) -> Iterator[Block]:
-    """24: the walls to Q14, each led to and off on a quarter of a circle where there is room for one."""
+    """Yield the blocks of cycle 24: the walls to Q14, with quarter circles as approach and departure."""
     told = Clearing(tool, area)
     feed, plunge = told.tool.cut(12), told.tool.cut(11)
     apart = tool.radius + tool.length(14, 0.0)
@@ -232,7 +238,10 @@ def side_finishing(tool: CycleTool, area: Sequence[Loop]) -> Iterator[Block]:
 def _led(
     ring: Loop, room: Within, apart: float, radius: float, *, against: bool
 ) -> tuple[Loop, Arc | None, Arc | None]:
-    """The ring begun where an arc to it and one off it fit, and both; without them where none do."""
+    """Return the ring with a new start, and its approach and departure arcs.
+
+    The start is at a point with room for both arcs. Without such a point, both arcs are None.
+    """
     order = sorted(range(len(ring)), key=lambda at: (isinstance(ring[at], Arc), -ring[at].length))
     for size in (radius / 2.0**tries for tries in range(_TRIES)):
         for at in order:
@@ -244,7 +253,7 @@ def _led(
 
 
 def _quarters(at: Point, direction: Point, size: float, *, left: bool) -> tuple[Arc, Arc]:
-    """Quarters of a circle on the side of the pocket: to a point of the wall, and off it."""
+    """Return the quarter circles on the pocket side, to a point of the wall and away from it."""
     x, y = left_of(direction)
     side = (x, y) if left else (-x, -y)
     centre = at[0] + side[0] * size, at[1] + side[1] * size
@@ -253,18 +262,18 @@ def _quarters(at: Point, direction: Point, size: float, *, left: bool) -> tuple[
     return Arc(before, at, centre, not left), Arc(at, behind, centre, not left)
 
 
-# --- contours that are open -------------------------------------------------------------------------------
+# --- open contours ----------------------------------------------------------------------------------------
 
 
 def contour_train(tool: CycleTool, figures: Figures) -> Iterator[Block]:
-    """25: along a contour at its side, level by level; Q15 0 there and back, -1 up-cut milling."""
+    """Yield the blocks of cycle 25: levels along a contour; Q15 is 0 for both directions, -1 for up-cut."""
     told = Clearing(tool, above=_ABOVE)
     if len(figures) > 1:
         tool.tell("Cycle 25 mills only the first contour listed in cycle 14.")
     figure = figures[0]
     way = _beside(told, figure)
     kind = tool.plain(15, 1.0)
-    climbs = (figure.side == "L") == (tool.rpm > 0.0)  # as it is programmed
+    climbs = (figure.side == "L") == (tool.rpm > 0.0)  # in the programmed direction
     if kind and figure.side and climbs != (kind > 0.0):
         way = [element.reversed() for element in reversed(way)]
     feed, plunge = told.tool.cut(12), told.tool.cut(11)
@@ -282,7 +291,10 @@ def contour_train(tool: CycleTool, figures: Figures) -> Iterator[Block]:
 
 
 def _beside(told: Clearing, figure: ContourFigure) -> list[Element]:
-    """The way of the tool's centre, its radius and Q3 off the contour; on it without RL or RR."""
+    """Return the path of the tool center, at the tool radius plus Q3 from the contour.
+
+    Without RL or RR, the path is the contour itself.
+    """
     elements = list(figure.elements)
     text = "Contour {figure} does not contain any elements."
     told.tool.check(elements, text, "Add path functions to the contour.", figure=figure.label)
@@ -300,7 +312,7 @@ def _beside(told: Clearing, figure: ContourFigure) -> list[Element]:
 
 
 def run_contour(state: State, tool: CycleTool, number: int, figures: Figures, column: int) -> Iterator[Block]:
-    """One of ``CONTOURS`` at its contours. Raises ProgramError."""
+    """Yield the blocks of a cycle of ``CONTOURS`` for its contours. Raises ProgramError."""
     if number == TRAIN:
         yield from contour_train(tool, figures)
     else:

@@ -1,8 +1,9 @@
-"""Contours of SL cycles: what cycle 14 and CONTOUR DEF name, and the area that they come to.
+"""Contours of SL cycles, as listed by cycle 14 or CONTOUR DEF, and the area that they enclose.
 
-A contour is a subprogram, gone through without moving anything. Run clockwise with RR, or counter-clockwise
-with RL, it is a pocket, else an island. Pockets that meet are one, or, where the first begins inside the
-other, only what lies in both (manual: area of inclusion, of intersection); islands are left standing.
+A contour is a subprogram that is executed without moving an axis. A contour that runs clockwise with RR or
+counterclockwise with RL is a pocket; otherwise, it is an island. Pockets that overlap are combined. If the
+first pocket starts inside the other one, only their intersection counts (manual: areas of inclusion and
+intersection). Islands remain.
 """
 
 from __future__ import annotations
@@ -21,14 +22,14 @@ from core.language.klartext.klartext_faults import CYCLE_MISSING, INPUT_VALUE, u
 from core.language.klartext.klartext_nodes import Move
 from core.message import Message
 
-OPEN = 0.016  # mm by which a contour may miss its start: as much as an arc its circle
+OPEN = 0.016  # mm; permitted gap between start and end of a contour, as for an arc and its circle
 
 
 @dataclass(frozen=True, slots=True)
 class ContourFigure:
-    """The elements of one contour, in the program's X and Y; ``side`` L or R, empty where nothing said so.
+    """The elements of one contour in the program's X and Y; ``side`` is L, R or empty without compensation.
 
-    ``label`` is how it is told of, ``pocket`` what CONTOUR DEF says of it; None where the side says it.
+    ``label`` is its name in messages. ``pocket`` comes from CONTOUR DEF; with None, the side determines it.
     """
 
     label: str
@@ -38,21 +39,21 @@ class ContourFigure:
 
 
 class FigureRunner(PathRunner):
-    """Takes the elements of a contour as they come, corners cut, and makes no blocks of them."""
+    """Runner that collects the elements of a contour, with corners, without generating blocks."""
 
     def __init__(self, state: State) -> None:
         super().__init__(state)
-        self._begun = -1  # index of the element that leads to the start
+        self._begun = -1  # index of the element that leads to the start of the contour
         self.side = ""
 
     @property
     def elements(self) -> tuple[Element, ...]:
-        """Behind the block that leads to the contour's start."""
+        """The elements after the block that leads to the start of the contour."""
         behind = self._waiting[self._begun + 1 :]
         return tuple(each.flat for each in behind if isinstance(each, PathElement) and each.flat is not None)
 
     def draw(self, node: Move) -> None:
-        """The element of a path function. Raises ProgramError for what no contour has."""
+        """Add the element of a path function. Raises ProgramError if it is not allowed in a contour."""
         if node.form.startswith(("APPR", "DEP")):
             raise unsupported(
                 self._state.line, node.column, Message("{form} inside an SL cycle contour", form=node.form)
@@ -72,16 +73,16 @@ class FigureRunner(PathRunner):
         self._direction = made[-1].end_direction or self._direction
 
     def _take_feed(self, node: Move) -> float | None:
-        del node  # a contour is a figure: its feeds say nothing
+        del node  # The feeds of a contour have no effect.
         return None
 
     def close(self) -> None:
-        """The end of the subprogram."""
+        """Process the end of the subprogram. Raises ProgramError if a corner is unfinished."""
         self._demand_no_corner()
 
 
 def copy_of(state: State) -> State:
-    """A state to go through a contour with: what is assigned there stays there."""
+    """Return a copy of the state for a contour, so that its assignments do not affect the program."""
     shared = (state.setup, state.log, state.kinematics)
     copied = deepcopy(state, {id(each): each for each in shared})
     copied.m128 = False
@@ -92,7 +93,7 @@ def copy_of(state: State) -> State:
 
 
 def area_of(state: State, figures: Sequence[ContourFigure], column: int) -> list[Loop]:
-    """The boundary of what is to be cleared. Raises ProgramError where the contours enclose nothing."""
+    """Return the boundary of the area to clear. Raises ProgramError if the contours enclose no area."""
     pockets: list[Loop] = []
     islands: list[Loop] = []
     for figure in figures:
@@ -104,7 +105,7 @@ def area_of(state: State, figures: Sequence[ContourFigure], column: int) -> list
 
 
 def _bounded(state: State, loops: Sequence[Loop], inside: Callable[[Point], bool], column: int) -> list[Loop]:
-    """The boundary of an area. Raises ProgramError where it cannot be followed, or is empty."""
+    """Return the boundary of an area. Raises ProgramError if it cannot be determined or is empty."""
     try:
         found = boundary(loops, inside)
     except AreaError as problem:
@@ -117,7 +118,7 @@ def _bounded(state: State, loops: Sequence[Loop], inside: Callable[[Point], bool
 
 
 def _closed(state: State, figure: ContourFigure, column: int) -> Loop:
-    """The contour as a loop. Raises ProgramError for an open one."""
+    """Return the contour as a loop. Raises ProgramError if it is open."""
     text = "Contour {figure} does not contain any elements."
     hint = "Add path functions to the contour."
     state.check(figure.elements, column, CYCLE_MISSING, text, hint, figure=figure.label)
@@ -138,7 +139,7 @@ def _is_pocket(state: State, figure: ContourFigure, loop: Loop, column: int) -> 
 
 
 def _inside(pockets: Sequence[Loop], islands: Sequence[Loop]) -> Callable[[Point], bool]:
-    """Tells of a point whether it is to be cleared."""
+    """Return a function that determines whether a point must be cleared."""
     first, *others = [Winding(loop) for loop in pockets]
     stay = [Winding(loop) for loop in islands]
     start = pockets[0][0].start

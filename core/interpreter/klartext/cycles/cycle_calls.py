@@ -1,6 +1,6 @@
-"""Cycles: what CYCL DEF tells, when a cycle is run (CYCL CALL, M99, M89), patterns of places (220, 221).
+"""Definition of cycles with CYCL DEF, their calls (CYCL CALL, M99, M89), and patterns (220, 221).
 
-A cycle from 200 on reads its Q parameters when it is called, so that one that has been set since counts.
+A cycle from 200 on reads its Q parameters when it is called, so that later assignments apply.
 """
 
 from __future__ import annotations
@@ -57,8 +57,9 @@ _NO_CYCLE = frozenset({_DWELL, _CALL_PROGRAM, _ORIENT, _CONTOUR, _TILT, _TOLERAN
 _AT_ONCE = frozenset({_PRESET, _CIRCLE, _ROWS, _CONTOUR_DATA})
 _TRANSFORMS = frozenset({8, 10, 11})  # mirroring, rotation, scaling
 _MOST_CONTOURS = 128
-_PROGRAM = re.compile(r"(?:PGM\b|%)\s*", re.IGNORECASE)  # before the name of cycle 12
-_SET_UP = frozenset({"ABST", "DIST", "SETUP", "SET-UP", "SET UP"})  # the distance of cycle 19
+_PROGRAM = re.compile(r"(?:PGM\b|%)\s*", re.IGNORECASE)  # text before the name in cycle 12
+# words for the set-up distance in cycle 19
+_SET_UP = frozenset({"ABST", "DIST", "SETUP", "SET-UP", "SET UP"})
 _ON_CYLINDER = {27: "surface", 28: "slot", 29: "ridge", 39: "contour"}
 
 
@@ -66,20 +67,20 @@ _Told = Cycle | CycleLine | PatternDef | ContourDef
 
 
 class Cycles:
-    """The cycle that CYCL DEF has told last, and with M89 is run behind every positioning block."""
+    """The last cycle of CYCL DEF, which M89 calls after every positioning block."""
 
     def __init__(self, state: State) -> None:
         self._state = state
         self._number = 0
         self._lines: dict[int, CycleLine] = {}
-        self.program = ""  # that cycle 12 has named
+        self.program = ""  # the program of cycle 12
         self.modal = False
-        self._refused = 0  # the older cycle whose first line has been refused
-        self._points: list[Vector] = []  # of PATTERN DEF
-        self._contours: tuple[ContourPart, ...] = ()  # that cycle 14 or CONTOUR DEF has named
+        self._refused = 0  # the cycle below 200 whose first line was rejected
+        self._points: list[Vector] = []  # points of PATTERN DEF
+        self._contours: tuple[ContourPart, ...] = ()  # contours of cycle 14 or CONTOUR DEF
 
     def told(self, node: _Told) -> Iterator[Block]:
-        """CYCL DEF, PATTERN DEF, or what tells contours. Raises ProgramError."""
+        """Yield the blocks of a CYCL DEF, PATTERN DEF or contour definition. Raises ProgramError."""
         if isinstance(node, PatternDef):
             self._points = points(self._state, node)
         elif isinstance(node, ContourDef):
@@ -90,11 +91,14 @@ class Cycles:
             yield from self.line(node)
 
     def select_points(self, rows: Mapping[int, Row]) -> None:
-        """The points of a point table: X, Y, and Z over Q203."""
+        """Set the points from a point table: X, Y, and Z above Q203."""
         self._points = [(row.get("X", 0.0), row.get("Y", 0.0), row.get("Z", 0.0)) for row in rows.values()]
 
     def define(self, node: Cycle) -> Iterator[Block]:
-        """CYCL DEF of a cycle from 200 on. Patterns are run at once. Raises ProgramError."""
+        """Yield the blocks of a CYCL DEF from 200 on; only patterns are executed immediately.
+
+        Raises ProgramError.
+        """
         state = self._state
         known = node.number in _MACHINING.keys() | CONTOURS | _AT_ONCE
         text = (
@@ -117,20 +121,20 @@ class Cycles:
             self._begin(node.number)
 
     def _not_supported(self, node: Cycle | CycleLine) -> ProgramError:
-        """The error of a cycle that is refused by its number, to be raised."""
+        """Return the error for a cycle that is rejected by its number."""
         kind = _ON_CYLINDER.get(node.number)
         told = Message(" (cylinder surface, {kind})", kind=kind) if kind else ""
         name = Message("CYCL DEF {number}{kind}", number=node.number, kind=told)
         return unsupported(self._state.line, node.column, name, INSTEAD_OF_CYCLE.get(node.number, ""))
 
     def _begin(self, number: int) -> None:
-        """Another machining cycle is told: the one before is forgotten, a program of cycle 12 too."""
+        """Start the definition of another machining cycle and clear the previous one."""
         self._number, self._lines, self.program = number, {}, ""
 
     def _preset(self, column: int) -> None:
-        """247: the workpiece's zero and basic rotation of a row of the preset table. Raises ProgramError.
+        """Execute cycle 247: activate the zero and basic rotation of a row of the preset table.
 
-        Where nobody keeps a table the zero of the machine file stays, which is warned of.
+        Without a preset table, the zero of the machine file remains, with a warning. Raises ProgramError.
         """
         state, number = self._state, self._state.q.get(_PRESET_NUMBER, 0.0)
         found = state.setup.presets.get(int(number)) if number == int(number) else None
@@ -158,12 +162,15 @@ class Cycles:
         state.preset()
 
     def line(self, node: CycleLine) -> Iterator[Block]:
-        """A line of an older cycle. Those that are no machining are done at once. Raises ProgramError."""
+        """Yield the blocks of a line of a cycle below 200, which are executed immediately if not machining.
+
+        Raises ProgramError if the cycle is not supported.
+        """
         if node.number in _TRANSFORMS and node.part == 0:
-            return  # the line behind it says what
+            return  # the next line has the values
         if node.number not in OLDER.keys() | _NO_CYCLE:
             if node.part and node.number == self._refused:
-                return  # told at its first line
+                return  # reported at its first line
             self._refused = node.number
             raise self._not_supported(node)
         if node.number in _NO_CYCLE:
@@ -175,13 +182,13 @@ class Cycles:
 
     @property
     def contours(self) -> tuple[ContourPart, ...]:
-        """The contours that the cycle which is in force mills; none for other cycles."""
+        """The contours of the active cycle; empty for other cycles."""
         return self._contours if self._number in CONTOURS else ()
 
     def call(self, column: int, figures: Figures = ()) -> Iterator[Block]:
-        """The cycle where the tool stands. Raises ProgramError where none has been told.
+        """Yield the blocks of the cycle at the tool position. Raises ProgramError without a defined cycle.
 
-        ``figures`` are the contours of ``contours``, as their subprograms say them.
+        ``figures`` are the contours of ``contours``, as read from their subprograms.
         """
         text = "No machining cycle is defined."
         self._state.check(self._number, column, CYCLE_MISSING, text, "Write CYCL DEF before this block.")
@@ -199,13 +206,13 @@ class Cycles:
         yield from _MACHINING[self._number](tool)
 
     def _demand_figures(self, figures: Figures, column: int) -> None:
-        """Raises ProgramError where no contour has been named."""
+        """Raise ProgramError if no contour is defined."""
         text = "No contour is defined for cycle {number}."
         hint = "List the contour labels in cycle 14 before this block."
         self._state.check(figures, column, CYCLE_MISSING, text, hint, number=self._number)
 
     def _demand_lines(self, column: int) -> None:
-        """Raises ProgramError where a line of an older cycle has not been told."""
+        """Raise ProgramError if a line of a cycle below 200 is missing."""
         number = self._number
         missing = next((part for part in range(1, LAST_LINE[number] + 1) if part not in self._lines), None)
         if missing is not None:
@@ -216,7 +223,7 @@ class Cycles:
     def _tool(self, number: int, column: int) -> CycleTool:
         return CycleTool(self._state, number, self._state.q.get, column)
 
-    # --- what is done at once -----------------------------------------------------------------------------
+    # --- cycles that are executed immediately ---------------------------------------------------------------
 
     def _at_once(self, node: CycleLine) -> Iterator[Block]:
         if node.number == _DWELL and node.part == 1 and node.words:
@@ -238,7 +245,7 @@ class Cycles:
         return self._state.setup.limits.spindle_oriented
 
     def _angle(self, node: CycleLine) -> float:
-        """The angle of cycle 13, to which M19 brings the spindle. Raises ProgramError."""
+        """Return the angle of cycle 13, to which M19 turns the spindle. Raises ProgramError."""
         hint = "Write ANGLE with a value in degrees."
         self._state.check(node.words, node.column, CYCLE_MISSING, "No angle is programmed in cycle 13.", hint)
         angle = value(self._state, node.words[-1].value.formula)
@@ -249,7 +256,7 @@ class Cycles:
         return angle
 
     def _name_contours(self, node: CycleLine) -> None:
-        """14: the labels of its contours; lines behind the first go on. Raises ProgramError."""
+        """Add the contour labels of a line of cycle 14. Raises ProgramError if there are too many."""
         if node.part == 0:
             self._contours = ()
             return
@@ -268,7 +275,7 @@ class Cycles:
             )
 
     def _seconds(self, word: AxisWord) -> float:
-        """The time of cycle 9. Raises ProgramError for one under 0."""
+        """Return the time of cycle 9 in seconds. Raises ProgramError if it is negative."""
         seconds = value(self._state, word.value.formula)
         if seconds < 0.0:
             text = "The dwell time of {seconds} s is negative."
@@ -276,7 +283,10 @@ class Cycles:
         return seconds
 
     def _tilted(self, node: CycleLine) -> Plane:
-        """Cycle 19 as a PLANE: spatial angles, without which it ends; nothing moves. Raises ProgramError."""
+        """Return cycle 19 as a PLANE block with spatial angles; without angles, it resets the plane.
+
+        No axis moves unless the block has a feed. Raises ProgramError for an invalid word.
+        """
         if node.text and node.text.upper() not in _SET_UP:
             text = Message("{node} is not an axis.", node=node.text)
             raise syntax(self._state.line, node.column, text, "Use only A, B and C in cycle 19.")
@@ -284,7 +294,8 @@ class Cycles:
             return Plane("RESET", (), Positioning("STAY"), node.column)
         named = {word.axis: word for word in node.words}
         way = Positioning("STAY")
-        if node.feed is not None:  # positioned by the control, about the point so far before the tool
+        # The control positions the axes about the point at this distance from the tool.
+        if node.feed is not None:
             distance = named[""].value if "" in named else None
             way = Positioning("MOVE", distance, feed=node.feed)
         words = tuple(
@@ -293,7 +304,7 @@ class Cycles:
         return Plane("SPATIAL", words, way, node.column)
 
     def _demand_plain_feeds(self, column: int) -> None:
-        """The feeds of a cycle are its own: a minute, and with M103 as they are written."""
+        """Raise ProgramError under M136; warn under M103, which does not change the feeds of a cycle."""
         if self._state.per_revolution:
             raise unsupported(self._state.line, column, "A cycle with M136 active (write M137 first)")
         if self._state.plunging is not None:
@@ -301,7 +312,10 @@ class Cycles:
             self._state.tell_once(column, Severity.WARNING, "cycle-feeds", text)
 
     def call_pattern(self, node: CycleCall) -> Iterator[Block]:
-        """CYCL CALL PAT: the cycle at every point, between them at the safe height. Raises ProgramError."""
+        """Yield the blocks of CYCL CALL PAT: the cycle at each point, with moves at the safe height.
+
+        Raises ProgramError without points or without a machining cycle.
+        """
         state = self._state
         text = "Neither PATTERN DEF nor SEL PATTERN has defined any points."
         state.check(self._points, node.column, CYCLE_MISSING, text, "Write PATTERN DEF before this block.")
@@ -321,7 +335,7 @@ class Cycles:
         state.q[_SURFACE] = surface
 
     def call_at(self, node: CycleCall) -> Iterator[Block]:
-        """CYCL CALL POS: over the place above the workpiece, whatever stands in the way below."""
+        """Yield the blocks of CYCL CALL POS: to the position above the workpiece, then the cycle."""
         if not self._number:
             yield from self.call(node.column)
         tool = self._tool(self._number, node.column)
@@ -347,7 +361,7 @@ class Cycles:
     # --- patterns -----------------------------------------------------------------------------------------
 
     def _pattern(self, node: Cycle) -> Iterator[Block]:
-        """The cycle told before at every place of a circle (220) or of rows (221)."""
+        """Yield the blocks of the previous cycle at each point of a circle (220) or of rows (221)."""
         tool = self._tool(node.number, node.column)
         if self._number not in _MACHINING:
             text = "Cycle {number} needs a preceding machining cycle."

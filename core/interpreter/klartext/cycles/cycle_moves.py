@@ -1,4 +1,4 @@
-"""What cycles are made of: the tool above the plane, its ways and rings, dwells, the spindle."""
+"""Elements of cycles: tool position, parameters, moves, rings, dwells and spindle."""
 
 from __future__ import annotations
 
@@ -35,15 +35,18 @@ Parameters = Mapping[int, int | float | None]
 
 
 def oriented(state: State, angle: float) -> Block:
-    """The spindle held at an angle, degrees from its index, the short way."""
+    """Return the block that orients the spindle to an angle, by the shorter distance.
+
+    ``angle`` is in degrees from the spindle index.
+    """
     state.modal = state.modal._replace(spindle=0, oriented=angle % _TURN)
     return state.action(SpindleOrient(angle % _TURN))
 
 
 class CycleTool:
-    """The tool in a cycle that was called at ``column`` of a block; mm, in the program's coordinates.
+    """The tool in a cycle that is called at ``column`` of a block; mm, in program coordinates.
 
-    ``value`` gives a parameter of the cycle by the number of its Q, as written.
+    ``value`` returns a parameter of the cycle by its Q number, as written.
     """
 
     def __init__(self, state: State, number: int, value: Callable[[int], float | None], column: int) -> None:
@@ -54,9 +57,10 @@ class CycleTool:
         self._told_as: Parameters = {}
 
     def seen(self, parameters: Parameters) -> CycleTool:
-        """The same tool as another cycle sees it, whose parameters are others of this one, or fixed values.
+        """Return the tool for another cycle, with other parameters.
 
-        Lengths among the values are in the program's unit. What is not named has not been told.
+        Each parameter is another parameter of this cycle, or a fixed value. Lengths among the fixed values
+        are in the program's unit. Parameters that are not listed are not defined.
         """
 
         def value(q: int) -> float | None:
@@ -68,19 +72,19 @@ class CycleTool:
         return other
 
     def named(self, q: int) -> str:
-        """A parameter as the program has it."""
+        """Return the name of a parameter in the program, such as Q200."""
         found = self._told_as.get(q, q)
         return f"Q{found if isinstance(found, int) else q}"
 
     @property
     def scale(self) -> float:
-        """Millimetres of the program's unit."""
+        """Millimeters per unit of the program."""
         return self._state.scale
 
-    # --- what the cycle was told --------------------------------------------------------------------------
+    # --- parameters of the cycle ----------------------------------------------------------------------------
 
     def plain(self, q: int, default: float | None = None) -> float:
-        """A parameter as written. Raises ProgramError where it is missing and has no ``default``."""
+        """Return a parameter as written. Raises ProgramError if it is missing and has no ``default``."""
         found = self._value(q)
         if found is None:
             found = default
@@ -90,11 +94,11 @@ class CycleTool:
         return found
 
     def length(self, q: int, default: float | None = None) -> float:
-        """A length, mm."""
+        """Return a length in mm."""
         return self.plain(q, default) * self._state.scale
 
     def feed(self, q: int) -> float | None:
-        """A feed as programmed; None where it is a rapid."""
+        """Return a feed as programmed; None for a rapid."""
         found = self.plain(q)
         if found == TOOL_FEED and self._state.tool_feed is not None:
             return per_minute(self._state, self._state.tool_feed, self._state.tool_feed_per, self._column)
@@ -103,7 +107,7 @@ class CycleTool:
         return None if found >= MAX_FEED else found
 
     def cut(self, q: int) -> float:
-        """A feed that cuts, as programmed. Raises ProgramError for a rapid."""
+        """Return a cutting feed as programmed. Raises ProgramError for a rapid."""
         found = self.feed(q)
         if found is None:
             text = "{parameter} is set to rapid, but this is a cutting move."
@@ -111,26 +115,26 @@ class CycleTool:
         return found
 
     def refuse(self, text: str, hint: str, code: str = INPUT_VALUE, /, **values: object) -> ProgramError:
-        """An error of this cycle, to be raised; the number of the cycle fills the hole ``number``."""
+        """Return an error of this cycle; ``number`` is the placeholder for the number of the cycle."""
         return self._state.refuse(self._column, code, text, hint, **{"number": self._number, **values})
 
     def check(self, ok: object, text: str, hint: str, code: str = INPUT_VALUE, /, **values: object) -> None:
-        """Raise the error of ``refuse`` unless a condition holds."""
+        """Raise the error of ``refuse`` unless the condition ``ok`` is true."""
         if not ok:
             raise self.refuse(text, hint, code, **values)
 
     @property
     def radius(self) -> float:
-        """Of the tool, mm."""
+        """Radius of the tool, in mm."""
         return self._state.tool_radius / self._state.figure.factor
 
     def radius_of(self, tool: int) -> float | None:
-        """Radius of another tool, mm: as TOOL DEF tells it, else the tool table; None where nobody does."""
+        """Return the radius of another tool in mm, from TOOL DEF or the tool table; None if not defined."""
         found = radius_of(self._state, tool)
         return None if found is None else found / self._state.figure.factor
 
     def tell(self, text: str) -> None:
-        """Something about this cycle that is done otherwise, once."""
+        """Note once that this cycle works differently on this control."""
         self._tell(Severity.NOTE, "cycle-otherwise", "Cycle {number}: {what}", what=text)
 
     def _tell(self, severity: Severity, code: str, text: str, hint: str = "", /, **values: object) -> None:
@@ -139,7 +143,7 @@ class CycleTool:
 
     @property
     def point_angle(self) -> float:
-        """Of the tool's point, degrees. Raises ProgramError where the tool table does not tell it."""
+        """Point angle of the tool in degrees. Raises ProgramError if the tool table does not have it."""
         row = self._state.setup.mill_tools.get(self._state.modal.tool)
         if row is None or not 0.0 < row.point < 180.0:
             text = "Cycle {number} needs the point angle of the tool for a programmed diameter."
@@ -149,23 +153,23 @@ class CycleTool:
 
     @property
     def here(self) -> Point:
-        """X and Y where the tool stands."""
+        """X and Y of the tool position."""
         x, y, _ = self._state.programmed
         return x, y
 
     @property
     def height(self) -> float:
-        """Z where the tool stands."""
+        """Z of the tool position."""
         return self._state.programmed[2]
 
     @property
     def speed(self) -> float:
-        """S of the last TOOL CALL, whether the spindle turns or not."""
+        """S of the last TOOL CALL in rpm, also if the spindle is stopped."""
         return self._state.modal.rpm
 
     @property
     def rpm(self) -> float:
-        """Speed of the spindle, signed. Raises ProgramError where it stands."""
+        """Signed spindle speed in rpm. Raises ProgramError if the spindle is stopped."""
         found = self.turns
         text = "Cycle {number} needs a running spindle."
         self.check(found, text, "Start the spindle with M3 before the cycle.", WRONG_RPM)
@@ -173,16 +177,22 @@ class CycleTool:
 
     @property
     def turns(self) -> float:
-        """Speed of the spindle, signed; 0 where it stands."""
+        """Signed spindle speed in rpm; 0 if the spindle is stopped."""
         return self._state.modal.rpm * self._state.modal.spindle
 
     def thread_speed(self, pitch: float) -> float:
-        """S in the direction of a thread, signed: a pitch under 0 is a left-hand one. Raises ProgramError."""
+        """Return S in rpm, negative for a left-hand thread (negative pitch).
+
+        Raises ProgramError without S.
+        """
         self.check(self.speed, "Cycle {number} needs a spindle speed.", "Program S in TOOL CALL.", WRONG_RPM)
         return math.copysign(self.speed, pitch)
 
     def warn_uncoupled(self) -> None:
-        """Z follows the spindle by its speed, not by its angle: it stands while the spindle turns round."""
+        """Warn that Z is not synchronized with the spindle angle.
+
+        Z stops while the spindle reverses.
+        """
         text = (
             "Cycle {number}: Z is not synchronized with the spindle angle, so Z stops "
             "while the spindle reverses."
@@ -190,27 +200,27 @@ class CycleTool:
         self._tell(Severity.WARNING, "tapping-uncoupled", text, "Use a floating tap holder.")
 
     def warn_unoriented(self) -> None:
-        """Nothing stops the spindle of this mill at an angle: the edge may point anywhere."""
+        """Warn that this spindle cannot be oriented, so that the direction of the edge is unknown."""
         text = "Cycle {number} moves the cutting edge away from the wall, but {unoriented}."
         hint = "Program Q214=0, or turn the cutting edge by hand when the program stops for this adjustment."
         self._tell(Severity.WARNING, "spindle-not-oriented", text, hint, unoriented=UNORIENTED)
 
-    # --- what it does -------------------------------------------------------------------------------------
+    # --- moves and actions ----------------------------------------------------------------------------------
 
     def to(self, z: float, feed: float | None = None) -> Block:
-        """Up or down to ``z``; without a feed in rapid."""
+        """Return a move to height ``z``, in rapid without a feed."""
         return self.across(self.here, z, feed)
 
     def over(self, at: Point, clear: float) -> Iterator[Block]:
-        """At the height ``clear`` or above it to a place, and down to that height, in rapid."""
+        """Yield rapids to a position at the height ``clear`` or higher, and down to that height."""
         yield self.to(max(clear, self.height))
         yield self.across(at)
         yield self.to(clear)
 
     def tap(self, z: float, lead: float, *, in_hole: bool = False) -> Block:
-        """Into a thread or out of it: ``lead`` mm a revolution, whatever the feed override says.
+        """Return a move into or out of a thread with ``lead`` mm/rev, independent of the feed override.
 
-        Raises ProgramError where Z does not go as fast as that.
+        Raises ProgramError if Z cannot move that fast.
         """
         state, rpm = self._state, self._state.modal.rpm
         fastest = state.kinematics.slides[2].vmax
@@ -225,11 +235,11 @@ class CycleTool:
         return replace(made, feed=lead, per_rev=True, coupled=True, in_hole=in_hole)
 
     def lead_of(self, feed: float) -> float:
-        """Millimetres a revolution of a feed as programmed. Raises ProgramError where the spindle stands."""
+        """Return a programmed feed in mm/rev. Raises ProgramError if the spindle is stopped."""
         return self._state.path_feed(feed) * 60.0 / abs(self.rpm)
 
     def across(self, at: Point, z: float | None = None, feed: float | None = None) -> Block:
-        """Straight to a point; without a feed in rapid."""
+        """Return a straight move to a point, in rapid without a feed."""
         state = self._state
         goal = state.machine((*at, self.height if z is None else z))
         rate = None if feed is None else state.path_feed(feed)
@@ -238,7 +248,7 @@ class CycleTool:
         )
 
     def round(self, arc: Arc, z: float, feed: float) -> Block:
-        """Along an arc, with Z to ``z``."""
+        """Return a move along an arc, with Z to ``z``."""
         state = self._state
         levels = [state.figure.plane((0.0, 0.0, at))[2] for at in (self.height, z)]
         names = state.names
@@ -248,23 +258,29 @@ class CycleTool:
         return state.move(Kind.PLANE_ARC, goal, state.path_feed(feed), way)
 
     def dwell(self, seconds: float, *, in_hole: bool = False) -> list[Block]:
-        """Rest; nothing where there is no time."""
+        """Return a dwell block, or an empty list for 0 s."""
         return [replace(self._state.action(Dwell(seconds)), in_hole=in_hole)] if seconds > 0.0 else []
 
     def turn(self, rpm: float, *, in_hole: bool = False) -> Block:
-        """The spindle at this speed and in this direction."""
+        """Return the block that runs the spindle at this signed speed in rpm."""
         state = self._state
         state.modal = state.modal._replace(spindle=1 if rpm > 0.0 else -1, oriented=None)
         return replace(state.action(SpindleRun(rpm)), in_hole=in_hole)
 
     def turning(self, rpm: float) -> list[Block]:
-        """The spindle as this signed speed says, 0 at rest; nothing where it turns so already."""
+        """Return the block that sets this signed spindle speed in rpm; 0 stops the spindle.
+
+        The list is empty if the spindle already has this speed.
+        """
         if rpm == self.turns:
             return []
         return [self.turn(rpm) if rpm else self.stop()]
 
     def coolant(self, q: int) -> list[Block]:
-        """Coolant by the M function that a parameter holds: 8 on, 9 off, 0 nothing. Raises ProgramError."""
+        """Return the coolant block for a parameter with an M function (8, 9, or 0 for no change).
+
+        Raises ProgramError for any other value.
+        """
         number, state = int(self.plain(q, 0.0)), self._state
         if number == 0:
             return []
@@ -275,18 +291,21 @@ class CycleTool:
         return [state.action(Coolant(number == 8))]
 
     def stop(self, *, stands: bool = False) -> Block:
-        """The spindle off; with ``stands`` it is waited for."""
+        """Return the block that stops the spindle.
+
+        With ``stands``, the next block waits until the spindle is at rest.
+        """
         state = self._state
         state.modal = state.modal._replace(spindle=0, oriented=None)
         return state.action(SpindleStop(stands))
 
     @property
     def orients(self) -> bool:
-        """Whether the spindle of this machine can be stopped at an angle."""
+        """Whether the spindle of this machine can stop at an angle."""
         return self._state.setup.limits.spindle_oriented
 
     def orient(self, q: int) -> Block:
-        """The spindle held at the angle of a parameter. Raises ProgramError."""
+        """Return the block that orients the spindle to the angle of a parameter. Raises ProgramError."""
         angle = self.plain(q, 0.0)
         if not -_TURN <= angle <= _TURN:
             text = "{parameter} is not a valid spindle angle."
@@ -294,7 +313,7 @@ class CycleTool:
         return oriented(self._state, angle)
 
     def halt(self, message: str) -> Block:
-        """For what the operator has to do by hand; Cycle Start goes on."""
+        """Return a program stop for a manual action of the operator; Cycle Start continues."""
         return self._state.action(ProgramStop(optional=False, message=message))
 
 
@@ -303,35 +322,38 @@ _SMALLEST = 1e-6  # mm
 
 @dataclass(frozen=True, slots=True)
 class Seat:
-    """Where a figure sits in the program's X and Y: its middle, and the angle of its first side, degrees."""
+    """Position of a figure in the program's X and Y.
+
+    ``middle`` is its center, and ``angle`` is the angle of its first side in degrees.
+    """
 
     middle: Point
     angle: float = 0.0
 
     def at(self, u: float, v: float) -> Point:
-        """The point of the program for one along the first side and one along the second, mm."""
+        """Return the program point for coordinates along the first and second side, in mm."""
         c, s = math.cos(math.radians(self.angle)), math.sin(math.radians(self.angle))
         return self.middle[0] + c * u - s * v, self.middle[1] + s * u + c * v
 
     def moved(self, u: float, v: float) -> Seat:
-        """The same with its middle there."""
+        """Return the seat with its center moved along its sides."""
         return Seat(self.at(u, v), self.angle)
 
 
 @dataclass(frozen=True, slots=True)
 class Ring:
-    """A rectangle of half sides ``a`` and ``b`` with corners of ``radius``, mm."""
+    """A rectangle with half sides ``a`` and ``b`` and corner ``radius``, in mm."""
 
     a: float
     b: float
     radius: float
 
     def wider(self, by: float) -> Ring:
-        """The same, ``by`` further out; corners stay round."""
+        """Return the ring enlarged by ``by`` mm on all sides; corners remain round."""
         return Ring(self.a + by, self.b + by, max(self.radius + by, 0.0))
 
     def milled(self, tool: CycleTool, seat: Seat, feed: float, *, clockwise: bool) -> Iterator[Block]:
-        """Round from the middle of the side in +u, at the height where the tool stands."""
+        """Yield the moves once around the ring, from the middle of the side in +u, at the present height."""
         r = min(self.radius, self.a, self.b)
         side = -1.0 if clockwise else 1.0
         u, v = self.a - r, self.b - r

@@ -1,4 +1,4 @@
-"""Cycles that make holes (200 to 209, 240, 241): drilling, reaming, boring, tapping, milling, centring."""
+"""Hole cycles (200 to 209, 240, 241): drilling, reaming, boring, tapping, bore milling and centering."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from core.geometry.lines_and_arcs import Arc
 from core.interpreter.klartext.cycles.cycle_moves import HOW_ORIENTED, UNORIENTED, CycleTool
 from core.interpreter.shared.elementary_blocks import Block
 
-SMALLEST = 1e-6  # mm; less is no depth
-_ASIDE = 0.2  # mm that a boring bar goes aside before it is drawn out
+SMALLEST = 1e-6  # mm; a smaller depth counts as 0
+_ASIDE = 0.2  # mm; sideways move of a boring bar before the retract
 _EDGE = {
     (-1.0, 0.0): "TURN THE CUTTING EDGE TOWARD X+",
     (0.0, -1.0): "TURN THE CUTTING EDGE TOWARD Y+",
@@ -21,7 +21,7 @@ _MOST_PECKS = 10_000
 
 
 def reaming(tool: CycleTool) -> Iterator[Block]:
-    """201: down and out at a feed."""
+    """Yield the blocks of cycle 201: down and up at a feed."""
     surface, clear, bottom = heights(tool)
     feed = tool.feed(206)
     yield tool.to(clear)
@@ -33,10 +33,10 @@ def reaming(tool: CycleTool) -> Iterator[Block]:
 
 
 def boring(tool: CycleTool) -> Iterator[Block]:
-    """202: down, the spindle stopped at Q336, aside where Q214 says so, out, the spindle on again.
+    """Yield the blocks of cycle 202: bore, orient the spindle (Q336), move off the wall (Q214), retract.
 
-    Where the spindle is not oriented it is stopped anywhere, and the program stops for the hand that turns
-    the edge away from where it goes.
+    If the spindle cannot be oriented, it stops at any angle, and the program stops so that the operator can
+    turn the edge away from the wall.
     """
     surface, clear, bottom = heights(tool)
     rpm, way = tool.rpm, aside(tool, (0, 1, 2, 3, 4))
@@ -59,7 +59,7 @@ def boring(tool: CycleTool) -> Iterator[Block]:
 
 
 def aside(tool: CycleTool, directions: tuple[int, ...]) -> tuple[float, float]:
-    """Q214: which way the tool leaves the wall, along X or Y. Raises ProgramError for another number."""
+    """Return the direction (x, y) of Q214 in which the tool leaves the wall. Raises ProgramError."""
     number = tool.plain(214, 0.0)
     if number not in directions:
         text = "Q214 must be a whole number from {directions} to {directions2}."
@@ -68,11 +68,10 @@ def aside(tool: CycleTool, directions: tuple[int, ...]) -> tuple[float, float]:
 
 
 def back_boring(tool: CycleTool) -> Iterator[Block]:
-    """204: through the hole beside its centre with the spindle at Q336, centred below the part, bored
-    upwards by Q249, and out as it came in.
+    """Yield the blocks of cycle 204: boring upward from below the part by Q249.
 
-    Q252 is how far the edge stands over the tip, Q250 how thick the part is, Q251 how far the tool goes
-    beside the centre.
+    The tool passes off-center through the hole with the spindle oriented to Q336. Q252 is the height of the
+    edge above the tip, Q250 the thickness of the part, and Q251 the off-center distance.
     """
     text = "Cycle 204 moves through the hole with the spindle oriented, but {unoriented}."
     hint = "Bore from the other side of the part, or {how_oriented}."
@@ -104,12 +103,15 @@ def back_boring(tool: CycleTool) -> Iterator[Block]:
 
 
 def drilling(tool: CycleTool) -> Iterator[Block]:
-    """200: as 203 in equal infeeds, out of the hole after each."""
+    """Return the blocks of cycle 200: like 203, with equal infeeds and a full retract after each."""
     return universal_drilling(tool.seen({q: q for q in (200, 201, 202, 203, 204, 206, 210, 211)}))
 
 
 def universal_drilling(tool: CycleTool) -> Iterator[Block]:
-    """203: Q213 chip breaks between two ways out, infeeds that become smaller by Q212 down to Q205."""
+    """Yield the blocks of cycle 203: pecks with Q213 chip breaks between full retracts.
+
+    Q212 reduces the infeeds, down to Q205.
+    """
     surface, clear, bottom = heights(tool)
     feed, whole = tool.feed(206), surface - bottom
     back, breaks = tool.length(256, 0.2), int(tool.plain(213, 0.0))
@@ -132,7 +134,11 @@ def universal_drilling(tool: CycleTool) -> Iterator[Block]:
 
 
 def deep_drilling(tool: CycleTool) -> Iterator[Block]:
-    """205: as 203, stopping Q258 to Q259 before the chips, chip breaks by depth (Q257), a start (Q379)."""
+    """Yield the blocks of cycle 205: like cycle 203, but with a start point and stop distances.
+
+    The start is at Q379. After a full retract, the rapid stops Q258 to Q259 above the last depth. Q257 is the
+    depth between chip breaks.
+    """
     surface, clear, bottom = heights(tool)
     feed, begin = tool.feed(206), surface - max(tool.length(379, 0.0), 0.0)
     whole, breaking, back = begin - bottom, tool.length(257, 0.0), tool.length(256, 0.2)
@@ -158,21 +164,24 @@ def deep_drilling(tool: CycleTool) -> Iterator[Block]:
 
 
 def floating_tapping(tool: CycleTool) -> Iterator[Block]:
-    """206: down at Q206, the spindle turned round, out."""
+    """Yield the blocks of cycle 206: down at Q206, spindle reversal, up."""
     surface, clear, bottom = heights(tool)
     lead = tool.lead_of(tool.cut(206))
     yield from _tapped(tool, surface, clear, bottom, lead, tool.rpm)
 
 
 def rigid_tapping(tool: CycleTool) -> Iterator[Block]:
-    """207: as 206, by the pitch, whose sign starts the spindle; at the end it turns as it did before."""
+    """Yield the blocks of cycle 207: like 206 with a pitch, whose sign sets the direction.
+
+    At the end, the spindle has its previous speed and direction.
+    """
     surface, clear, bottom = heights(tool)
     lead, rpm = _thread(tool)
     yield from _tapped(tool, surface, clear, bottom, lead, rpm)
 
 
 def tapping_with_chip_breaking(tool: CycleTool) -> Iterator[Block]:
-    """209: rigid, the spindle turned round at every Q257 of depth."""
+    """Yield the blocks of cycle 209: rigid tapping with a spindle reversal after each depth Q257."""
     surface, clear, bottom = heights(tool)
     (lead, rpm), before = _thread(tool), tool.turns
     back, step = tool.length(256, 0.0), tool.length(257, 0.0)
@@ -191,7 +200,7 @@ def tapping_with_chip_breaking(tool: CycleTool) -> Iterator[Block]:
 
 
 def _thread(tool: CycleTool) -> tuple[float, float]:
-    """Millimetres a revolution, and the signed speed into the thread. Raises ProgramError for no pitch."""
+    """Return the lead in mm/rev and the signed speed into the thread. Raises ProgramError without a pitch."""
     tool.warn_uncoupled()
     pitch = tool.length(239)
     tool.check(pitch != 0.0, "Pitch Q239 must not be 0.", "Enter the thread pitch.")
@@ -215,7 +224,10 @@ def _tapped(
 
 
 def bore_milling(tool: CycleTool) -> Iterator[Block]:
-    """208: a helix of Q334 a turn to the diameter Q335, one turn at the bottom, out in the middle."""
+    """Yield the blocks of cycle 208: a helix to the diameter Q335.
+
+    The pitch is Q334. A full circle at the bottom finishes the hole.
+    """
     surface, clear, bottom = heights(tool)
     feed = tool.feed(206) or 0.0
     way = tool.length(335) / 2.0 - tool.radius
@@ -240,7 +252,7 @@ def bore_milling(tool: CycleTool) -> Iterator[Block]:
 
 
 def centring(tool: CycleTool) -> Iterator[Block]:
-    """240: to a depth, or to where the tool's point makes a diameter."""
+    """Yield the blocks of cycle 240: centering to a depth, or to a diameter by the point angle."""
     if tool.plain(343, 0.0) == 1.0:
         surface = tool.length(203, 0.0)
         clear = surface + tool.length(200)
@@ -255,7 +267,11 @@ def centring(tool: CycleTool) -> Iterator[Block]:
 
 
 def single_lip_drilling(tool: CycleTool) -> Iterator[Block]:
-    """241: in at Q427 to a start in the hole (Q379), then at Q428 with coolant to the bottom, out as in."""
+    """Yield the blocks of cycle 241.
+
+    The tool enters at the speed Q427 to the start at Q379, drills at the speed Q428 with coolant, and leaves
+    at the speed Q427.
+    """
     surface, clear, bottom = heights(tool)
     rpm, sense = tool.rpm, {3: 1.0, 4: -1.0, 5: 0.0}.get(int(tool.plain(426, 3.0)))
     if sense is None:
@@ -282,7 +298,7 @@ def single_lip_drilling(tool: CycleTool) -> Iterator[Block]:
 
 
 def heights(tool: CycleTool) -> tuple[float, float, float]:
-    """Surface, set-up clearance above it, and bottom. Raises ProgramError for a depth that leads upwards."""
+    """Return surface, set-up clearance and bottom in mm. Raises ProgramError for a positive depth."""
     surface, depth = tool.length(203, 0.0), tool.length(201)
     text = "Depth Q201={depth} mm is positive (upward)."
     tool.check(depth <= 0.0, text, "Enter the depth with a minus sign.", depth=f"{depth:+.10g}")
@@ -292,7 +308,7 @@ def heights(tool: CycleTool) -> tuple[float, float, float]:
 def infeeds(
     tool: CycleTool, whole: float, step: float, smaller: float = 0.0, least: float = 0.0
 ) -> Iterator[float]:
-    """Depths of the infeeds one after the other, the whole depth last."""
+    """Yield the depths of the infeeds; the last one is the whole depth."""
     if step <= 0.0 or step >= whole:
         yield whole
         return
@@ -306,13 +322,13 @@ def infeeds(
 
 
 def levels(tool: CycleTool, surface: float, bottom: float, step: Callable[[], float]) -> list[float]:
-    """Heights of the infeeds from the surface down, the bottom last; none where there is no depth."""
+    """Return the heights of the infeeds from the surface down to the bottom; empty without a depth."""
     whole = surface - bottom
     return [] if whole < SMALLEST else [surface - done for done in infeeds(tool, whole, step())]
 
 
 def out(tool: CycleTool, surface: float, clear: float, feed: float | None) -> Iterator[Block]:
-    """To the set-up clearance, and on to the second one where that is higher."""
+    """Yield the retract to the set-up clearance, and to the second clearance if it is higher."""
     second = surface + tool.length(204, 0.0)
     if feed is None:
         yield tool.to(max(clear, second))

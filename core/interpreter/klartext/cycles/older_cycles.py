@@ -1,6 +1,6 @@
-"""Cycles under 200, line by line: pecking (1), tapping (2, 17, 18), slot (3), pocket (4), circle (5).
+"""Cycles below 200: pecking (1), tapping (2, 17, 18), slot (3), rectangular (4) and circular pocket (5).
 
-They are called with the tool at the set-up clearance above the surface, which is where it stands then.
+The tool must be at the set-up clearance above the surface when such a cycle is called.
 """
 
 from __future__ import annotations
@@ -19,12 +19,13 @@ from core.language.klartext.klartext_nodes import CycleLine
 
 Lines = Mapping[int, CycleLine]
 _SMALLEST = 1e-6  # mm
-_OVERLAP = 0.7  # of the tool's radius from one way to the next: the control's machine parameter 7430 has 1.4
+# overlap factor of the tool diameter; machine parameter 7430 of the control is 1.4 times the radius
+_OVERLAP = 0.7
 _MOST_LEVELS = 10_000
 
 
 class Told:
-    """What the lines of a cycle say."""
+    """Values in the lines of a cycle below 200."""
 
     def __init__(self, state: State, lines: Lines, column: int) -> None:
         self._state = state
@@ -33,13 +34,13 @@ class Told:
 
     @property
     def cycle(self) -> int:
-        """The number of the cycle."""
+        """Number of the cycle."""
         return next(iter(self._lines.values())).number if self._lines else 0
 
     def number(self, part: int, axis: str = "") -> float:
-        """The first number of a line, or that of its word for an axis.
+        """Return the first number of a line, or the number of an axis word.
 
-        Raises ProgramError where it is missing.
+        Raises ProgramError if it is missing.
         """
         words = self._lines[part].words if part in self._lines else ()
         word = next((each for each in words if each.axis == axis), None)
@@ -52,16 +53,16 @@ class Told:
         return value(self._state, word.value.formula)
 
     def length(self, part: int, axis: str = "") -> float:
-        """The same, mm."""
+        """Return the same number as a length in mm."""
         return self.number(part, axis) * self._state.scale
 
     def feed(self, part: int) -> float | None:
-        """The feed of a line, as programmed; None for rapid."""
+        """Return the feed of a line as programmed; None for a rapid."""
         line = self._lines.get(part)
         return word_values.feed_word(self._state, line.feed if line else None, self._column)
 
     def cutting_feed(self, part: int) -> float:
-        """The same, which must not be rapid."""
+        """Return the feed of a line. Raises ProgramError for a rapid."""
         found = self.feed(part)
         if found is None:
             text = "A pocket cannot be milled at rapid."
@@ -69,17 +70,17 @@ class Told:
         return found
 
     def turn(self, part: int) -> float:
-        """1 for DR+, which is counter-clockwise, -1 for DR-."""
+        """Return 1 for DR+ (counterclockwise) or -1 for DR-."""
         line = self._lines.get(part)
         return -1.0 if line is not None and line.turn == "-" else 1.0
 
     def has(self, part: int, axis: str) -> bool:
-        """Whether a line has a word."""
+        """Return whether a line has a word for this axis."""
         return part in self._lines and any(word.axis == axis for word in self._lines[part].words)
 
 
 def _pecking(told: Told, tool: CycleTool) -> Iterator[Block]:
-    """1: down by infeeds; out in rapid, and in rapid to just before the chips."""
+    """Yield the blocks of cycle 1: pecks with full retracts, and rapids to just above the last depth."""
     clear, feed = tool.height, told.feed(5)
     depth, step = abs(told.length(2)), abs(told.length(3))
     surface = clear - told.length(1)
@@ -94,7 +95,7 @@ def _pecking(told: Told, tool: CycleTool) -> Iterator[Block]:
 
 
 def _tapping(told: Told, tool: CycleTool) -> Iterator[Block]:
-    """2 at a feed; 17 by a pitch, whose sign starts the spindle. It turns round at the bottom."""
+    """Yield the blocks of cycle 2 (feed) or 17 (pitch, whose sign sets the direction)."""
     rigid = told.cycle == _RIGID
     clear, before = tool.height, tool.turns
     if rigid:
@@ -111,7 +112,7 @@ def _tapping(told: Told, tool: CycleTool) -> Iterator[Block]:
 
 
 def _slot(told: Told, tool: CycleTool) -> Iterator[Block]:
-    """3: along the first side by levels, then round at the width."""
+    """Yield the blocks of cycle 3: levels along the first side, then around at the width."""
     first, second = _sides(told, 4), _sides(told, 5)
     (x, y), clear = tool.here, tool.height
     end = x + first[0], y + first[1]
@@ -145,7 +146,7 @@ def _round_slot(tool: CycleTool, start: Point, end: Point, width: float, feed: f
 
 
 def _pocket(told: Told, tool: CycleTool) -> Iterator[Block]:
-    """4: from the middle outwards in rectangles, level by level."""
+    """Yield the blocks of cycle 4: rectangles from the center outward on each level."""
     (x, y), clear = tool.here, tool.height
     half = abs(told.length(4, "X")) / 2.0 - tool.radius, abs(told.length(5, "Y")) / 2.0 - tool.radius
     tool.check(min(half) >= -_SMALLEST, "The tool is wider than the pocket.", "Use a smaller tool.")
@@ -170,7 +171,7 @@ def _pocket(told: Told, tool: CycleTool) -> Iterator[Block]:
 
 
 def _circular_pocket(told: Told, tool: CycleTool) -> Iterator[Block]:
-    """5: from the middle outwards in circles, level by level."""
+    """Yield the blocks of cycle 5: circles from the center outward on each level."""
     (x, y), clear = tool.here, tool.height
     radius = abs(told.length(4, "R" if told.has(4, "R") else "")) - tool.radius
     tool.check(radius >= -_SMALLEST, "The tool is wider than the pocket.", "Use a smaller tool.")
@@ -188,7 +189,10 @@ def _circular_pocket(told: Told, tool: CycleTool) -> Iterator[Block]:
 
 
 def _thread_cutting(told: Told, tool: CycleTool) -> Iterator[Block]:
-    """18: from where the tool stands, at pitch times speed, to the depth; the spindle stops there."""
+    """Yield the blocks of cycle 18: from the tool position to the depth at pitch times speed.
+
+    The spindle stops at the depth.
+    """
     tool.warn_uncoupled()
     rpm, pitch, depth = tool.speed, told.length(2), told.length(1)
     text = "Cycle 18 needs a spindle speed and a pitch."
@@ -199,7 +203,7 @@ def _thread_cutting(told: Told, tool: CycleTool) -> Iterator[Block]:
 
 
 def _ring_count(tool: CycleTool, width: float) -> int:
-    """Rings from the middle of a pocket out to its wall."""
+    """Return the number of rings from the center of a pocket to its wall."""
     step = tool.radius * 2.0 * _OVERLAP
     return max(1, math.ceil(width / step)) if step > _SMALLEST else 1
 
@@ -212,7 +216,7 @@ def _sides(told: Told, part: int) -> Point:
 
 
 def _levels(tool: CycleTool, depth: float, step: float) -> Iterator[float]:
-    """Depths of the infeeds, the whole depth last."""
+    """Yield the depths of the infeeds; the last one is the whole depth."""
     if step <= 0.0 or step >= depth:
         yield depth
         return

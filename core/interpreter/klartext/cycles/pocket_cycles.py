@@ -1,7 +1,8 @@
-"""Cycles that mill pockets, slots and studs (210 to 215, 251 to 257): level by level, walls and floor last.
+"""Milling cycles for pockets, slots and studs (210 to 215, 251 to 257), level by level.
 
-Pockets are cleared from the inside out, studs from the blank inwards. The way is this control's own; what is
-left standing is what the parameters say. A ramp goes down by 3 degrees: the tool table tells no other angle.
+Pockets are cleared from the inside out, studs from the blank inward; walls and floor are finished last. The
+tool path is TurnDesk's own, and the remaining material is as the parameters specify. A ramp has 3 degrees,
+because the tool table has no plunge angle.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ _CENTRE, _LEFT_END, _MIDDLE, _RIGHT_END = range(4)
 
 
 class _Milling:
-    """What the parameters of a milling cycle say, and its ways down."""
+    """Parameters of a milling cycle."""
 
     def __init__(self, tool: CycleTool) -> None:
         self.tool = tool
@@ -46,22 +47,22 @@ class _Milling:
         self.against = (tool.plain(351, 1.0) < 0.0) != (tool.rpm < 0.0)
 
     def levels(self) -> list[float]:
-        """Heights of clearing, the last one last."""
+        """Return the heights of the clearing levels, the deepest last."""
         floor = self.bottom + (self.floor if self.scope != _FINISH else 0.0)
         return levels(self.tool, self.surface, floor, lambda: self.tool.length(202))
 
     @property
     def finishes(self) -> bool:
-        """Whether walls and floor are gone over once more."""
+        """Whether walls and floor are finished."""
         return self.scope == _FINISH or (self.scope == _BOTH and max(self.side, self.floor) > SMALLEST)
 
     @property
     def last_feed(self) -> float:
-        """Of finishing."""
+        """Feed of the finishing passes."""
         return self.tool.cut(385) if self.tool.plain(385, 0.0) else self.feed
 
     def wall_levels(self) -> list[float]:
-        """Heights of finishing: by Q338, where that is 0 at once."""
+        """Return the heights of wall finishing in steps of Q338; with 0, only the bottom."""
         step = self.tool.length(338, 0.0)
         return [self.surface - done for done in infeeds(self.tool, self.surface - self.bottom, step)]
 
@@ -70,7 +71,7 @@ class _Milling:
 
 
 def rectangular_pocket(tool: CycleTool) -> Iterator[Block]:
-    """251: Q218 and Q219 its sides, Q220 its corners, turned by Q224; the tool stands at Q367 of it."""
+    """Yield the blocks of cycle 251: sides Q218 and Q219, corners Q220, rotation Q224, position Q367."""
     a, b = tool.length(218) / 2.0, tool.length(219) / 2.0
     corner = {0: (0.0, 0.0), 1: (a, b), 2: (-a, b), 3: (-a, -b), 4: (a, -b)}
     seat = Seat(tool.here, tool.plain(224, 0.0)).moved(*_placed(tool, corner))
@@ -78,13 +79,13 @@ def rectangular_pocket(tool: CycleTool) -> Iterator[Block]:
 
 
 def circular_pocket(tool: CycleTool) -> Iterator[Block]:
-    """252: Q223 its diameter, round where the tool stands."""
+    """Yield the blocks of cycle 252: a pocket of diameter Q223 around the tool position."""
     radius = tool.length(223) / 2.0
     yield from _pocket(tool, Seat(tool.here), Ring(radius, radius, radius))
 
 
 def slot(tool: CycleTool) -> Iterator[Block]:
-    """253: Q218 long and Q219 wide, turned by Q374; the tool stands at Q367 of it."""
+    """Yield the blocks of cycle 253: length Q218, width Q219, rotation Q374, position Q367."""
     a, b = tool.length(218) / 2.0, tool.length(219) / 2.0
     tool.check(a >= b - SMALLEST, "The slot is wider than it is long.", "Correct Q218 and Q219.")
     ends = {0: (0.0, 0.0), 1: (a, 0.0), 2: (a - b, 0.0), 3: (b - a, 0.0), 4: (-a, 0.0)}
@@ -100,7 +101,7 @@ def _placed(tool: CycleTool, places: dict[int, tuple[float, float]]) -> tuple[fl
 
 
 def _pocket(tool: CycleTool, seat: Seat, wall: Ring) -> Iterator[Block]:
-    if wall.b > wall.a:  # the long way first, along which the tool goes down
+    if wall.b > wall.a:  # the long side first, because the tool plunges along it
         seat, wall = Seat(seat.middle, seat.angle + 90.0), Ring(wall.b, wall.a, wall.radius)
     told = _Milling(tool)
     last = wall.wider(-tool.radius)
@@ -125,7 +126,7 @@ def _pocket(tool: CycleTool, seat: Seat, wall: Ring) -> Iterator[Block]:
 
 
 def _down(told: _Milling, seat: Seat, ring: Ring, above: float, z: float) -> Iterator[Block]:
-    """From ``above`` to ``z`` at the beginning of the middle line: straight, by a helix, to and fro."""
+    """Yield the plunge from ``above`` to ``z`` at the start of the center line: straight, helix or zigzag."""
     tool, half = told.tool, ring.a - ring.b
     start, end = seat.at(-half, 0.0), seat.at(half, 0.0)
     yield tool.to(min(told.clear, above + tool.length(200)))
@@ -157,7 +158,7 @@ def _helix(told: _Milling, seat: Seat, radius: float, above: float, z: float) ->
 
 
 def _cleared(told: _Milling, seat: Seat, ring: Ring, feed: float) -> Iterator[Block]:
-    """The level where the tool stands, from the middle line out to the ring."""
+    """Yield the clearing moves of the present level, from the center line to the ring."""
     tool = told.tool
     if ring.a - ring.b > SMALLEST:
         yield tool.across(seat.at(ring.a - ring.b, 0.0), None, feed)
@@ -169,7 +170,7 @@ def _cleared(told: _Milling, seat: Seat, ring: Ring, feed: float) -> Iterator[Bl
 
 
 def _finished(told: _Milling, seat: Seat, ring: Ring) -> Iterator[Block]:
-    """Floor, then walls: led to the wall on a quarter of a circle, and off it."""
+    """Yield the finishing moves of floor and walls, with quarter circles as approach and departure."""
     tool, feed = told.tool, told.last_feed
     half = seat.at(ring.b - ring.a, 0.0)
     if told.floor > SMALLEST:
@@ -188,7 +189,10 @@ def _finished(told: _Milling, seat: Seat, ring: Ring) -> Iterator[Block]:
 
 
 def _round_once(told: _Milling, seat: Seat, ring: Ring, quarter: float, feed: float) -> Iterator[Block]:
-    """Onto the ring from inside (a quarter over 0) or from outside, once round, and off it."""
+    """Yield the approach to a ring, one round, and the departure.
+
+    A positive ``quarter`` approaches from the inside, a negative one from the outside.
+    """
     tool, clockwise = told.tool, told.against
     if quarter < 0.0:
         clockwise = not clockwise
@@ -209,7 +213,10 @@ def _round_once(told: _Milling, seat: Seat, ring: Ring, quarter: float, feed: fl
 
 
 def rectangular_stud(tool: CycleTool) -> Iterator[Block]:
-    """256: Q218 and Q219 its sides, Q424 and Q425 those of the blank, Q220 its corners, turned by Q224."""
+    """Yield the blocks of cycle 256: sides Q218 and Q219, blank Q424 and Q425.
+
+    Q220 is the corner radius, and Q224 is the rotation.
+    """
     a, b = tool.length(218) / 2.0, tool.length(219) / 2.0
     corner = {0: (0.0, 0.0), 1: (a, b), 2: (-a, b), 3: (-a, -b), 4: (a, -b)}
     seat = Seat(tool.here, tool.plain(224, 0.0)).moved(*_placed(tool, corner))
@@ -218,14 +225,14 @@ def rectangular_stud(tool: CycleTool) -> Iterator[Block]:
 
 
 def circular_stud(tool: CycleTool) -> Iterator[Block]:
-    """257: Q223 its diameter, Q222 that of the blank, begun at Q376."""
+    """Yield the blocks of cycle 257: diameter Q223, blank Q222, start angle Q376."""
     radius = tool.length(223) / 2.0
     seat = Seat(tool.here, max(tool.plain(376, 0.0), 0.0))
     yield from _stud(tool, seat, Ring(radius, radius, radius), tool.length(222) / 2.0 - radius)
 
 
 def _stud(tool: CycleTool, seat: Seat, wall: Ring, more: float) -> Iterator[Block]:
-    """Level by level in rings that come nearer; ``more`` is how far the blank stands out."""
+    """Yield rings that approach the stud on each level; ``more`` is the oversize of the blank in mm."""
     told = _Milling(tool)
     tool.check(more >= SMALLEST, "The blank is not larger than the stud.", "Correct the blank dimensions.")
     last = wall.wider(tool.radius)
@@ -249,7 +256,7 @@ def _stud(tool: CycleTool, seat: Seat, wall: Ring, more: float) -> Iterator[Bloc
 
 
 def _approached(told: _Milling, seat: Seat, outside: float, z: float, down: bool) -> Iterator[Block]:
-    """Beside the blank, and down to the level where it begins."""
+    """Yield the rapid to a point next to the blank and the move down to the level."""
     tool = told.tool
     if not down:
         return
@@ -259,16 +266,19 @@ def _approached(told: _Milling, seat: Seat, outside: float, z: float, down: bool
 
 def _around(told: _Milling, seat: Seat, ring: Ring, feed: float) -> Iterator[Block]:
     tool = told.tool
-    side = 1.0 if told.against else -1.0  # milled the other way round than a pocket
+    side = 1.0 if told.against else -1.0  # the direction is opposite to that of a pocket
     yield tool.across(seat.at(ring.a + tool.radius, -side * tool.radius), None, feed)
     yield from _round_once(told, seat, ring, -tool.radius, feed)
 
 
-# --- circular slots: areas with a boundary of their own, cleared by the rings of the SL cycles
+# --- circular slots: areas with a separate boundary, cleared by the rings of the SL cycles
 
 
 def circular_slot(tool: CycleTool) -> Iterator[Block]:
-    """254: Q219 wide on the circle Q375, from Q376 over Q248 degrees, Q377 times Q378 degrees on."""
+    """Yield the blocks of cycle 254: width Q219 on the circle Q375, from Q376 over Q248 degrees.
+
+    Q377 is the number of slots, and Q378 is the angle between them.
+    """
     surface, clear, _ = heights(tool)
     safe = max(surface + tool.length(204, 0.0), clear) / tool.scale
     centre, begin, sweep = _slot_place(tool)
@@ -290,7 +300,7 @@ def circular_slot(tool: CycleTool) -> Iterator[Block]:
 
 
 def slot_of(tool: CycleTool, centre: Point, begin: float, sweep: float) -> Loop:
-    """The outline of one slot, counter-clockwise. Raises ProgramError for one that is none."""
+    """Return the outline of one slot, counterclockwise. Raises ProgramError if its dimensions are invalid."""
     radius, half = tool.length(375) / 2.0, tool.length(219) / 2.0
     if not SMALLEST < half < radius or not 0.0 < abs(sweep) <= 360.0:
         text = (
@@ -315,19 +325,20 @@ def slot_of(tool: CycleTool, centre: Point, begin: float, sweep: float) -> Loop:
 
 
 def _slot_place(tool: CycleTool) -> tuple[Point, float, float]:
-    """Centre, begin and sweep: as told, or from the tool, which stands at an end or in the middle (Q367)."""
+    """Return center, start angle and sweep, from the parameters or from the tool position (Q367)."""
     begin, sweep, radius = tool.plain(376), tool.plain(248), tool.length(375) / 2.0
     place = int(tool.plain(367, 0.0))
     share = {_LEFT_END: 0.0, _MIDDLE: 0.5, _RIGHT_END: 1.0}.get(place)
     if share is None:
         tool.check(place == _CENTRE, "Q367 must be 0, 1, 2 or 3.", "Correct Q367.")
         return (tool.length(216), tool.length(217)), begin, sweep
-    turned = math.radians(begin)  # Q376 is the angle of the place where the tool stands
+    turned = math.radians(begin)  # Q376 is the angle of the tool position
     x, y = tool.here
     return (x - radius * math.cos(turned), y - radius * math.sin(turned)), begin - share * sweep, sweep
 
 
-# A slot's parameters by the numbers of the SL cycles; what those have beyond is 0 or as they take it.
+# The parameters of a slot by the numbers of the SL cycles. Other parameters of these cycles have fixed
+# values.
 _AS_CONTOUR: Parameters = {
     1: 201, 2: 370, 3: 368, 4: 369, 5: 203, 6: 200, 9: 351, 10: 202, 11: 206, 12: 207, 14: 0.0,
     18: 0.0, 208: MAX_FEED, 401: 100.0,
@@ -335,12 +346,12 @@ _AS_CONTOUR: Parameters = {
 
 
 def _finishing(tool: CycleTool) -> Parameters:
-    """Finishing at Q385 in infeeds of Q338, at once where that is 0."""
+    """Return the finishing parameters: feed Q385, infeeds of Q338, or one infeed if Q338 is 0."""
     feed: Parameters = {12: 385} if tool.plain(385, 0.0) else {}
     return {**feed, 10: 338 if tool.plain(338, 0.0) else -1e9}
 
 
-# --- older cycles: round a centre of their own (Q216, Q217), as others with these parameters
+# --- older cycles with a programmed center (Q216, Q217), executed as newer cycles with these parameters
 
 
 Milling = Callable[[CycleTool], Iterator[Block]]
@@ -351,7 +362,7 @@ _WALLS: Parameters = {**_HEIGHTS, 202: 202, 206: 206, 207: 207, 215: 2.0, 338: 2
 
 
 def _centred(milling: Milling, parameters: Parameters) -> Milling:
-    """A cycle round Q216 Q217, as another one with these parameters."""
+    """Return a cycle around Q216, Q217 that executes another cycle with these parameters."""
 
     def run(tool: CycleTool) -> Iterator[Block]:
         surface, clear, _ = heights(tool)
@@ -363,13 +374,13 @@ def _centred(milling: Milling, parameters: Parameters) -> Milling:
 
 
 def _round_corners(tool: CycleTool) -> Iterator[Block]:
-    """212: corners of the tool's radius where Q220 tells none."""
+    """Yield the blocks of cycle 212, with corners of the tool radius if Q220 is 0."""
     radius = tool.length(220, 0.0) or tool.radius
     yield from _centred(rectangular_pocket, {**_WALLS, 218: 218, 219: 219, 220: radius / tool.scale})(tool)
 
 
 def _older_stud(tool: CycleTool) -> Iterator[Block]:
-    """213: the blank stands out by Q221, or by as much as the tool is wide."""
+    """Yield the blocks of cycle 213; the oversize of the blank is Q221, or the tool diameter without Q221."""
     more = 2.0 * (tool.plain(221, 0.0) or tool.radius / tool.scale)
     sides = {424: tool.plain(218) + more, 425: tool.plain(219) + more}
     yield from _centred(rectangular_stud, {**_WALLS, 218: 218, 219: 219, 220: 220, **sides})(tool)

@@ -1,4 +1,4 @@
-"""PATTERN DEF and cycles 220 and 221: their places, in the order in which the tool goes to them."""
+"""Points of PATTERN DEF and of cycles 220 and 221, in the order of execution."""
 
 from __future__ import annotations
 
@@ -18,7 +18,10 @@ _LENGTHS = frozenset({"X", "Y", "Z", "D", "DX", "DY"})
 
 
 def points(state: State, node: PatternDef) -> list[Vector]:
-    """X, Y and the height of the surface over Q203 of every point, mm. Raises ProgramError."""
+    """Return X, Y and the height above Q203 of each point, in mm.
+
+    Raises ProgramError if there are too many points.
+    """
     found: list[Vector] = []
     for part in node.parts:
         told = _numbers(state, part)
@@ -57,7 +60,7 @@ def _of_a_part(state: State, part: PatternPart, told: dict[str, float]) -> Itera
 
 
 def _grid(state: State, part: PatternPart, told: dict[str, float]) -> Iterator[tuple[float, float]]:
-    """Rows there and back; of a frame the border alone."""
+    """Yield the points of a grid in alternating directions; for a frame, only the border."""
     columns, rows = _count(state, part, told["NUMX"]), _count(state, part, told["NUMY"])
     turn = told.get("ROT", 0.0)
     u = math.radians(turn + told.get("ROTX", 0.0))
@@ -81,7 +84,7 @@ def _count(state: State, part: PatternPart, number: float) -> int:
 
 
 def on_circle(tool: CycleTool) -> list[Point]:
-    """The places of a pattern of cycle 220. Raises ProgramError."""
+    """Return the points of cycle 220. Raises ProgramError for invalid parameters."""
     centre, radius = (tool.length(216), tool.length(217)), tool.length(244) / 2.0
     count, first = _told_count(tool, 241), tool.plain(245, 0.0)
     step = tool.plain(247, 0.0)
@@ -92,7 +95,7 @@ def on_circle(tool: CycleTool) -> list[Point]:
 
 
 def in_rows(tool: CycleTool) -> list[Point]:
-    """The places of a pattern of cycle 221, row by row, there and back. Raises ProgramError."""
+    """Return the points of cycle 221 by rows in alternating directions. Raises ProgramError."""
     x, y = tool.length(225), tool.length(226)
     columns, rows = _told_count(tool, 242), _told_count(tool, 243)
     angle = math.radians(tool.plain(224, 0.0))
@@ -110,13 +113,13 @@ def _told_count(tool: CycleTool, q: int) -> int:
 
 
 def _circle(centre: Point, radius: float, count: int, first: float, step: float) -> Iterator[Point]:
-    """Places on a circle, from an angle on, degrees."""
+    """Yield points on a circle from an angle in degrees."""
     for angle in (math.radians(first + at * step) for at in range(count)):
         yield centre[0] + radius * math.cos(angle), centre[1] + radius * math.sin(angle)
 
 
 def _there_and_back(columns: int, rows: int) -> Iterator[tuple[int, int]]:
-    """Column and row of each place of a grid, every other row from its end."""
+    """Yield column and row of each point of a grid, with every second row reversed."""
     for row in range(rows):
         order = range(columns) if row % 2 == 0 else range(columns - 1, -1, -1)
         yield from ((column, row) for column in order)

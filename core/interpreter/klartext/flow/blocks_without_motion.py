@@ -1,8 +1,8 @@
-"""Blocks that move nothing: labels, jumps and calls, Q parameters, figures of the control.
+"""Blocks without motion: labels, jumps, calls, Q parameters and system values.
 
-FN 18 SYSREAD reads figures of the control, FN 17 SYSWRITE would write them. Groups and numbers are those of
-the control's public manuals. What is not known here is refused by its number; a column that the tool table
-lacks reads as an empty cell, which is said.
+FN 18 SYSREAD reads system values, and FN 17 SYSWRITE writes them. Groups and numbers follow the public
+manuals of the control. Unknown numbers are errors. A column that the tool table lacks is read as an empty
+cell, with a warning.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from core.message import Message
 
 
 def go_on(state: State, flow: Flow, line: int, node: nodes.Label | nodes.Call | nodes.Jump) -> None:
-    """Labels, calls and jumps: where the program goes on. Raises ProgramError."""
+    """Execute a label, call or jump. Raises ProgramError for an invalid repeat count or condition."""
     if isinstance(node, nodes.Label):
         flow.label(node)
     elif isinstance(node, nodes.Call):
@@ -38,9 +38,10 @@ def go_on(state: State, flow: Flow, line: int, node: nodes.Label | nodes.Call | 
 
 
 def refuse_endless(state: State, flow: Flow, watch: LoopWatch, line: int, node: nodes.Jump) -> None:
-    """Raises ProgramError where a jump back comes round with all that jumps go by as it was before.
+    """Raise ProgramError if a jump back makes the loop endless.
 
-    That are the parameters and, for Q108 to Q114, the tool, the spindle and the coolant.
+    It is endless if the state is the same as at an earlier jump. The state includes the parameters and, for
+    Q108 to Q114, tool, spindle and coolant.
     """
     if flow.at >= line:
         return
@@ -62,7 +63,7 @@ Reckoned = (
 
 
 def reckon(state: State, node: Reckoned) -> None:
-    """Q parameters and FN functions. Raises ProgramError, and for FN 14 always."""
+    """Execute a Q parameter or FN block. Raises ProgramError, always for FN 14."""
     match node:
         case nodes.Assign():
             word_values.keep(state, node.kind, node.q, word_values.value(state, node.formula))
@@ -83,7 +84,7 @@ def reckon(state: State, node: Reckoned) -> None:
 
 _TOOL_TABLE = 50
 _AXES = {1: "X", 2: "Y", 3: "Z", 4: "A", 5: "B", 6: "C"}
-_LENGTHS = frozenset(range(1, 7))  # columns that are lengths: L R R2 DL DR DR2
+_LENGTHS = frozenset(range(1, 7))  # columns with lengths: L R R2 DL DR DR2
 _COLUMNS: dict[int, tuple[str, Callable[[MillTool], float]]] = {
     1: ("L", lambda row: row.length),
     2: ("R", lambda row: row.radius),
@@ -95,7 +96,7 @@ _COLUMNS: dict[int, tuple[str, Callable[[MillTool], float]]] = {
     15: ("CUT", lambda row: row.teeth),
     32: ("T-ANGLE", lambda row: row.point),
 }
-# Columns of the control that the tool table here has not; the control reads an empty one as 0.
+# Columns that this tool table lacks. The control reads an empty column as 0.
 _EMPTY = {
     7: "TL", 8: "RT", 9: "TIME1", 12: "PLC", 13: "LCUTS", 14: "ANGLE", 16: "LTOL", 17: "RTOL", 18: "DIRECT",
     19: "R-OFFS", 20: "L-OFFS", 21: "LBREAK", 22: "RBREAK", 23: "PLC-VAL", 28: "NMAX", 34: "LIFTOFF",
@@ -103,11 +104,11 @@ _EMPTY = {
 }  # fmt: skip
 _LOCKED = 7  # TL
 _OFFSET_IN_PLANE = 19  # R-OFFS
-_AS_THE_RADIUS = 99_999.9999  # what the control reads of its preset, R: the tool's radius
+_AS_THE_RADIUS = 99_999.9999  # value of the default R, which means the tool radius
 
 
 def read_system(state: State, node: SystemRead) -> None:
-    """FN 18. Raises ProgramError for figures that this control has not."""
+    """Execute FN 18. Raises ProgramError for system values that this control lacks."""
     group, number = int(value(state, node.group)), int(value(state, node.number))
     index = int(value(state, node.index)) if node.index is not None else 0
     if group == _TOOL_TABLE:
@@ -118,10 +119,10 @@ def read_system(state: State, node: SystemRead) -> None:
 
 
 def write_system(state: State, node: SystemWrite) -> None:
-    """FN 17: nothing of the control is changed by a program here.
+    """Execute FN 17, which does not change the control. Raises ProgramError for an unknown value.
 
-    A cell of the tool table that moves nothing is told and read back by the program; one that would change a
-    way is refused unless it holds the same already. Raises ProgramError.
+    Values of the tool table without effect on motion are noted, and FN 18 then returns them. A value that
+    would change a path is an error, unless the table already has it.
     """
     group, number = int(value(state, node.group)), int(value(state, node.number))
     index = int(value(state, node.index)) if node.index is not None else 0
@@ -150,7 +151,7 @@ def write_system(state: State, node: SystemWrite) -> None:
 
 
 def _cell(state: State, column: int, number: int, index: int) -> float:
-    """A cell of the tool table, lengths in the program's unit; index 0: the tool in the spindle."""
+    """Return a value of the tool table, lengths in the program's unit; index 0 is the active tool."""
     tool = index or state.modal.tool
     if (tool, number) in state.tool_cells:
         return state.tool_cells[tool, number]
@@ -171,14 +172,14 @@ def _cell(state: State, column: int, number: int, index: int) -> float:
 
 
 def _row(state: State, tool: int) -> MillTool | None:
-    """What is known of a tool: TOOL DEF counts before the table."""
+    """Return the known data of a tool; TOOL DEF has priority over the table."""
     row = state.setup.mill_tools.get(tool)
     if tool in state.tool_defs:
         length, radius = state.tool_defs[tool]
         return MillTool(length, radius) if row is None else _defined(row, length, radius)
     if row is not None:
         return row
-    if tool == state.modal.tool:  # of an offset alone, or by a name of TOOL DEF
+    if tool == state.modal.tool:  # a tool with only an offset, or with a name in TOOL DEF
         longer, thicker = state.oversize
         return MillTool(state.tool_length - longer, state.tool_radius - thicker)
     offset = state.setup.tools.get(tool)
@@ -240,13 +241,13 @@ _PLAIN: Mapping[tuple[int, int], Callable[[State, int], float]] = {
     (210, 2): lambda state, _: state.figure.rotation,
     (210, 3): lambda state, _: float(sum(2 ** "XYZ".index(axis) for axis in state.figure.mirrored)),
     (210, 6): lambda state, _: -1.0 if state.plane is not None else 0.0,
-    (230, 5): lambda _state, _: 0.0,  # the limits of travel are always watched
+    (230, 5): lambda _state, _: 0.0,  # the travel limits are always monitored
     (280, 1): lambda state, _: -1.0 if state.m128 else 0.0,
 }
 
 
 def _of_axis(state: State, group: int, number: int, axis: str) -> float | None:
-    """A figure of one axis, mm or degrees; None where there is none of this number."""
+    """Return a system value of one axis, in mm or degrees; None if it does not exist."""
     linear = axis in "XYZ"
     if number == 1 and group in {240, 270}:
         state.place_is_read()
@@ -265,7 +266,10 @@ def _of_axis(state: State, group: int, number: int, axis: str) -> float | None:
 
 
 def _compensation(state: State, number: int, index: int) -> float:
-    """Active radius, length or R2, mm: 1 as in the table, 2 with its oversizes, 3 with those of TOOL CALL."""
+    """Return the active radius, length or R2 in mm.
+
+    With ``index`` 1, it is the table value; 2 adds the deltas of the table, and 3 also those of TOOL CALL.
+    """
     row = _row(state, state.modal.tool) or MillTool()
     plain, off, called = {
         1: (row.radius, row.dr, state.oversize[1]),

@@ -1,6 +1,6 @@
-"""Where a Klartext pass begins that is no start of a program: MDI, mid-program startup (RESTORE POS).
+"""Start of a pass from a saved state: MDI, and mid-program startup (RESTORE POS).
 
-All that is in force goes over from the pass that was kept; where the slides stand counts as it is now.
+The modal state comes from the saved pass, and the axis positions are the present ones.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from core.message import Message
 
 
 class Parts(NamedTuple):
-    """What an interpreter consists of; ``taken`` is the line that it has read and not yet executed."""
+    """State of an interpreter. ``taken`` is a line that was read but not yet executed."""
 
     state: State
     path: PathRunner
@@ -47,9 +47,9 @@ def checkpoint_of(parts: Parts, shared: tuple[object, ...]) -> Checkpoint:
 
 
 def take_up(state: State, begin: Begin, *, inch: bool) -> None:
-    """Stand where the slides are now, with the tool, the preset and the functions of the machine of now."""
+    """Set the present axis positions, tool, preset and machine functions in the state."""
     setup, point = state.setup, begin.checkpoint
-    assert setup.kinematics is not None  # else it was refused
+    assert setup.kinematics is not None  # otherwise, the pass was rejected
     state.kinematics = setup.kinematics
     state.modal = point.modal._replace(absolute=True, metric=not inch)
     if state.modal.tool and not state.tool_axis:
@@ -60,7 +60,10 @@ def take_up(state: State, begin: Begin, *, inch: bool) -> None:
 
 
 def approach_blocks(state: State, begin: Begin) -> Iterator[Block]:
-    """The way to the line, numbered so that the first block of the line keeps its number of a full run."""
+    """Yield the blocks of the approach.
+
+    They are numbered so that later blocks have the same numbers as in a full run.
+    """
     wanted = state.modal
     if begin.approach:
         state.modal = wanted._replace(spindle=0)
@@ -80,7 +83,7 @@ def approach_blocks(state: State, begin: Begin) -> Iterator[Block]:
 
 
 def _lines(state: State) -> Iterator[StateLine]:
-    """What is in force, one line a group of functions."""
+    """Yield the modal state, one line for each group of functions."""
     modal, figure = state.modal, state.figure
     yield StateLine("tool", f"T{modal.tool} {state.tool_axis}".rstrip() if modal.tool else "")
     yield StateLine("length", f"L{state.tool_length:+.3f}  R{state.tool_radius:+.3f}" if modal.tool else "")
@@ -101,7 +104,7 @@ def _lines(state: State) -> Iterator[StateLine]:
 
 
 def _plane(state: State) -> str:
-    """The angles of the plane in force, as words have them."""
+    """Return the displayed angles of the active plane as text."""
     if state.plane is None:
         return ""
     axes = sorted(state.kinematics.rotaries, key=lambda axis: axis.name)

@@ -1,4 +1,4 @@
-"""From words to numbers: Q parameters and their formulas, input ranges, lengths in mm."""
+"""Conversion of words to numbers: Q parameters, formulas, input ranges, and lengths in mm."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from core.language.klartext.q_parameters import WHETHER
 from core.message import Message
 
 MOST_Q = 999_999_999.999999
-SMALLEST = 1e-9  # a result nearer to 0 is what rounding has left of 0
+SMALLEST = 1e-9  # a result closer to 0 counts as 0
 
 OF_THE_CONTROL: dict[int, Callable[[State], float]] = {
     108: lambda state: state.tool_radius / state.scale,
@@ -36,7 +36,7 @@ OF_THE_CONTROL: dict[int, Callable[[State], float]] = {
 
 
 def held(state: State, kind: str, number: int) -> float | None:
-    """What a parameter holds; None where nothing has given it a value."""
+    """Return the value of a parameter; None if it has no value."""
     if kind != "Q":
         return state.q_beside.get((kind, number))
     kept = OF_THE_CONTROL.get(number)
@@ -44,7 +44,7 @@ def held(state: State, kind: str, number: int) -> float | None:
 
 
 def content(state: State, kind: str, number: int, column: int) -> float:
-    """What a parameter holds. Raises ProgramError where nothing has given it a value."""
+    """Return the value of a parameter. Raises ProgramError if it has no value."""
     found = held(state, kind, number)
     if found is None:
         raise MissingValueError(state.line, column, (kind, number))
@@ -52,7 +52,7 @@ def content(state: State, kind: str, number: int, column: int) -> float:
 
 
 def _predefined(state: State, number: int, column: int) -> float:
-    """What GLOBAL DEF has told for a parameter of cycles. Raises ProgramError where none has."""
+    """Return the value of GLOBAL DEF for a cycle parameter. Raises ProgramError without one."""
     if number not in state.q_global:
         text = Message(
             "Q{number}=PREDEF, but no GLOBAL DEF defines Q{number2}.", number=number, number2=number
@@ -64,10 +64,10 @@ def _predefined(state: State, number: int, column: int) -> float:
 
 
 def value(state: State, formula: Formula) -> float:
-    """What a formula comes to. Raises ProgramError where it has no value, or one out of range."""
+    """Return the value of a formula. Raises ProgramError if it has no value or is out of range."""
 
     def parameter(asked: Parameter) -> float:
-        assert isinstance(asked.number, int)  # Q has no computed numbers
+        assert isinstance(asked.number, int)  # Q parameters have no computed numbers
         if asked.letters == PREDEFINED:
             return _predefined(state, asked.number, asked.column)
         if asked.letters.endswith(WHETHER):
@@ -88,7 +88,7 @@ def value(state: State, formula: Formula) -> float:
 
 
 def keep(state: State, kind: str, number: int, found: float) -> None:
-    """The parameter holds this from now on."""
+    """Set the value of a parameter."""
     if kind == "Q":
         state.q[number] = found
     else:
@@ -96,15 +96,18 @@ def keep(state: State, kind: str, number: int, found: float) -> None:
 
 
 # Input ranges of the control's manuals.
-MOST_ANGLE = 99_999_999.9999999  # of PLANE AXIAL
-MOST_POINT = 999_999_999.999999  # of PLANE POINTS
+MOST_ANGLE = 99_999_999.9999999  # PLANE AXIAL
+MOST_POINT = 999_999_999.999999  # PLANE POINTS
 MOST_SPATIAL = 359.9999
 MOST_COORDINATE = 99_999.9999
 MOST_SPEED = 99_999.999
 
 
 def number(state: State, value: Value, what: str, most: float, least: float | None = None) -> float:
-    """The number, or the content of its Q parameter. Raises ProgramError outside ±most or below ``least``."""
+    """Return the number or the Q parameter value.
+
+    Raises ProgramError outside ±``most`` or below ``least``.
+    """
     found = value.number
     if value.q is not None:
         found = content(state, value.kind, value.q, value.column)
@@ -125,28 +128,28 @@ def number(state: State, value: Value, what: str, most: float, least: float | No
 
 
 def coordinate(state: State, word: AxisWord) -> float:
-    """A length of an axis word, mm; degrees of a rotary axis."""
+    """Return the value of an axis word in mm, or in degrees for a rotary axis."""
     found = number(state, word.value, word.axis, MOST_COORDINATE)
     return found if word.axis in "ABC" else found * state.scale
 
 
 def length(state: State, value: Value | None, what: str) -> float:
-    """A length that has no sign, mm; 0 where there is none."""
+    """Return an unsigned length in mm; 0 without a value."""
     return 0.0 if value is None else number(state, value, what, MOST_COORDINATE, 0.0) * state.scale
 
 
 def feed_word(state: State, feed: Feed | None, column: int) -> float | None:
-    """F in its unit a minute, None for rapid; without a word the one in force.
+    """Return F per minute in its unit, or None for a rapid; without a word, the active feed.
 
-    Raises ProgramError where there is none, for one that is not above zero, and for one that counts by a
-    spindle that stands.
+    Raises ProgramError without a feed, for a feed that is not above 0, and for a feed per revolution with the
+    spindle stopped.
     """
     found = programmed_feed(state, feed, column)
     return None if found is None else per_minute(state, *found, column if feed is None else feed.column)
 
 
 def programmed_feed(state: State, feed: Feed | None, column: int) -> tuple[float, str] | None:
-    """F as programmed and what it counts by (U a revolution, Z a tooth); None for rapid."""
+    """Return F as programmed and its base (U per revolution, Z per tooth); None for a rapid."""
     if feed is None:
         if state.feed is None:
             raise _missing(state, column, "No feed rate is active.", "Write F or FMAX.")

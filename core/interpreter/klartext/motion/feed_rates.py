@@ -1,6 +1,6 @@
-"""Feeds that count a revolution or a tooth (FU, FZ, M136), and the factor for plunging (M103).
+"""Feeds per revolution or per tooth (FU, FZ, M136), and the plunging factor (M103).
 
-They become feeds a minute with the speed that is programmed when their block comes: FU · S, FZ · teeth · S.
+They are converted to feeds per minute with the spindle speed that is programmed at their block.
 """
 
 from __future__ import annotations
@@ -15,16 +15,15 @@ from core.language.klartext.klartext_nodes import MCode
 
 REVOLUTION, TOOTH = "U", "Z"
 MOST_FEED = 99_999.999
-_LITTLE = 0.001  # degrees by which a way is tried
-_ON_THE_AXIS = 1e-6  # mm a degree
-_TENTHS = 10.0  # an F of an INCH program counts tenths of an inch
+_LITTLE = 0.001  # degrees; test distance of a rotary move
+_ON_THE_AXIS = 1e-6  # mm per degree
+_TENTHS = 10.0  # F of an INCH program is in tenths of an inch
 
 
 def switch(state: State, codes: Sequence[MCode]) -> None:
-    """M136 and M137: F counts a revolution, or a minute again. M103 F..: factor for plunging, percent.
+    """Execute M136 and M137 (feed per revolution or per minute), and M103 (plunging factor in percent).
 
-    With M136 and M137 no feed is in force any more: the number of the one before meant something else.
-    Raises ProgramError.
+    M136 and M137 cancel the active feed, because its number has another unit. Raises ProgramError.
     """
     for code in codes:
         if code.number in {136, 137}:
@@ -43,7 +42,7 @@ def _count_revolutions(state: State, code: MCode) -> None:
 
 def _factor(state: State, code: MCode) -> float:
     value = code.feed.value if code.feed is not None else None
-    assert value is not None  # read so
+    assert value is not None  # guaranteed by the reader
     if value.q is not None:
         raise unsupported(state.line, value.column, "M103 with a Q parameter")
     if not 0.0 < value.number <= 100.0:
@@ -54,9 +53,9 @@ def _factor(state: State, code: MCode) -> float:
 
 
 def per_minute(state: State, feed: float, per: str, column: int) -> float:
-    """A feed as F counts it: mm a minute, tenths of an inch a minute.
+    """Return a feed per minute in mm, or in tenths of an inch in an INCH program.
 
-    Raises ProgramError where the spindle stands, the teeth are not known or it comes out too high.
+    Raises ProgramError if the spindle is stopped, the number of teeth is unknown, or the feed is too high.
     """
     if not per:
         return feed
@@ -88,17 +87,17 @@ def _teeth(state: State, column: int) -> int:
 
 
 def plunged(state: State, feed: float | None, length: float, down: float) -> float | None:
-    """M103: the feed at which Z, on a way of ``length`` that goes down by ``down``, keeps its share of F."""
+    """Return the feed of a move of ``length`` that descends by ``down``, reduced by the factor of M103."""
     if state.plunging is None or feed is None or down <= SAME_POINT:
         return feed
     return feed * min(1.0, state.plunging * length / down)
 
 
 def rotary_feed(state: State, feed: float, goals: Mapping[str, float]) -> float:
-    """Degrees/s at which rotary axes alone go to ``goals`` with F.
+    """Return the feed of a move of only rotary axes to ``goals``, in degrees/s.
 
-    F counts degrees a minute; under M116 mm a minute of the tip on the workpiece, by its distance from the
-    axes where the block begins. On their line it has none, and degrees count.
+    F is in degrees/min. Under M116, F is in mm/min of the tip on the workpiece, calculated from its distance
+    to the axes at the start; on the axis line, degrees apply.
     """
     way = {name: goal - state.rotary[name] for name, goal in goals.items()}
     whole = math.hypot(*way.values())

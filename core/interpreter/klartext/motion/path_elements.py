@@ -1,7 +1,7 @@
-"""What a path function comes to: one element of the path, in the coordinates of the program.
+"""Conversion of path functions to path elements in program coordinates, in mm and degrees.
 
-C, CR, CT, CP and CTP become arcs, with Z helices; LP and CP count from the pole (CC). mm and degrees. A pole
-in Y and Z, or in Z and X, makes them upright: seen with Y to the right and Z up; Z to the right and X up.
+C, CR, CT, CP and CTP are arcs, with Z helices; LP and CP are relative to the pole (CC). With a pole in YZ or
+ZX, arcs are vertical, in the view with Y to the right and Z up, or Z to the right and X up.
 """
 
 from __future__ import annotations
@@ -27,17 +27,17 @@ from core.language.klartext.klartext_faults import ARC_END, DIRECTION, NO_POLE, 
 from core.language.klartext.klartext_nodes import AxisWord, Move, Pole
 from core.message import Message
 
-ON_CIRCLE = 0.016  # mm by which the end of an arc may miss the circle through its start: the control's own
+ON_CIRCLE = 0.016  # mm; permitted distance of an arc end from the circle through its start, as on the control
 _PARALLEL = 1e-9
 _MOST_TURNS = 1000
 
 
 @dataclass(frozen=True, slots=True)
 class PathElement:
-    """From ``start`` to ``end``, straight or on ``arc``; ``feed`` as programmed, None rapid.
+    """A line or ``arc`` from ``start`` to ``end``; ``feed`` is as programmed, None for a rapid.
 
-    The arc lies in the first two axes of ``order``, mostly in X and Y.
-    ``rotary`` are the goals of rotary axes, counted on. ``line`` and ``text`` are those of its block.
+    The arc is in the first two axes of ``order``, usually X and Y. ``rotary`` are the continuous targets of
+    rotary axes. ``line`` and ``text`` are those of its block.
     """
 
     start: Vector
@@ -52,12 +52,12 @@ class PathElement:
 
     @property
     def upright(self) -> bool:
-        """Whether it is an arc in Y and Z, or in Z and X."""
+        """Whether the element is a vertical arc, in YZ or ZX."""
         return self.arc is not None and self.order != XY
 
     @property
     def flat(self) -> Element | None:
-        """What it is in X and Y; None where nothing moves there, and of an upright arc."""
+        """The element in X and Y; None without motion in X and Y, and for a vertical arc."""
         if self.upright:
             return None
         if self.arc is not None:
@@ -67,7 +67,7 @@ class PathElement:
 
     @property
     def end_direction(self) -> Point | None:
-        """Unit vector in X and Y at its end; None where nothing moves there."""
+        """Unit vector in X and Y at the end; None without motion in X and Y."""
         flat = self.flat
         return None if flat is None else flat.end_direction
 
@@ -80,9 +80,10 @@ def elements(
     feed: float | None,
     rotary: Mapping[str, float],
 ) -> Iterator[PathElement]:
-    """The element of a path function that begins at ``start``; several where it goes round more than once.
+    """Yield the element of a path function from ``start``, or several for more than one revolution.
 
-    ``before`` is the direction in which the path has come there. Raises ProgramError.
+    ``before`` is the direction at the end of the previous path. Raises ProgramError if the element is
+    invalid.
     """
     node = _with_direction(state, node)
     order = state.pole_plane if node.form in _ABOUT_POLE else XY
@@ -100,7 +101,7 @@ _ABOUT_POLE = {"C", "CP"}
 
 
 def _with_direction(state: State, node: Move) -> Move:
-    """C, CR and CP without DR turn as the arc before did."""
+    """Return the path function with the last DR if C, CR or CP has none."""
     if node.form not in {"C", "CR", "CP"}:
         return node
     state.turn = node.turn or state.turn
@@ -108,7 +109,7 @@ def _with_direction(state: State, node: Move) -> Move:
 
 
 def pole_plane(node: Pole, before: Order) -> Order:
-    """The plane that the axes of CC lie in; one that names a single axis stays in the plane before."""
+    """Return the plane of the axes of CC; with a single axis, the plane may remain unchanged."""
     named = {word.axis for word in node.axes}
     if len(named) < 2:
         return before if named and named <= {"XYZ"[column] for column in before[:2]} else XY
@@ -116,7 +117,7 @@ def pole_plane(node: Pole, before: Order) -> Order:
 
 
 def goal(state: State, node: Move, start: Vector) -> Vector:
-    """The end point of a path function: its axes, or radius and angle about the pole."""
+    """Return the end point of a path function, from its axes or from radius and angle about the pole."""
     x, y, z = (_along(state, node.word(axis), at) for axis, at in zip("XYZ", start, strict=True))
     if node.word("PR") is None and node.word("PA") is None:
         return _paraxial(state, node, start, (x, y, z))
@@ -127,7 +128,10 @@ def goal(state: State, node: Move, start: Vector) -> Vector:
 
 
 def _paraxial(state: State, node: Move, start: Vector, end: Vector) -> Vector:
-    """R+ makes the way along its one axis longer by the tool's radius, R- shorter (manual)."""
+    """Return the end point of a paraxial move with R+ or R-.
+
+    R+ extends the move along its axis by the tool radius, and R- shortens it, as in the manual.
+    """
     if node.compensation not in {"+", "-"}:
         return end
     more = math.copysign(state.tool_radius / state.figure.factor, 1.0 if node.compensation == "+" else -1.0)
@@ -139,7 +143,7 @@ def _paraxial(state: State, node: Move, start: Vector, end: Vector) -> Vector:
 
 
 def pole(state: State, node: Move) -> Point:
-    """The pole of CC. Raises ProgramError where none was programmed."""
+    """Return the pole of CC. Raises ProgramError if no pole is defined."""
     if state.pole is None:
         text = "No pole is defined with CC."
         raise state.refuse(node.column, NO_POLE, text, "Write CC with X and Y before this block.")
@@ -154,7 +158,7 @@ def _along(state: State, word: AxisWord | None, at: float) -> float:
 
 
 def _polar(state: State, node: Move, start: Vector) -> tuple[float, float]:
-    """Radius (mm) and angle (degrees, from X towards Y) of the end; what is not programmed stays."""
+    """Return radius (mm) and angle (degrees from X toward Y) of the end; missing values are unchanged."""
     cx, cy = pole(state, node)
     x, y, _ = seen(state.pole_plane, start)
     radius, angle = math.hypot(x - cx, y - cy), math.degrees(math.atan2(y - cy, x - cx))
@@ -171,7 +175,7 @@ def _polar(state: State, node: Move, start: Vector) -> tuple[float, float]:
 
 
 def _about_pole(state: State, node: Move, start: Point, end: Point, _: Point | None) -> Arc:
-    """C: about the pole; the end has to lie on the circle."""
+    """Return the arc of C about the pole. Raises ProgramError if the end is not on the circle."""
     centre = pole(state, node)
     _demand_radius(state, node, math.dist(start, centre))
     _demand_on_circle(state, node, math.dist(start, centre), math.dist(end, centre))
@@ -179,9 +183,9 @@ def _about_pole(state: State, node: Move, start: Point, end: Point, _: Point | N
 
 
 def _by_radius(state: State, node: Move, start: Point, end: Point, _: Point | None) -> Arc:
-    """CR: a positive radius is the shorter arc, a negative one the longer."""
+    """Return the arc of CR: a positive radius is the shorter arc, a negative radius the longer one."""
     word = node.word("R")
-    assert word is not None  # the block was refused without it
+    assert word is not None  # guaranteed by the reader
     radius = word_values.coordinate(state, word)
     chord = math.dist(start, end)
     if chord < SAME_POINT or chord / 2.0 > abs(radius) + ON_CIRCLE:
@@ -204,18 +208,18 @@ def _by_radius(state: State, node: Move, start: Point, end: Point, _: Point | No
 
 
 def _tangential(state: State, node: Move, start: Point, end: Point, before: Point | None) -> Arc | None:
-    """CT and CTP: goes on in the direction of the element before; straight on it is a line."""
+    """Return the arc of CT or CTP, tangent to the previous element; None for a straight line."""
     if before is None:
         text = "No move precedes {form}, so its starting direction is not defined."
         raise state.refuse(node.column, PREVIOUS, text, "Program a move before this block.", form=node.form)
     dx, dy = end[0] - start[0], end[1] - start[1]
-    aside = -before[1] * dx + before[0] * dy  # of the end to the left of the way
+    aside = -before[1] * dx + before[0] * dy  # distance of the end to the left of the path
     if abs(aside) < _PARALLEL * max(1.0, math.hypot(dx, dy)):
         if before[0] * dx + before[1] * dy <= 0.0:
             text = "{form} would have to reverse its direction to reach its end point."
             raise state.refuse(node.column, ARC_END, text, "Correct the end point.", form=node.form)
         return None
-    radius = (dx * dx + dy * dy) / (2.0 * aside)  # positive where the centre is on the left
+    radius = (dx * dx + dy * dy) / (2.0 * aside)  # positive with the center on the left
     centre = start[0] - before[1] * radius, start[1] + before[0] * radius
     return Arc(start, end, centre, clockwise=radius < 0.0)
 
@@ -224,7 +228,7 @@ _ARCS = {"C": _about_pole, "CR": _by_radius, "CT": _tangential, "CTP": _tangenti
 
 
 def _round_the_pole(state: State, node: Move, made: PathElement) -> Iterator[PathElement]:
-    """CP: an angle about the pole, of any number of turns, with the third axis a helix."""
+    """Yield the elements of CP: an angle about the pole of any number of revolutions, with a helix."""
     order, centre = made.order, pole(state, node)
     start = seen(order, made.start)
     radius = math.dist(start[:2], centre)
@@ -252,7 +256,10 @@ def _round_the_pole(state: State, node: Move, made: PathElement) -> Iterator[Pat
 
 
 def _sweep(state: State, node: Move, first: float) -> float:
-    """Signed degrees of CP, counter-clockwise positive. Raises ProgramError where IPA and DR disagree."""
+    """Return the angle of CP in degrees, positive counterclockwise.
+
+    Raises ProgramError if IPA and DR conflict.
+    """
     word = node.word("PA")
     if word is None:
         return 360.0 if node.turn == "+" else -360.0

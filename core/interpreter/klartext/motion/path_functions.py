@@ -1,7 +1,7 @@
-"""Path functions as they are executed: what waits for the block behind it, and what becomes of it.
+"""Execution of path functions, with buffered elements.
 
-RND and CHF need the element behind them, APPR the first element of the contour, radius compensation (RL, RR)
-all elements up to R0 or DEP. Until then elements wait here, with whatever else stands between them.
+RND and CHF need the next element, APPR needs the first element of the contour, and compensation (RL, RR)
+needs all elements up to R0 or DEP. Until then, the elements are buffered with the blocks between them.
 """
 
 from __future__ import annotations
@@ -26,14 +26,14 @@ from core.language.klartext.klartext_faults import COMPENSATION, PREVIOUS, ROUND
 from core.language.klartext.klartext_nodes import AxisWord, Corner, Move, Pole
 from core.message import Message
 
-AT_TARGET = 0.001  # degrees by which a table may miss its target before a cut is warned of
+AT_TARGET = 0.001  # degrees; position error of the table above which a cut causes a warning
 
 Event = Callable[[], Iterator[Block]]
 
 
 @dataclass(slots=True)
 class _Between:
-    """What stands between elements that wait: M functions, a speed. ``line`` and ``text`` of its block."""
+    """Blocks between buffered elements, such as M functions, with ``line`` and ``text`` of their block."""
 
     event: Event
     line: int
@@ -42,7 +42,7 @@ class _Between:
 
 @dataclass(slots=True)
 class _Approach:
-    """APPR, or the block that switches compensation on: the way to the contour, which begins at its end."""
+    """APPR, or the block that turns compensation on; the contour begins at its end."""
 
     node: Move
     element: PathElement
@@ -53,9 +53,9 @@ _BETWEEN = "Put RND or CHF between two contour elements."
 
 
 class PathRunner:
-    """Makes the blocks of path functions.
+    """Generator of the blocks of path functions.
 
-    ``datum`` in ``move`` has the machine positions from which M91 and M92 count; None without them.
+    ``datum`` in ``move`` has the machine positions to which M91 and M92 refer; None without them.
     """
 
     def __init__(self, state: State) -> None:
@@ -63,24 +63,24 @@ class PathRunner:
         self._waiting: list[_Waiting] = []
         self._corner: Corner | None = None
         self._corner_line = 0
-        self._side = ""  # L or R while radius compensation is on
-        self._end: Vector | None = None  # of the path that waits, in the program's coordinates
-        self._direction: Point | None = None  # in which the path has come there
+        self._side = ""  # L or R while radius compensation is active
+        self._end: Vector | None = None  # end of the buffered path, in program coordinates
+        self._direction: Point | None = None  # direction at the end of the path
 
     @property
     def waits_for(self) -> str:
-        """What the path waits for, so that no pass can begin here; empty where it waits for nothing."""
+        """Reason why elements are buffered, so that no pass can begin here; empty without one."""
         if self._side:
             return "radius compensation is active"
         return "the previous block is part of an unfinished corner" if self._waiting or self._corner else ""
 
     @property
     def here(self) -> Vector:
-        """Where the path stands in the program's coordinates, mm: the contour, under compensation."""
+        """End of the path in program coordinates, in mm; under compensation, of the contour."""
         return self._state.programmed if self._end is None else self._end
 
     def pole(self, node: Pole) -> None:
-        """CC: the pole, at the end of the path where it names no axes."""
+        """Set the pole of CC; without axes, it is the end of the path."""
         here = dict(zip(SLIDES, self.here, strict=True))
         for word in node.axes:
             value = word_values.coordinate(self._state, word)
@@ -90,7 +90,7 @@ class PathRunner:
         self._state.pole = first, second
 
     def corner(self, node: Corner) -> None:
-        """RND or CHF behind an element that waits for it. Raises ProgramError where there is none."""
+        """Add RND or CHF to the buffered element. Raises ProgramError without a buffered element."""
         last = next((each for each in reversed(self._waiting) if isinstance(each, PathElement)), None)
         if last is None or last.flat is None or self._corner is not None:
             text = "{form} must follow a path in the working plane."
@@ -98,21 +98,21 @@ class PathRunner:
         self._corner, self._corner_line = node, self._state.line
 
     def between(self, event: Event) -> Iterator[Block]:
-        """What is done between two elements, or at once where nothing waits."""
+        """Execute an event between two elements, immediately if no element is buffered."""
         if not self._waiting:
             yield from event()
             return
         self._waiting.append(_Between(event, self._state.line, self._state.text))
 
     def finish(self, column: int, what: str) -> Iterator[Block]:
-        """Everything that waits, before ``what``, which radius compensation does not let through."""
+        """Yield all buffered blocks before ``what``. Raises ProgramError while compensation is active."""
         text = "{what} is not allowed while radius compensation is active."
         hint = "End the contour with R0 or DEP before this block."
         self._state.check(not self._side, column, COMPENSATION, text, hint, what=what)
         yield from self._release()
 
     def end(self) -> Iterator[Block]:
-        """The end of the program: a contour that was never left is run to its end."""
+        """Yield the remaining blocks at the end of the program, with a warning if compensation is active."""
         if self._side:
             text = "The program ends while radius compensation is active."
             hint = "End the contour with R0 or DEP."
@@ -123,7 +123,7 @@ class PathRunner:
     # --- moves --------------------------------------------------------------------------------------------
 
     def move(self, node: Move, *, datum: Mapping[str, float] | None, corner_behind: bool) -> Iterator[Block]:
-        """The blocks of a path function, and of what has waited for it. Raises ProgramError."""
+        """Yield the blocks of a path function and of earlier buffered elements. Raises ProgramError."""
         if not node.axes and not node.words and node.form == "L":
             if node.feed is not None:
                 self._take_feed(node)
@@ -171,7 +171,7 @@ class PathRunner:
         yield from (replace(each, feed=_plunged(state, each)) for each in made)
 
     def _add(self, made: list[PathElement], *, hold: bool) -> Iterator[Block]:
-        """Elements behind those that wait; without a reason to wait all of them become blocks."""
+        """Append elements to the buffer, and yield all blocks unless an element must wait."""
         if self._corner is not None and made:
             made[0] = self._rounded(made[0])
         self._waiting += made
@@ -211,7 +211,7 @@ class PathRunner:
         yield from self._emit_all(way_out(self._state, node, here, direction, "", 0.0, self._take_feed(node)))
 
     def _demand_uncompensated(self, node: Move) -> None:
-        """LN goes to its point where there is nothing to compensate along its normal. Raises ProgramError."""
+        """Raise ProgramError for LN with a tool vector or with compensation along the normal."""
         state = self._state
         if any(word.axis[0] == "T" for word in node.words):
             raise unsupported(state.line, node.column, "LN with a tool direction vector (TX TY TZ)")
@@ -236,14 +236,14 @@ class PathRunner:
         raise self._state.refuse(node.column, COMPENSATION, text, hint)
 
     def _switched(self, node: Move) -> Iterator[Block]:
-        """An L without axes that ends compensation."""
+        """Yield the blocks of an L without axes, which may end compensation."""
         if node.compensation == "0" and self._side:
             yield from self._close(None)
 
     # --- corners ------------------------------------------------------------------------------------------
 
     def _rounded(self, after: PathElement) -> PathElement:
-        """Puts the corner that waits between the last element and this one, which is returned shorter."""
+        """Insert the buffered corner between the last element and this one, and return this one trimmed."""
         corner, self._corner = self._corner, None
         assert corner is not None
         at = next(i for i in reversed(range(len(self._waiting))) if isinstance(self._waiting[i], PathElement))
@@ -276,7 +276,7 @@ class PathRunner:
     # --- from elements to blocks --------------------------------------------------------------------------
 
     def _release(self) -> Iterator[Block]:
-        """Everything that waits, uncompensated."""
+        """Yield all buffered blocks without compensation."""
         self._demand_no_corner()
         waiting, self._waiting, self._end = self._waiting, [], None
         for index, each in enumerate(waiting):
@@ -289,18 +289,18 @@ class PathRunner:
                 yield from self._enter(each, first, "", 0.0)
 
     def _demand_no_corner(self) -> None:
-        """Raises ProgramError where a corner still waits for the element behind it."""
+        """Raise ProgramError if a corner still waits for the next element."""
         corner, self._corner = self._corner, None
         if corner is not None:
             text = Message("{form} must be followed by a path in the working plane.", form=corner.form)
             raise self._no_corner(corner, text, _BETWEEN)
 
     def _no_corner(self, corner: Corner, text: str, hint: str) -> ProgramError:
-        """Told where RND or CHF stands, though the element behind it was read before that was known."""
+        """Return an error at the line of RND or CHF."""
         return self._state.refuse(corner.column, ROUNDING, text, hint, self._corner_line)
 
     def _close(self, leave: Move | None) -> Iterator[Block]:
-        """The contour that has been collected, compensated, and the way off it where DEP says one."""
+        """Yield the compensated contour, and the departure of DEP if there is one."""
         self._demand_no_corner()
         side, self._side = self._side, ""
         waiting, self._waiting, self._end = self._waiting, [], None
@@ -320,7 +320,7 @@ class PathRunner:
             yield from self._emit_all(way_out(self._state, leave, here, direction, side, radius, feed))
 
     def _enter(self, each: _Approach, first: Element | None, side: str, radius: float) -> Iterator[Block]:
-        """The way to the contour: straight to beside its start, or as APPR says."""
+        """Yield the approach to the contour: a straight line to the offset start, or the form of APPR."""
         state = self._state
         entry = Entry(each.node, state.programmed, each.element.end, each.element.feed, side, radius)
         direction = first.start_direction if first is not None else each.element.end_direction
@@ -341,7 +341,7 @@ class PathRunner:
             yield from self._emit(each)
 
     def _emit(self, each: PathElement) -> Iterator[Block]:
-        """The block of one element; the program's coordinates become those of plane and machine."""
+        """Yield the block of one element, converted to plane and machine coordinates."""
         state = self._state
         line, text = state.line, state.text
         state.line, state.text = each.line, each.text
@@ -378,7 +378,7 @@ class PathRunner:
         return state.move(Kind.PLANE_ARC, goals, rate, way)
 
     def _by_machine(self, node: Move, datum: Mapping[str, float]) -> Iterator[Block]:
-        """M91 and M92: the words count from the machine's own zero, or from its second datum."""
+        """Yield the move with M91 or M92, whose words refer to machine zero or the second machine datum."""
         state, feed = self._state, self._take_feed(node)
         if feed is not None:
             _warn(state, node)
@@ -402,7 +402,7 @@ class PathRunner:
                 raise self._state.refuse(word.column, WRONG_AXIS, text, "Remove the word.", axis=word.axis)
 
     def _take_feed(self, node: Move) -> float | None:
-        """The feed of the block, None for rapid, which holds for this block alone."""
+        """Set the feed of the block and return it; None for a rapid, which applies only to this block."""
         state = self._state
         column = node.axes[0].column if node.axes else node.column
         found = word_values.programmed_feed(state, node.feed, column)
@@ -416,7 +416,7 @@ class PathRunner:
 
 
 def _plunged(state: State, each: PathElement) -> float | None:
-    """Its feed, which M103 lowers on the way down."""
+    """Return the feed of an element, which M103 reduces for downward moves."""
     if state.plunging is None:
         return each.feed
     down = each.start[2] - each.end[2]
@@ -428,15 +428,16 @@ def _plunged(state: State, each: PathElement) -> float | None:
 
 
 def _reshaped(element: PathElement, flat: Element, z0: float, z1: float) -> PathElement:
-    """The same between other points of the working plane."""
+    """Return the element between other points of the working plane."""
     arc = flat if isinstance(flat, Arc) else None
     return replace(element, start=(*flat.start, z0), end=(*flat.end, z1), arc=arc)
 
 
 def _rotary(state: State, node: Move, zero: Mapping[str, float]) -> dict[str, float]:
-    """Rotary axes by the short way where they are modulo; an incremental word is the way itself.
+    """Return the targets of the rotary axes; modulo axes move the shorter distance.
 
-    Words count from ``zero``. With M127 the way is what the figures differ by, as they are displayed.
+    Words are relative to ``zero``. With M127, the travel is the difference of the displayed angles. An
+    incremental word is the travel itself.
     """
     found = {}
     for axis in state.kinematics.rotaries:
@@ -451,7 +452,7 @@ def _rotary(state: State, node: Move, zero: Mapping[str, float]) -> dict[str, fl
 
 
 def _warn(state: State, node: Move) -> None:
-    """A cut with the table elsewhere than the plane asks, or with the spindle at rest: told once."""
+    """Warn once of a cut with the table in another position than the plane, or with the spindle stopped."""
     if all(word.axis not in SLIDES for word in node.axes) and not node.words:
         return
     if not state.modal.spindle and "spindle" not in state.reported:

@@ -1,4 +1,4 @@
-"""Tilted planes (PLANE: check, retract, swivel, then the frame), and tip control (M128, FUNCTION TCPM)."""
+"""Tilted planes with PLANE, and tool center point control with M128 and FUNCTION TCPM."""
 
 from __future__ import annotations
 
@@ -52,14 +52,14 @@ from core.language.klartext.klartext_faults import (
 from core.language.klartext.klartext_nodes import AxisWord, Plane, Retract
 from core.message import Message
 
-# --- from the words of a PLANE block to its frame and angles; nothing moves here
+# --- frame and angles of a PLANE block, without motion
 
 
 _ABOUT = {"SPA": X_AXIS, "SPB": Y_AXIS, "SPC": Z_AXIS}
 
 
 def working_plane(state: State, node: Plane) -> WorkingPlane:
-    """The plane that the block tells. Raises ProgramError where there is none, or it cannot be reached."""
+    """Return the plane of a block. Raises ProgramError if it is not defined or cannot be reached."""
     if node.form == "AXIAL":
         return _axial(state, node)
     frame = product(_base(state, node), _as_figured(state, node, _FORMS[node.form](state, node)))
@@ -76,7 +76,10 @@ def working_plane(state: State, node: Plane) -> WorkingPlane:
 
 
 def _tell_of_two_ways(state: State, node: Plane, frame: Matrix) -> None:
-    """Which way the table swivels hangs on where it stands at the start, which no proof knows."""
+    """Note that the swivel direction depends on the start position of the table.
+
+    The proof does not know this position.
+    """
     if len(fitting(state.kinematics, frame, state.rotary)) > 1:
         text = (
             "There are two possible swivel directions; the start position of the table "
@@ -87,7 +90,7 @@ def _tell_of_two_ways(state: State, node: Plane, frame: Matrix) -> None:
 
 
 def _axial(state: State, node: Plane) -> WorkingPlane:
-    """The effective angle of each axis, set or added to; basic rotation plays no part."""
+    """Return the plane of PLANE AXIAL: absolute or incremental axis angles, without the basic rotation."""
     angles = state.targets
     for word in node.words:
         axis = state.kinematics.rotary(word.axis)
@@ -150,22 +153,22 @@ def _spatial(state: State, node: Plane) -> Matrix:
 
 
 def _relative(state: State, node: Plane) -> Matrix:
-    """About an axis of the plane in force, or of the workpiece's system where there is none."""
+    """Return the rotation of PLANE RELATIV about an axis of the active plane, or of the workpiece system."""
     (word,) = node.words
     return turned(_ABOUT[word.axis], _angle(state, word))
 
 
 def _base(state: State, node: Plane) -> Matrix:
-    """What the block's frame is told in: the basic rotation, or of RELATIV the plane in force."""
+    """Return the reference frame of the block: the basic rotation, or for RELATIV the active plane."""
     relative = node.form == "RELATIV" and state.plane is not None
     return state.plane.frame if relative and state.plane is not None else state.kinematics.basic
 
 
 def _as_figured(state: State, node: Plane, frame: Matrix) -> Matrix:
-    """The frame in a system that TRANS MIRROR, ROTATION and SCALE have changed: T F T⁻¹.
+    """Return the frame in a system changed by TRANS MIRROR, ROTATION and SCALE: T F T⁻¹.
 
-    What is programmed in the plane goes through T too, so that p = T F q, the mirrored or turned picture of
-    what the plane is without them. PLANE AXIAL names angles of axes and stays as it is.
+    The program in the plane is also transformed by T, so that p = T F q, the mirrored or rotated image of the
+    original plane. PLANE AXIAL specifies axis angles and is not changed.
     """
     figure = state.figure
     if figure.plain:
@@ -191,13 +194,13 @@ def _angle(state: State, word: AxisWord) -> float:
     return word_values.number(state, word.value, word.axis, word_values.MOST_SPATIAL)
 
 
-SHORT_OF_LIMIT = 0.001  # mm that MB MAX stays away from the software limit
+SHORT_OF_LIMIT = 0.001  # mm; distance of MB MAX from the software limit
 
 
 def plane(state: State, node: Plane) -> Iterator[Block]:
-    """The blocks of PLANE: the retract where there is one, then one of kind ``plane``.
+    """Yield the blocks of PLANE: the retract, if any, and a block of kind ``plane``.
 
-    Raises ProgramError before anything has moved or changed.
+    Raises ProgramError before any change.
     """
     _demand_possible(state, node)
     made = None if node.form == "RESET" else working_plane(state, node)
@@ -222,14 +225,14 @@ def plane(state: State, node: Plane) -> Iterator[Block]:
 
 
 def retract(state: State, up: float, feed: float | None) -> Block:
-    """Away from the workpiece along the tool as it stands; ``feed`` as programmed, None for rapid."""
+    """Return a retract from the workpiece along the tool; ``feed`` is as programmed, None for a rapid."""
     goal = dict(zip(SLIDES, _raised(state, up), strict=True))
     rate = None if feed is None else state.path_feed(feed)
     return state.move(Kind.RAPID if rate is None else Kind.FEED, goal, rate)
 
 
 def retract_way(state: State, asked: Retract | None) -> float:
-    """Length of MB in mm, 0 without one; MB MAX ends just short of the first software limit."""
+    """Return the length of MB in mm, or 0 without it; MB MAX ends just before the first software limit."""
     if asked is None:
         return 0.0
     if asked.distance is not None:
@@ -252,7 +255,7 @@ def _demand_possible(state: State, node: Plane) -> None:
 
 
 def _demand_tool_axis(state: State, node: Plane) -> None:
-    """A plane that is not tilted needs none: programs begin with PLANE SPATIAL SPA+0 SPB+0 SPC+0 STAY."""
+    """Raise ProgramError if a tilted plane has no tool axis; a plane that is not tilted needs none."""
     if not state.tool_axis:
         text = "No TOOL CALL has defined a tool axis."
         raise state.refuse(node.column, TOOL_AXIS_MISSING, text, "Write TOOL CALL n Z before this block.")
@@ -263,7 +266,7 @@ def _raised(state: State, up: float) -> Vector:
 
 
 def _pivot(state: State, distance: float) -> Vector:
-    """The point of the workpiece about which MOVE turns, in the machine-parallel system at its zero."""
+    """Return the pivot point of MOVE in the machine-parallel system at the workpiece zero."""
     place = state.kinematics.place(state.rotary, tool_length=state.tool_length)
     return place.point(_raised(state, -distance))
 
@@ -278,7 +281,7 @@ def _goal(state: State, targets: Mapping[str, float]) -> dict[str, float]:
 def _swivel(
     state: State, goal: Mapping[str, float], feed: float | None, pivot: Vector | None, distance: float
 ) -> Block:
-    """The block of kind ``plane``: rotary axes alone, or with the slides keeping the pivot in its place."""
+    """Return the block of kind ``plane``: only rotary axes, or with linear axes that hold the pivot point."""
     rate = None if feed is None else feed / 60.0
     start = state.rotary
     turn = math.hypot(*(goal[name] - at for name, at in start.items()))
@@ -289,7 +292,7 @@ def _swivel(
 
 
 def _warn_of_shift(state: State, made: WorkingPlane | None) -> None:
-    """A datum that was shifted in a tilted system, and another plane straight behind it: the classic trap."""
+    """Warn of a datum shift in a tilted system that another PLANE follows, which is a common mistake."""
     if made is None or state.plane is None or state.shift == ORIGIN:
         return
     text = "The datum was shifted in the tilted coordinate system that is defined on line {line}."
@@ -301,15 +304,15 @@ def _warn_of_shift(state: State, made: WorkingPlane | None) -> None:
 
 
 def switch(state: State, *, on: bool) -> None:
-    """From now on the tip is led with the rotary axes, or no longer."""
+    """Turn tool center point control on or off."""
     state.m128 = on
     state.derive()
 
 
 def swivelled(state: State, element: PathElement) -> Block:
-    """A straight way of the tip on the workpiece while rotary axes turn in proportion.
+    """Return a straight move of the tip on the workpiece with a proportional move of the rotary axes.
 
-    The feed counts mm of the tip's way; where the tip stands, degrees.
+    The feed is in mm of the tip path, or in degrees if the tip does not move.
     """
     first, last = (_parallel(state, state.figure.plane(at)) for at in (element.start, element.end))
     start = state.rotary
@@ -336,6 +339,6 @@ def swivelled(state: State, element: PathElement) -> Block:
 
 
 def _parallel(state: State, point: Vector) -> Vector:
-    """A point of the working plane in the machine-parallel system at the workpiece's zero, mm."""
+    """Return a point of the working plane in the machine-parallel system at the workpiece zero, in mm."""
     frame = state.plane.frame if state.plane is not None else state.kinematics.basic
     return plus(applied(state.kinematics.basic, state.origin), applied(frame, point))

@@ -1,7 +1,7 @@
-"""RL and RR, and the ways to a contour and off it: APPR and DEP.
+"""Radius compensation with RL and RR, and approaches and departures with APPR and DEP.
 
-The tool's centre runs its radius to the left or right of the contour. Without APPR it goes straight to the
-point square to the start of the contour, and stays square to its end until R0 leads away.
+The tool center is one radius to the left or right of the contour. Without APPR, the tool moves straight to
+the point perpendicular to the start of the contour. It remains perpendicular to its end until R0 leads away.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ _MOST_CCA = 360.0
 
 
 class Contour:
-    """The elements of a contour, and the way of the tool's centre ``radius`` mm to its ``side``."""
+    """The elements of a contour, and the path of the tool center ``radius`` mm to its ``side``."""
 
     def __init__(self, elements: list[PathElement], side: str, radius: float) -> None:
         self._flats = [each for each in elements if each.flat is not None]
@@ -35,12 +35,12 @@ class Contour:
 
     @property
     def end(self) -> Point | None:
-        """The end of the contour itself; None where nothing moves in the plane."""
+        """End of the contour; None without motion in the plane."""
         return self._flats[-1].end[:2] if self._flats else None
 
     @property
     def end_direction(self) -> Point | None:
-        """The direction in which it ends."""
+        """Direction at the end of the contour."""
         return self._flats[-1].end_direction if self._flats else None
 
     def _beside(self, left: float) -> list[Piece]:
@@ -57,7 +57,7 @@ class Contour:
             raise fault(at.line, at.column, RADIUS_TOO_LARGE, text, hint) from None
 
     def pieces(self, element: PathElement, here: Vector) -> Iterator[PathElement]:
-        """The tool's way along one element, from where it stands; an outside corner behind it included."""
+        """Yield the tool path along one element from ``here``, including an outside corner at its end."""
         mine = self._pieces[id(element)]
         z0, z1 = element.start[2], element.end[2]
         if not mine:
@@ -80,9 +80,9 @@ def _along(element: PathElement, flat: Element, z0: float, z1: float) -> PathEle
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """The block that leads to a contour: from where the tool stands to the contour's first point ``at``.
+    """A block that leads to a contour, from the tool position ``start`` to its first point ``at``.
 
-    ``side`` L or R with the tool's ``radius``; empty without compensation. mm, the program's coordinates.
+    ``side`` is L or R with the tool ``radius``, or empty without compensation; mm, in program coordinates.
     """
 
     node: Move
@@ -94,7 +94,7 @@ class Entry:
 
 
 def way_in(state: State, entry: Entry, direction: Point) -> Iterator[PathElement]:
-    """The way to the contour, which begins in this direction (a unit vector)."""
+    """Yield the approach to a contour that begins in this direction (a unit vector)."""
     beside = _beside(entry.at, direction, entry.side, entry.radius)
     made = PathElement(entry.start, entry.start, entry.feed, state.line, state.text, entry.node.column)
     form = entry.node.form.removeprefix("APPR ").replace("PL", "L").replace("PC", "C")
@@ -115,7 +115,7 @@ def way_in(state: State, entry: Entry, direction: Point) -> Iterator[PathElement
 def way_out(
     state: State, node: Move, here: Vector, direction: Point, side: str, radius: float, feed: float | None
 ) -> Iterator[PathElement]:
-    """DEP: the way off the contour that ends ``here`` in this direction (a unit vector)."""
+    """Yield the departure of DEP from a contour that ends ``here`` in this direction (a unit vector)."""
     beside = _beside(here, direction, side, radius)
     made = PathElement(beside, beside, feed, state.line, state.text, node.column)
     form = node.form.removeprefix("DEP ").replace("PL", "L")
@@ -125,7 +125,7 @@ def way_out(
         on = direction if form == "LT" else _outwards(direction, side)
         yield _straight(made, beside, (beside[0] + on[0] * length, beside[1] + on[1] * length, end[2]))
         return
-    # The same way run backwards is a way in.
+    # A departure is a reversed approach.
     back = Entry(node, end, here, feed, {"L": "R", "R": "L"}.get(side, ""), radius)
     turned = -direction[0], -direction[1]
     arc = _arc_in(state, back, turned, beside, tangent=form == "LCT").reversed()
@@ -135,7 +135,10 @@ def way_out(
 
 
 def _arc_in(state: State, entry: Entry, direction: Point, beside: Vector, *, tangent: bool) -> Arc:
-    """The arc that ends beside the contour in its direction: CCA long, or begun by a line that touches it."""
+    """Return the arc that ends at the offset contour, in the direction of the contour.
+
+    Its angle is CCA, or it begins at a tangent line.
+    """
     size, turn = _radius(state, entry)
     left = left_of(direction)
     centre = beside[0] + left[0] * size * turn, beside[1] + left[1] * size * turn
@@ -143,7 +146,7 @@ def _arc_in(state: State, entry: Entry, direction: Point, beside: Vector, *, tan
         start = _touching(state, entry, centre, size, clockwise=turn < 0)
     else:
         word = entry.node.word("CCA")
-        assert word is not None  # the block was refused without it
+        assert word is not None  # guaranteed by the reader
         swept = math.radians(word_values.number(state, word.value, "CCA", _MOST_CCA, 0.0))
         angle = math.atan2(beside[1] - centre[1], beside[0] - centre[0]) - turn * swept
         start = centre[0] + size * math.cos(angle), centre[1] + size * math.sin(angle)
@@ -151,9 +154,10 @@ def _arc_in(state: State, entry: Entry, direction: Point, beside: Vector, *, tan
 
 
 def _radius(state: State, entry: Entry) -> tuple[float, float]:
-    """Radius of the tool centre's arc, and 1 where its centre is on the left.
+    """Return the radius of the center's arc, and 1 if its center is on the left, else -1.
 
-    R over 0 lies on the side of the tool, under 0 on that of the workpiece; without compensation left.
+    A positive R is on the side of the tool, a negative R on the side of the workpiece; without compensation,
+    the center is on the left.
     """
     word = entry.node.word("R")
     assert word is not None
@@ -174,7 +178,7 @@ def _radius(state: State, entry: Entry) -> tuple[float, float]:
 
 
 def _touching(state: State, entry: Entry, centre: Point, size: float, *, clockwise: bool) -> Point:
-    """Where a line from the start of the entry touches the circle, run in its sense."""
+    """Return the point at which a line from the start of the entry is tangent to the circle."""
     if math.dist(entry.start[:2], centre) < size:
         text = "No path is possible for {form} because the tool is inside the arc of this move."
         hint = "Start farther from the contour, or reduce R."
@@ -183,7 +187,7 @@ def _touching(state: State, entry: Entry, centre: Point, size: float, *, clockwi
 
 
 def _beside(at: Vector, direction: Point, side: str, radius: float) -> Vector:
-    """The tool's centre square to a point of the contour."""
+    """Return the tool center perpendicular to a point of the contour."""
     if not side:
         return at
     left = left_of(direction)
@@ -192,14 +196,17 @@ def _beside(at: Vector, direction: Point, side: str, radius: float) -> Vector:
 
 
 def _outwards(direction: Point, side: str) -> Point:
-    """Square to the contour, on the tool's side; to the left without compensation."""
+    """Return the direction perpendicular to the contour on the tool side.
+
+    Without compensation, it is to the left.
+    """
     left = left_of(direction)
     return (-left[0], -left[1]) if side == "R" else left
 
 
 def _length(state: State, node: Move, name: str) -> float:
     word = node.word(name)
-    assert word is not None  # the block was refused without it
+    assert word is not None  # guaranteed by the reader
     return word_values.number(state, word.value, name, word_values.MOST_COORDINATE, 0.0) * state.scale
 
 

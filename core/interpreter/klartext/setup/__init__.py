@@ -1,1 +1,1 @@
-"""Tool calls, M functions and shifted or turned datums of Klartext."""
+"""Tool calls, M functions and coordinate transformations of Klartext."""

@@ -1,7 +1,6 @@
 """Datum shift, mirroring, rotation and scaling (TRANS, cycles 7, 8, 10 and 11).
 
-The datum is shifted by what is programmed, whatever else is in force: mirroring, rotation and scaling happen
-about it.
+The datum shift is as programmed, independent of the other transformations, which act about the datum.
 """
 
 from __future__ import annotations
@@ -19,7 +18,7 @@ MOST_ROW = 999_999.0
 
 
 def datum(state: State, node: Datum) -> None:
-    """TRANS DATUM and cycle 7: in the workpiece's system, within the plane while one is in force."""
+    """Execute TRANS DATUM or cycle 7, in the workpiece system or within the active plane."""
     if node.row is not None:
         node = Datum(_of_the_table(state, node.row, node.column))
     if node.reset:
@@ -41,7 +40,7 @@ def datum(state: State, node: Datum) -> None:
 
 
 def _of_the_table(state: State, row: Value, column: int) -> tuple[AxisWord, ...]:
-    """The axes of a row of the datum table. Raises ProgramError where there is none, or no such row."""
+    """Return the axis words of a row of the datum table. Raises ProgramError without the table or row."""
     if state.datum_table is None:
         text = "No datum table is selected."
         raise state.refuse(column, NO_TABLE, text, "Select the file with SEL TABLE before this block.")
@@ -64,7 +63,7 @@ def _demand_no_turn(state: State, axis: str, value: float, column: int) -> None:
 
 
 def transform(state: State, node: Transform) -> None:
-    """TRANS MIRROR, ROTATION and SCALE, cycles 8, 10 and 11. Raises ProgramError."""
+    """Execute TRANS MIRROR, ROTATION or SCALE, or cycles 8, 10 and 11. Raises ProgramError."""
     figure = state.figure
     if node.form == "MIRROR":
         state.figure = replace(figure, mirrored=node.axes)

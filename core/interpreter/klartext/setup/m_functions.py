@@ -1,4 +1,4 @@
-"""M functions: which act before the motion of their block, which behind it, and what each does."""
+"""M functions: their effect, before or after the motion of their block."""
 
 from __future__ import annotations
 
@@ -25,25 +25,26 @@ from core.language.klartext.klartext_nodes import MCode
 from core.message import Message
 
 M19, M89, M91, M92, M99 = 19, 89, 91, 92, 99
-FEEDS = frozenset({103, 136, 137})  # of ``feed_rates``: they count as soon as they are read
-ENDS_NOTHING = frozenset({102, 115, 145})  # they end what is not built
+FEEDS = frozenset({103, 136, 137})  # executed in ``feed_rates``, before the other words
+ENDS_NOTHING = frozenset({102, 115, 145})  # they end functions that TurnDesk does not have
 SISTER_TOOL = 101
 BEFORE = frozenset({3, 4, 8, 13, 14, SISTER_TOOL, 116, 117, 126, 127, 128, 129, 140}) | FEEDS | ENDS_NOTHING
 ENDS = frozenset({2, 30})
 _BEHIND = frozenset({0, 1, 2, 5, 6, 9, M19, 30})
 _OF_THE_BLOCK = frozenset({M89, M91, M99})
-_SECOND_DATUM = frozenset({M92})  # where the machine file has one
+_SECOND_DATUM = frozenset({M92})  # requires a second datum in the machine file
 
-# They steer what this control does in its own way anyhow: smoothing and look-ahead (90, 112, 113, 120, 124),
-# small contour steps and open corners (97, 98), feed at arcs (109, 110, 111), messages (107, 108), the
-# display of rotary axes (94), handwheel superimposed (118), exact stops (134, 135), retract at a stop (148),
-# gains of the loops (105, 106), a touch probe's watch (141).
+# These functions have no effect, because TurnDesk performs their tasks differently: smoothing and look-ahead
+# (90, 112, 113, 120, 124), small contour steps and open corners (97, 98), feed at arcs (109, 110, 111),
+# messages (107, 108), display of rotary axes (94), superimposed handwheel (118), exact stops (134, 135),
+# retract at a stop (148), loop gains (105, 106), touch probe monitoring (141).
 UNHEEDED = frozenset(
     {90, 94, 97, 98, 105, 106, 107, 108, 109, 110, 111, 112, 113, 118, 120, 124, 134, 135, 141, 148}
 )
 
-# Of the control, and not built: the datum of before (104), old ways of leading the tip (114, 144), positions
-# before tilting (130, 138), programs and rotations cleared (142, 143), limits passed (150).
+# Functions of the control that are not supported: previous datum (104), older tip control (114, 144),
+# positions in the untilted system (130, 138), cleared programs and rotations (142, 143), travel past limits
+# (150).
 _NOT_BUILT = frozenset({104, 114, 130, 138, 142, 143, 144, 150})
 _TURNS = {3: 1, 4: -1, 13: 1, 14: -1}
 _OWN = "Assign an output to this machine-builder code under [m_codes], or remove the code."
@@ -56,7 +57,10 @@ _ADVICE = {
 
 
 def check(state: State, codes: Sequence[MCode]) -> None:
-    """Raises ProgramError for codes this machine lacks, contradictions, and what M128 forbids."""
+    """Raise ProgramError for codes that this machine lacks and for conflicts.
+
+    Codes that M128 excludes are also errors.
+    """
     limits = state.setup.limits
     known = BEFORE | _BEHIND | _OF_THE_BLOCK | UNHEEDED | limits.m_outputs.keys() | limits.m_ignored
     known |= _SECOND_DATUM if limits.fixed_points else frozenset()
@@ -98,7 +102,7 @@ def check(state: State, codes: Sequence[MCode]) -> None:
 
 
 def _check_datum(state: State, code: MCode, codes: Sequence[MCode]) -> None:
-    """M91 and M92: not while M128 is on, and one of both."""
+    """Raise ProgramError for M91 or M92 while M128 is active, or for both in one block."""
     text = "M{number} is not allowed while M128 is active."
     hint = "Switch M128 off with M129 before this block."
     state.check(not state.m128, code.column, NOT_WITH_M128, text, hint, number=code.number)
@@ -108,7 +112,7 @@ def _check_datum(state: State, code: MCode, codes: Sequence[MCode]) -> None:
 
 
 def datum(state: State, codes: Sequence[MCode]) -> Mapping[str, float] | None:
-    """Machine positions of the slides from which M91 or M92 counts; None for the workpiece's zero."""
+    """Return the machine positions to which M91 or M92 refers; None for the workpiece zero."""
     numbers = {code.number for code in codes}
     if M92 in numbers:
         return {axis: points[0] for axis, points in state.setup.limits.fixed_points.items() if points}
@@ -116,7 +120,7 @@ def datum(state: State, codes: Sequence[MCode]) -> Mapping[str, float] | None:
 
 
 def before(state: State, codes: Sequence[MCode]) -> Iterator[Block]:
-    """The blocks of what acts before the motion."""
+    """Yield the blocks of the codes that act before the motion."""
     for code in codes:
         output = state.setup.limits.m_outputs.get(code.number)
         if code.number in _TURNS:
@@ -136,7 +140,7 @@ def before(state: State, codes: Sequence[MCode]) -> Iterator[Block]:
 
 
 def behind(state: State, codes: Sequence[MCode], comment: str) -> Iterator[Block]:
-    """The blocks of what acts behind the motion."""
+    """Yield the blocks of the codes that act after the motion."""
     for code in codes:
         output = state.setup.limits.m_outputs.get(code.number)
         if code.number in {0, 5, 6} and state.modal.spindle:
@@ -160,7 +164,7 @@ def behind(state: State, codes: Sequence[MCode], comment: str) -> Iterator[Block
 
 
 def end(state: State) -> Block:
-    """M2, M30 and END PGM: the plane ends, rotary axes stay where they are."""
+    """Return the block of M2, M30 or END PGM, which resets the plane; rotary axes do not move."""
     state.m128 = False
     state.figure = Figure()
     state.short_way = True
@@ -194,7 +198,7 @@ def _output(state: State, name: str, on: bool) -> Block:
 
 
 def _away(state: State, code: MCode) -> Iterator[Block]:
-    """M140: away from the workpiece along the tool, at its own feed or in rapid."""
+    """Yield the retract of M140 along the tool, at its feed or in rapid."""
     assert code.retract is not None
     up = retract_way(state, code.retract)
     feed = word_values.feed_word(state, code.feed, code.column) if code.feed is not None else None

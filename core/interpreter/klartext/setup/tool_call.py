@@ -1,4 +1,4 @@
-"""TOOL DEF and TOOL CALL: length and radius, tool, tool axis, speed and feed."""
+"""TOOL DEF and TOOL CALL: tool dimensions, tool change, tool axis, speed and feed."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ from core.tool_edges import NAMED_TOOLS, NamedTool
 
 
 def tool_call(state: State, node: ToolCall, use: ToolUse) -> Iterator[Block]:
-    """The blocks of TOOL CALL. The slides stay; the tip's place follows from the new length.
+    """Yield the blocks of TOOL CALL. The axes do not move; the tip position follows from the new length.
 
-    Raises ProgramError before anything has changed.
+    Raises ProgramError before any change.
     """
     changes = node.tool is not None or node.length is not None or node.radius is not None
     if state.m128 and changes:
@@ -53,15 +53,15 @@ def tool_call(state: State, node: ToolCall, use: ToolUse) -> Iterator[Block]:
 
 
 def define_tool(state: State, node: ToolDef) -> None:
-    """TOOL DEF: length and radius, which count before those of the tool table. Raises ProgramError."""
+    """Execute TOOL DEF, whose length and radius have priority over the tool table. Raises ProgramError."""
     if node.length is None and node.radius is None:
-        return  # the tool is only to be got ready
+        return  # the block only prepares the tool
     length = _oversize(state, node.length, "L", word_values.MOST_COORDINATE)
     state.tool_defs[node.tool] = length, _oversize(state, node.radius, "R", word_values.MOST_COORDINATE)
 
 
 def _number(state: State, tool: int | str | Value | None, column: int) -> int | None:
-    """The number of a tool that is called; one by name stands in the program or in the tool table."""
+    """Return the number of the called tool; a name must be in the program or in the tool table."""
     if isinstance(tool, Value):
         return round(word_values.number(state, tool, "TOOL CALL", MOST_TOOL, 0.0))
     if not isinstance(tool, str):
@@ -82,7 +82,7 @@ def _oversize(state: State, value: Value | None, what: str, most: float = 99.999
 def _change(
     state: State, tool: int, longer: float, thicker: float, use: ToolUse, column: int
 ) -> Iterator[Block]:
-    """Another tool: the spindle stops, and where one was in it before, somebody has to change it."""
+    """Yield the blocks of a tool change: spindle stop, tool, and a stop for a manual change."""
     before = state.modal.tool
     if state.modal.spindle:
         state.modal = state.modal._replace(spindle=0, oriented=None)
@@ -95,10 +95,7 @@ def _change(
 
 
 def _measure(state: State, tool: int, longer: float, thicker: float, use: ToolUse, column: int) -> None:
-    """Length and radius of the tool: as TOOL DEF tells them, else its offset.
-
-    0 with a warning where nobody has measured it.
-    """
+    """Set the tool dimensions from TOOL DEF or from its offset; 0 with a warning if not measured."""
     state.oversize = longer, thicker
     if 0 < tool < NAMED_TOOLS:
         use.call(tool)
@@ -110,7 +107,7 @@ def _measure(state: State, tool: int, longer: float, thicker: float, use: ToolUs
 
 
 def measure_again(state: State) -> None:
-    """Length and radius of the tool in the spindle as TOOL DEF or the table have them now."""
+    """Set length and radius of the active tool from the present TOOL DEF or tool table."""
     tool, (longer, thicker) = state.modal.tool, state.oversize
     offset = state.setup.tools.get(tool)
     table = (offset.z, offset.nose_radius) if tool and offset is not None else (0.0, 0.0)
@@ -120,7 +117,7 @@ def measure_again(state: State) -> None:
 
 
 def radius_of(state: State, tool: int) -> float | None:
-    """Radius of a tool without oversizes, mm, as TOOL DEF or the table have it; None where neither does."""
+    """Return the radius of a tool without deltas in mm, from TOOL DEF or the table; None if not defined."""
     if (told := _defined(state, tool)) is not None:
         return told[1]
     offset = state.setup.tools.get(tool)
@@ -132,7 +129,7 @@ def _defined(state: State, tool: int) -> tuple[float, float] | None:
 
 
 def tool_text(tool: int) -> str:
-    """A tool as the program calls it."""
+    """Return the tool number or name as the program writes it."""
     return f'"{tool.name}"' if isinstance(tool, NamedTool) else f"{tool}"
 
 
@@ -143,7 +140,10 @@ def _name_of(state: State, tool: int) -> str:
 
 
 def _by_cutting_speed(state: State, node: ToolCall, number: int | None) -> float:
-    """S(VC = 120): metres a minute at the tool's radius, rpm. Raises ProgramError where it has none."""
+    """Return the speed in rpm for S(VC = 120) in m/min at the tool radius.
+
+    Raises ProgramError without a radius.
+    """
     assert node.cutting_speed is not None
     speed = word_values.number(state, node.cutting_speed, "VC", word_values.MOST_SPEED, 0.0)
     radius = radius_of(state, state.modal.tool if number is None else number) or 0.0

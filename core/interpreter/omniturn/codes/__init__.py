@@ -1,1 +1,1 @@
-"""The table of OmniTurn codes, its rules and the pages that are made of it."""
+"""Table of the OmniTurn codes, its rules, and the pages that are generated from it."""

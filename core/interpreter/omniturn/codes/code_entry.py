@@ -1,4 +1,4 @@
-"""What an entry of the code table can state: words, what F and S mean, bounds, when a code is refused."""
+"""Types of the code table: words, meanings of F and S, limits, and conditions that reject a code."""
 
 from __future__ import annotations
 
@@ -19,42 +19,42 @@ TAIL = "G94F300X.6Z1\nM30\n"
 
 
 class Acts(Enum):
-    """What a code does on its line, and so when: see ``block_execution``."""
+    """Kind of action of a code, which determines when it is executed; see ``block_execution``."""
 
-    PLAIN = auto()  # no code of its own: a straight move, or none
+    PLAIN = auto()  # a line without a one-shot code: a straight move or no move
     WORD = auto()  # a letter
-    MODE = auto()  # in force until another of its group
-    FRAME = auto()  # its X and Z are no motion
-    LOCK = auto()  # the spindle becomes the axis C; before the motion
+    MODE = auto()  # active until another code of the same group
+    FRAME = auto()  # its X and Z are not a motion
+    LOCK = auto()  # the spindle becomes the C axis, before the motion
     SPINDLE = auto()  # starts the spindle; before the motion
     START = auto()  # an M function before the motion
     ARC = auto()
-    MOTION = auto()  # motion or rest of a kind of its own
-    CYCLE = auto()  # a line that stands for many motions
+    MOTION = auto()  # a special motion or a dwell
+    CYCLE = auto()  # a line that generates many motions
     CONTOUR = auto()  # a cycle along the lines that follow it, or along a subroutine
     STOP = auto()  # an M function after the motion
-    FLOW = auto()  # steers the order of execution
+    FLOW = auto()  # controls the order of execution
 
 
 class FWord(Enum):
-    """What F means on the line of a code."""
+    """Meaning of F on the line of a code."""
 
-    NONE = auto()  # no F may stand there
-    FEED = auto()  # the feed from here on
+    NONE = auto()  # F is not allowed
+    FEED = auto()  # the feed from this line on
     SECONDS = auto()
-    LEADS = auto()  # how coarse leads may be
+    LEADS = auto()  # the permitted range of leads
 
 
 class SWord(Enum):
-    """What S means on the line of a code."""
+    """Meaning of S on the line of a code."""
 
-    SPEED = auto()  # of the spindle, from here on
-    LIMIT = auto()  # of constant surface speed, rpm
-    C_SPEED = auto()  # rpm at which C turns
+    SPEED = auto()  # the spindle speed from this line on
+    LIMIT = auto()  # a limit of constant surface speed, rpm
+    C_SPEED = auto()  # the speed of the C axis, rpm
 
 
 class Limit(Enum):
-    """A bound that the machine file sets, or what is in force; its value is what the page calls it."""
+    """A limit from the machine file or the modal state; its value is the text on the reference page."""
 
     FEED = "the machine's maximum feed"
     FEED_IN_FORCE = (
@@ -64,7 +64,7 @@ class Limit(Enum):
     LEAD = ".2 in/rev (1 in/rev after G35, 2 in/rev after G35F2)"
     RPM = "the maximum spindle speed"
     C_RPM = "the maximum speed of the C axis"
-    SURFACE = "6000 m/min"  # ten times what any tool stands
+    SURFACE = "6000 m/min"  # ten times the limit of any tool
 
 
 MOST_PER_REV = tuple(inches * units.MM_PER_INCH for inches in (0.2, 1.0, 2.0))
@@ -72,7 +72,7 @@ MOST_PER_REV = tuple(inches * units.MM_PER_INCH for inches in (0.2, 1.0, 2.0))
 
 
 class When(Enum):
-    """What may be so when a code comes; its value is what the page calls it."""
+    """A condition that can reject a code; its value is the text on the reference page."""
 
     WITH_OTHERS = "the line contains other words"
     WITH_FEED = "the line contains F, G94 or G95 and is not the first line of the program"
@@ -102,14 +102,14 @@ class When(Enum):
 
 
 class CodeEntryError(CodedError, ValueError):
-    """A row of the code table that contradicts itself."""
+    """A row of the code table contradicts itself."""
 
 
 class Refusal(NamedTuple):
-    """A diagnostic: its code, sentence and remedy, and where it is: a letter, a column, "" at the code.
+    """Template of a diagnostic: code, message, remedy, and location (letter, column, or "" for the code).
 
-    In braces stand ``code``, its ``number``, the ``letter`` and ``what`` of a word, the ``word`` as written,
-    and what whoever refuses has to tell besides.
+    The texts may contain the placeholders ``code``, ``number``, ``letter``, ``what`` and ``word``, and
+    further placeholders whose values the caller supplies.
     """
 
     code: str
@@ -120,10 +120,11 @@ class Refusal(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class WordRule:
-    """What a word means beside a code, and what its number must be: from ``least`` to ``most``.
+    """Meaning of a word on the line of a code, and the range of its number, from ``least`` to ``most``.
 
-    ``over``: ``least`` itself is too small. ``missing``: refused without the word; ``wrong``: with a number
-    that is none, ``too_great`` where that is told in other words. ``bare`` is what the letter alone means.
+    With ``over``, the number must exceed ``least``. ``missing`` is the error without the word, ``wrong`` the
+    error for an invalid number, and ``too_great`` a separate error for a number above the limit. ``bare`` is
+    the value of the letter without a number.
     """
 
     what: str
@@ -136,11 +137,11 @@ class WordRule:
     missing: Refusal | None = None
     wrong: Refusal | None = None
     too_great: Refusal | None = None
-    numberless: Refusal | None = None  # the letter is there and has no number
-    numbered: Refusal | None = None  # it has one, and stands alone here
+    numberless: Refusal | None = None  # error for the letter without a number
+    numbered: Refusal | None = None  # error for the letter with a number that is not allowed here
 
     def refusal_of(self, number: float, most: float = inf) -> Refusal | None:
-        """What is said of a number, None where it may be; ``most``: what a limit is now."""
+        """Return the error for a number, or None. ``most`` is the present value of a ``Limit``."""
         too_small = number < self.least or (self.over and number == self.least)
         if too_small or (self.nonzero and number == 0) or (self.whole and number % 1):
             return self.wrong
@@ -149,13 +150,13 @@ class WordRule:
 
     @property
     def refusals(self) -> tuple[Refusal, ...]:
-        """All that it can say."""
+        """All errors of this rule."""
         said = (self.missing, self.numberless, self.numbered, self.wrong, self.too_great)
         return tuple(each for each in said if each is not None)
 
 
 class Together(NamedTuple):
-    """Words of which a line holds one at most, or one at least, and what is said otherwise."""
+    """A set of words of which a line has at most one, or at least one, and the error otherwise."""
 
     letters: tuple[str, ...]
     refusal: Refusal
@@ -163,13 +164,13 @@ class Together(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Code:
-    """One code. ``example``: lines that use it between ``HEAD`` and ``TAIL``; ``subroutine`` follows the end.
+    """Entry of one code. ``example`` are lines between ``HEAD`` and ``TAIL``; ``subroutine`` follows the end.
 
-    ``words`` may stand beside it, G and M apart; ``rules`` say what their numbers must be, ``one_of`` and
-    ``apart`` which must stand together or must not, ``not_when`` in what state it is refused, in the order in
-    which it is looked at. ``further`` are the diagnostic codes that need geometry, the lines around or the
-    structure of the program, and are told where that is computed. Raises ValueError where words, rules and
-    the meaning of F contradict each other.
+    ``words`` are the permitted words other than G and M. ``rules`` limit their numbers, ``one_of`` and
+    ``apart`` specify required and exclusive words, and ``not_when`` lists the conditions that reject the
+    code, in the order of the checks. ``further`` are diagnostic codes of checks that need geometry, other
+    lines or the program structure. Raises CodeEntryError if words, rules and the meaning of F contradict each
+    other.
     """
 
     name: str
@@ -182,20 +183,20 @@ class Code:
     f: FWord = field(kw_only=True)
     s: SWord = SWord.SPEED
     words: frozenset[str] = frozenset()
-    group: str = ""  # one line may hold one mode of a group
+    group: str = ""  # a line may have only one mode of a group
     rules: Mapping[str, WordRule] = field(default_factory=dict)
     one_of: Together | None = None
     apart: tuple[Together, ...] = ()
     not_when: Mapping[When, Refusal] = field(default_factory=dict)
-    terminal: tuple[str, bool] = ("", False)  # the input that it waits for or asks, and its wanted state
-    least_blocks: int = 0  # elementary blocks that it makes at least
+    terminal: tuple[str, bool] = ("", False)  # the input that the code reads, and the required state
+    least_blocks: int = 0  # minimum number of its elementary blocks
     ends_program: bool = False
-    calls: bool = False  # a subroutine
-    asks: bool = False  # calls only as an input says
-    deletable: bool = True  # "/" may stand before it
-    under_nose: bool = False  # may stand under G41 and G42 where it moves
-    before_corner: bool = False  # may stand between a move with C or R and the next
-    in_contour: bool = False  # may stand in the contour of G75 and G78
+    calls: bool = False  # calls a subroutine
+    asks: bool = False  # the call depends on an input
+    deletable: bool = True  # "/" may precede it
+    under_nose: bool = False  # allowed with G41 and G42
+    before_corner: bool = False  # allowed between a move with C or R and the next move
+    in_contour: bool = False  # allowed in the contour of G75 and G78
     not_in_mdi: str = ""  # template with {code}: why MDI rejects the code, which needs other lines
     further: frozenset[str] = frozenset()
 
@@ -213,31 +214,31 @@ class Code:
 
     @property
     def plain_refusals(self) -> tuple[Refusal, ...]:
-        """Those that stand in the entry with their sentences."""
+        """The errors whose messages are in the entry."""
         together = (*self.apart, *((self.one_of,) if self.one_of else ()))
         of_words = (each for rule in self.rules.values() for each in rule.refusals)
         return (*self.not_when.values(), *of_words, *(each.refusal for each in together))
 
     @property
     def refusals(self) -> frozenset[str]:
-        """All diagnostic codes by which it is refused or warned of."""
+        """All diagnostic codes of errors and warnings for this code."""
         return self.further | {each.code for each in self.plain_refusals}
 
     @property
     def program(self) -> str:
-        """The example as a whole program."""
+        """The example as a complete program."""
         return f"{HEAD}{self.example}\n{TAIL}{self.subroutine}"
 
 
 def names(text: str) -> frozenset[str]:
-    """Names with blanks between them, as a set."""
+    """Return a set of names from a text with blanks between them."""
     return frozenset(text.split())
 
 
 PLAIN_WORDS = names("X Z C CA CI R F S T D")
 """Words of a line without a code of its own, and beside modes and M codes."""
 
-# What the entries of a kind have in common: beside modes and M codes stand the words of a plain line.
+# Constructors for the kinds of entries. Modes and M codes allow the words of a plain line.
 mode = partial(Code, acts=Acts.MODE, words=PLAIN_WORDS, f=FWord.FEED)
 m_code = partial(Code, words=PLAIN_WORDS, f=FWord.FEED)
 letter = partial(Code, acts=Acts.WORD, f=FWord.NONE)

@@ -1,7 +1,7 @@
-"""The rules of the code table, applied to a line: bounds of its words, and states in which a code is refused.
+"""Rules of the code table applied to a line: ranges of words and conditions that reject a code.
 
-What is refused, in which words and with which remedy stands in the entry (``code_table``); the function that
-carries a code out asks here at the place where it needs the word.
+The entry (``code_table``) has the messages and remedies. The function that executes a code calls these checks
+when it needs a word.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _ROUNDING = 1 + 1e-9
 def refused(
     statement: Statement, code: Code, refusal: Refusal, at: Word | None = None, **told: object
 ) -> ProgramError:
-    """The error that an entry states, to be raised; ``told``: what its sentence has in braces besides."""
+    """Return the error to raise for a refusal; ``told`` has the values of further placeholders."""
     told = {
         "code": code.name,
         "number": code.name[1:],
@@ -40,9 +40,9 @@ def refused(
 
 
 def number(state: State, statement: Statement, letter: str, code: Code | None = None) -> float | None:
-    """The number of a word as written, by the rule of the line's code; None without the word.
+    """Return the number of a word as written, checked by the rule of the line's code; None without the word.
 
-    Raises ProgramError where the rule refuses it.
+    Raises ProgramError if the rule rejects the number.
     """
     code = code or statement.entry
     rule, word = code.rules[letter], statement.words.get(letter)
@@ -60,9 +60,10 @@ def checked(
     *,
     more: str = "",
 ) -> float | None:
-    """The same for a number that has been worked out of the word: in mm, on the step, without its sign.
+    """Return a converted number (mm, rounded, unsigned) after checking it by the rule of the line's code.
 
-    ``more``: the remedy where the number is too great, if it is another than in the entry.
+    ``more`` is another remedy for a number above the limit. Raises ProgramError if the rule rejects the
+    number.
     """
     code = code or statement.entry
     rule, word = code.rules[letter], statement.words.get(letter)
@@ -91,12 +92,12 @@ def _wrong(state: State, rule: WordRule, word: Word | None, value: float | None)
 
 
 def limit(state: State, most: Limit) -> float:
-    """A bound as it is now: mm/s or mm/rev for feeds, rpm for speeds."""
+    """Return the present value of a limit: mm/s or mm/rev for feeds, rpm for speeds."""
     return _LIMITS[most](state)
 
 
 def shown(state: State, most: Limit) -> str:
-    """A bound as a sentence says it, in the unit of the program."""
+    """Return the present value of a limit as text in the unit of the program."""
     value = limit(state, most)
     if most not in {Limit.FEED, Limit.FEED_IN_FORCE, Limit.LEAD}:
         return f"{value:g}"
@@ -119,7 +120,7 @@ _LIMITS: dict[Limit, Callable[[State], float]] = {
 
 
 def check_together(statement: Statement, code: Code) -> None:
-    """Refuse a line without any of the words that the code needs, or with two that exclude each other."""
+    """Raise ProgramError if a line has none of the required words, or two that exclude each other."""
     if code.one_of is not None and statement.words.keys().isdisjoint(code.one_of.letters):
         raise refused(statement, code, code.one_of.refusal)
     for letters, refusal in code.apart:
@@ -129,15 +130,15 @@ def check_together(statement: Statement, code: Code) -> None:
 
 
 def check_when(state: State, statement: Statement, code: Code, *only: When, word: Word | None = None) -> None:
-    """Refuse a code in a state in which its entry says it may not come; ``only``: look at these alone.
+    """Raise ProgramError for the first condition that rejects a code; ``only`` restricts the conditions.
 
-    ``word``: the one to blame, where it is not the code itself. Raises ProgramError at the first that holds.
+    ``word`` is the location of the error if it is not the code itself.
     """
     for when, refusal in code.not_when.items():
         if (not only or when in only) and _IS[when](state, statement, code):
             line = state.tool_line
             if when is When.TOOL_NOT_MOVED:
-                state.tool_line = 0  # told
+                state.tool_line = 0  # The error is reported only once.
             raise refused(statement, code, refusal, word, line=line, on=state.modal.nose_comp)
 
 
@@ -184,5 +185,6 @@ _IS: dict[When, Callable[[State, Statement, Code], bool]] = {
     When.C_LOCKED: lambda state, _, _code: state.modal.c_locked,
     When.C_FREE: lambda state, _, _code: not state.modal.c_locked,
     When.NO_C: lambda state, _, _code: not state.setup.limits.c_enabled,
-    When.NO_STRAIGHT_MOVE: lambda *_: True,  # asked only where there is none
+    # This condition is checked only for lines without a straight move.
+    When.NO_STRAIGHT_MOVE: lambda *_: True,
 }

@@ -1,10 +1,10 @@
-"""The codes of the OmniTurn control, each in one entry: form, words, what F means, group, bounds, refusals.
+"""Table of all OmniTurn codes, one entry each: form, words, meaning of F, group, limits and errors.
 
-The entries stand by subject in ``move_codes``, ``cycle_codes`` and ``flow_codes``. A code without an entry
-does not exist. ``handler`` names the function that carries it out, as ``folder.file:name`` in the package of
-this dialect; what a line does before and behind it is told by ``acts``. Where the entry is wrong or lacks
-something, making it raises, or ``tests/interpreter/test_code_table.py`` fails. ``docs/language.md`` is the
-page of this table (``language_page``), and its examples are proved.
+The entries are in ``move_codes``, ``cycle_codes`` and ``flow_codes``. A code without an entry does not exist.
+``handler`` names the function that executes the code, as ``folder.file:name`` in the package of this dialect.
+``acts`` determines the order of the actions on a line. An invalid entry raises an error when the table is
+loaded, or fails ``tests/interpreter/test_code_table.py``. ``language_page`` generates ``docs/language.md``
+from this table, and its examples are proved.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ FLOW_CODES = {code.name: code for _, codes in CHAPTERS for code in codes if code
 
 
 def carry_out(code: Code) -> Callable[..., Any]:
-    """The function that carries a code out; its file is loaded when the first program needs it."""
+    """Return the function that executes a code. Its module is imported on first use."""
     return _function(code.handler)
 
 

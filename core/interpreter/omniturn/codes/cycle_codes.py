@@ -1,4 +1,4 @@
-"""Codes of canned cycles and of threads."""
+"""Codes of canned cycles and threads."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Codes that steer a program, functions of the machine, and plane switching."""
+"""Codes of program flow, machine functions and plane switching."""
 
 from __future__ import annotations
 

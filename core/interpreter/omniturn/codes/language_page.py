@@ -1,6 +1,6 @@
-"""``docs/language.md`` from the code table.
+"""Generator of ``docs/language.md`` from the code table.
 
-``python -m core.interpreter.omniturn.codes.language_page > docs/language.md`` writes it.
+``python -m core.interpreter.omniturn.codes.language_page > docs/language.md`` writes the page.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ with the code.
 
 
 def page() -> str:
-    """The text of ``docs/language.md``."""
+    """Return the text of ``docs/language.md``."""
     anchors: set[str] = set()
     chapters = "".join(
         f"\n## {title}\n\n" + "".join(_anchor(code, anchors) + _entry(code) for code in codes)
@@ -66,7 +66,10 @@ def _numbers() -> str:
 
 
 def _anchor(entry: Code, anchors: set[str]) -> str:
-    """Return the anchor ``#g75`` before the first entry of a code, and nothing before its other entries."""
+    """Return the anchor of a code, such as ``#g75``, before its first entry.
+
+    For its other entries, the text is empty.
+    """
     name = re.sub(r"[^a-z0-9]", "", entry.name.lower())
     if not name or name in anchors:
         return ""
@@ -85,7 +88,7 @@ def _entry(entry: Code) -> str:
 
 
 def _rules(entry: Code) -> list[str]:
-    """What must hold of its words, when it is refused, and by which diagnostics besides."""
+    """Return the rules of an entry: limits of its words, conditions that reject it, and further findings."""
     rules = [f"`{letter}` {_rule(rule)}" for letter, rule in entry.rules.items()]
     if entry.one_of is not None:
         letters, refusal = entry.one_of

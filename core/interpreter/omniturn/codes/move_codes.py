@@ -1,4 +1,4 @@
-"""Codes of moves, corners, modes, tools, offsets, nose compensation, the spindle and the axis C."""
+"""Codes of moves, corners, modes, tools, offsets, nose compensation, the spindle and the C axis."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ _nose_on = partial(
     },
     further=names("comp-approach comp-gouge comp-no-radius comp-open comp-radius comp-subroutine comp-with"),
 )
-_SLOWLY = "M05\nG94F30"  # before the spindle is made an axis
+_SLOWLY = "M05\nG94F30"  # precedes locking the spindle as the C axis
 _start = partial(
     Code, acts=Acts.SPINDLE, handler="setup.spindle_and_dwell:run_block", words=PLAIN_WORDS, f=FWord.FEED,
     not_when={

@@ -1,4 +1,4 @@
-"""The code book of OmniTurn, from its code table."""
+"""Code book of OmniTurn, generated from its code table."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _PLAIN = {
 
 
 def book() -> CodeBook:
-    """Every entry of the table by its chapter."""
+    """Return the code book with all entries of the table by chapter."""
     chapters = tuple((title, tuple(map(_entry, codes))) for title, codes in CHAPTERS)
     meanings = dict(each for _, codes in CHAPTERS for code in codes for each in _meanings(code))
     return CodeBook(chapters, HEAD, TAIL, "(", _PLAIN | meanings, r"[A-Z](?=n|O|$)")
@@ -52,7 +52,7 @@ def _meanings(code: Code) -> Iterator[tuple[str, str]]:
 
 
 def _range(rule: WordRule) -> str:
-    """Between what its number lies, where the entry says both ends."""
+    """Return the range of a word as text if the entry has both limits; otherwise an empty text."""
     most = rule.most
     if isinstance(most, Limit) or not (isfinite(most) and isfinite(rule.least)):
         return ""

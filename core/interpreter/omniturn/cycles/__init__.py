@@ -1,1 +1,1 @@
-"""Canned cycles of OmniTurn: drilling, roughing and threads."""
+"""Canned cycles of OmniTurn: drilling, roughing and threading."""

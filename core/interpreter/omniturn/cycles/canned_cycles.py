@@ -1,4 +1,4 @@
-"""What all cycles share: their motions as elementary blocks, and what must hold before the first of them."""
+"""Common functions of all canned cycles: their checks, and the elementary blocks of their motions."""
 
 from __future__ import annotations
 
@@ -24,22 +24,22 @@ _SAME = 1e-9  # mm
 
 
 def name(statement: Statement) -> str:
-    """The cycle's code as messages call it."""
+    """Return the code of the cycle for messages, such as G75."""
     return f"G{statement.one_shot}"
 
 
 def check_ready(state: State, statement: Statement) -> None:
-    """Refuse a cycle where its start point or its feed is not known, or nose compensation is active."""
+    """Raise ProgramError if the start point or feed is unknown, or if nose compensation is active."""
     check_when(state, statement, statement.entry)
 
 
 def length(state: State, statement: Statement, letter: str) -> float:
-    """A length word, mm; 0 without it. Raises ProgramError where its rule in the table refuses it."""
+    """Return a length word in mm, or 0 without the word. Raises ProgramError if its rule rejects it."""
     return checked(state, statement, letter, on_step(state, statement, letter)) or 0.0
 
 
 def check_count(statement: Statement, letter: str, count: int, what: str) -> None:
-    """Refuse a cycle of more passes than anyone means."""
+    """Raise ProgramError if a cycle has too many passes; ``what`` is the plural noun for the message."""
     if count > MOST_PASSES:
         raise statement.refuse(
             letter,
@@ -55,9 +55,9 @@ def check_count(statement: Statement, letter: str, count: int, what: str) -> Non
 
 
 def blocks_of_moves(state: State, statement: Statement, moves: Sequence[Move]) -> Iterator[Block]:
-    """The motions as blocks. All are checked before the first comes; none of them has a length of 0.
+    """Yield the motions as blocks, without those of zero length. All are checked before the first is yielded.
 
-    Raises ProgramError where the feed cannot be: none, or per revolution of a spindle that stands.
+    Raises ProgramError without a valid feed, or if the feed is per revolution and the spindle is stopped.
     """
     kept: list[Move] = []
     at = state.x, state.z
@@ -91,7 +91,7 @@ def _block(state: State, statement: Statement, move: Move) -> Block:
 
 
 def _text(state: State, move: Move) -> str:
-    """The motion as a line of the program would say it, in the mode and unit in force."""
+    """Return the motion as a program line in the active mode and unit."""
     start, end = (state.x, state.z), (move.x, move.z)
     if move.centre is not None:
         return move_words(state.modal, Arc(start, end, move.centre, move.clockwise))

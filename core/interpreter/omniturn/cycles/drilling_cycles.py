@@ -1,4 +1,4 @@
-"""G81 and G83: a hole along Z from the start point, in one go or in pecks."""
+"""Drilling cycles G81 (one pass) and G83 (pecks), along Z from the start point."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from core.interpreter.shared import units
 from core.interpreter.shared.contour_passes import Move, pass_count
 
 _RETRACT_RATE = 200 * units.MM_PER_INCH / 60  # mm/s, without L
-_WHOLE = 1e-6  # of a peck: what a decimal fraction lacks in binary
+_WHOLE = 1e-6  # of a peck; tolerance for the rounding of decimal fractions
 
 
 def drill_moves(state: State, statement: Statement) -> list[Move]:
-    """G81: feed to Z, rapid back to the start. Raises ProgramError for words that drill nothing."""
+    """Return the motions of G81: feed to Z, rapid to the start. Raises ProgramError for invalid words."""
     moves = _position(state, statement)
     x = moves[-1].x if moves else state.x
     depth = _depth(state, statement)
@@ -23,9 +23,10 @@ def drill_moves(state: State, statement: Statement) -> list[Move]:
 
 
 def peck_moves(state: State, statement: Statement) -> list[Move]:
-    """G83: pecks of K, each followed by a way out to R and back to C before the depth that was reached.
+    """Return the motions of G83: pecks of K with a retract to R and a return to C above the last depth.
 
-    The last peck is what is left. The cycle ends at the start point. Raises ProgramError.
+    The last peck drills the remaining depth. The cycle ends at the start point. Raises ProgramError for
+    invalid words.
     """
     moves = _position(state, statement)
     x = moves[-1].x if moves else state.x
@@ -57,7 +58,7 @@ def peck_moves(state: State, statement: Statement) -> list[Move]:
 
 
 def _position(state: State, statement: Statement) -> list[Move]:
-    """An X word is a place to go to before the hole."""
+    """Return the move to the X position of the hole; an empty list without X."""
     x = on_step(state, statement, "X")
     if x is None:
         return []
@@ -79,7 +80,7 @@ def _depth(state: State, statement: Statement) -> float:
 
 
 def _retract(state: State, statement: Statement, first: float) -> float:
-    """R, the Z to which the drill comes out; the start without the word."""
+    """Return the retract position in Z (R), or the start point without R."""
     r = on_step(state, statement, "R")
     if r is None:
         return state.z
@@ -91,7 +92,7 @@ def _retract(state: State, statement: Statement, first: float) -> float:
 
 
 def _rate(state: State, statement: Statement) -> float:
-    """L, the rate of the ways out and back, mm/s."""
+    """Return the rate of retract and return moves (L) in mm/s."""
     value = statement.value("L")
     if value is None:
         return min(_RETRACT_RATE, state.setup.limits.max_feed)

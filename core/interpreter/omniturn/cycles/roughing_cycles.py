@@ -1,6 +1,6 @@
-"""G74, G75 and G78: a box, or the area before a contour, taken off in passes parallel to Z.
+"""Roughing cycles G74 (box) and G75, G78 (contour), in passes parallel to Z.
 
-Of the lines that describe a contour, only what places the contour counts.
+In lines that describe a contour, only the words that define the geometry have an effect.
 """
 
 from __future__ import annotations
@@ -46,9 +46,9 @@ _CORNERS = frozenset({"C", "R"})
 
 
 def read_contour(state: State, statement: Statement, lines: Sequence[Statement]) -> list[Element]:
-    """The contour from its first point on, in the frame of the cycle's line ``statement``; mm.
+    """Return the contour from its first point on, in mm in the frame of the cycle's line ``statement``.
 
-    The state in force stays as it is. Raises ProgramError for a line that no contour can hold.
+    The active state does not change. Raises ProgramError for a line that is not allowed in a contour.
     """
     reader = _Reader(state, statement)
     for each in lines:
@@ -62,12 +62,12 @@ def read_contour(state: State, statement: Statement, lines: Sequence[Statement])
 
 
 class _Reader:
-    """Goes through the lines on a state of its own, so that what they change ends with the contour."""
+    """Reader of contour lines, which works on a copy of the state so that changes end with the contour."""
 
     def __init__(self, state: State, statement: Statement) -> None:
         self._state, self._made = state, statement
         self._own = copy.copy(state)
-        # A rapid needs no feed and no spindle, which do not count here.
+        # The state is set to rapid, because a rapid needs neither feed nor spindle.
         self._own.adopt(state.modal._replace(rapid=True))
         self._own.reported = set()
         self._own.title_rapid = self._own.tool_line = 0
@@ -97,7 +97,7 @@ class _Reader:
             self._move(line)
 
     def finish(self) -> list[Element]:
-        """The elements. Warns where the modes at the end of the contour are not those of its start."""
+        """Return the elements. Logs a warning if the modes at the end differ from those at the start."""
         for mode in _MODES:
             if getattr(self._own.modal, mode) != getattr(self._state.modal, mode):
                 text = (
@@ -141,7 +141,7 @@ class _Reader:
             self._moves.append((block, corner))
 
     def _begin(self, line: Statement, corner: Word | None) -> None:
-        """The first line is the way from the start point to the first point of the contour."""
+        """Read the first line, which is the move from the start point to the first point of the contour."""
         if line.entry.acts is Acts.ARC or corner is not None:
             column = corner.column if corner else 1
             text = "The first line of a contour defines its start point and cannot contain an arc or a corner"
@@ -155,7 +155,7 @@ class _Reader:
         return own.move(Kind.FEED, line.line, "", start, 0.0)
 
     def _shift(self, block: Block) -> Point:
-        """Return the shift in X (radius) and Z, mm, from the frame of this block to that of the cycle."""
+        """Return the shift in X (radius) and Z, in mm, from the frame of this block to that of the cycle."""
         return block.offset_x - self._state.offset_x, block.offset_z - self._state.offset_z
 
 
@@ -169,9 +169,9 @@ _SAME = 1e-6  # mm
 
 
 def contour_moves(state: State, statement: Statement, lines: Sequence[Statement]) -> list[Move]:
-    """The motions of G75 or G78 along the contour that ``lines`` describe, from the start and back to it.
+    """Return the motions of G75 or G78 along the contour in ``lines``, from the start point and back.
 
-    Raises ProgramError where words are missing, or no tool can run so.
+    Raises ProgramError if a word is missing or the contour cannot be cut from the start point.
     """
     number(state, statement, "P")
     cut = length(state, statement, "I") if statement.one_shot == 75 else None
@@ -221,7 +221,7 @@ def contour_moves(state: State, statement: Statement, lines: Sequence[Statement]
 
 
 def _falls_at_once(first: Element) -> bool:
-    """Whether a contour, in depth and way from the start point, goes deeper as soon as it goes on."""
+    """Return whether a contour, in depth and length from the start point, goes deeper at its first point."""
     (depth, way), (there, further) = first.start, first.end
     return there > depth + _SAME and abs(further - way) > _SAME
 
@@ -245,7 +245,7 @@ def _passes(
 
 
 def _view(state: State, statement: Statement, contour: list[Element]) -> ContourView:
-    """The contour as the start point sees it. Raises ProgramError (cycle-quadrant, cycle-nothing)."""
+    """Return the frame of the contour. Raises ProgramError with the code cycle-quadrant or cycle-nothing."""
     start, first, last = (state.x, state.z), contour[0].start, contour[-1].end
     for axis, letter in ((0, "X"), (1, "Z")):
         to_first, to_last = first[axis] - start[axis], last[axis] - start[axis]
@@ -267,9 +267,10 @@ def _view(state: State, statement: Statement, contour: list[Element]) -> Contour
 
 
 def box_moves(state: State, statement: Statement) -> list[Move]:
-    """Equal passes from the start's X to X, none deeper than I, U left on a side; back to the start.
+    """Return the motions of G74: equal passes of at most I from the start to X, with the allowance U.
 
-    The tool goes in at the feed: behind a shoulder it does so in material. Raises ProgramError.
+    The tool enters each pass at the feed, because it may cut material at a shoulder. The cycle ends at the
+    start point. Raises ProgramError for invalid words.
     """
     x = _corner(state, statement, "X", state.x, state.dx)
     z = _corner(state, statement, "Z", state.z, state.dz)
@@ -292,7 +293,7 @@ def box_moves(state: State, statement: Statement) -> list[Move]:
 
 
 def _corner(state: State, statement: Statement, letter: str, start: float, offset: float) -> float:
-    """X or Z of the corner opposite to the start."""
+    """Return X or Z of the corner opposite the start point."""
     end = length(state, statement, letter) + (offset if state.absolute else start)
     text = "The box has zero size along {letter} because its corner is at the start point."
     hint = "Correct {letter} or the start point."

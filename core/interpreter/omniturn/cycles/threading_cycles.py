@@ -1,6 +1,7 @@
-"""G33 and G34: a threading cycle → its passes, and the rapids between them.
+"""Threading cycles G33 and G34: the passes and the rapids between them.
 
-All lengths mm, X a radius. The formulas: docs/decisions/0004-contours-and-cycles-calculated-first.md.
+All lengths are in mm, with X as a radius. The formulas are in
+docs/decisions/0004-contours-and-cycles-calculated-first.md.
 """
 
 from __future__ import annotations
@@ -16,22 +17,23 @@ from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.shared.elementary_blocks import Block, Kind
 from core.message import Message
 
-# --- words, and what has to be right before a thread may be cut
+# --- words and checks of a thread
 
 
-MOST_PASSES = 1000  # the finest infeed of a real thread takes less than a hundred
+MOST_PASSES = 1000  # a real thread takes fewer than 100 passes
 _LEAST_LEAD = 0.0254  # mm/rev; the finest pitch of ISO 1501 is 0.08 mm
 _ROUNDING = 1 + 1e-9
-_CLICK = 1e-6  # of a pass: what √ and decimal fractions lack
+_CLICK = 1e-6  # of a pass; tolerance for the rounding of √ and decimal fractions
 _NEAR = 1e-6  # mm
 
 
 @dataclass(frozen=True, slots=True)
 class Thread:
-    """One threading cycle; mm, X a radius, radians. ``x0 z0`` is S.
+    """One threading cycle, in mm with X as a radius, and radians. ``x0 z0`` is the start point.
 
-    ``out`` is the sign of X away from the work, ``along`` of Z in the cutting direction. ``depth`` is how far
-    the last pass lies below S, ``first`` the I word per side, ``taper`` what X travels from S's Z to the end.
+    ``out`` is the sign of X away from the part, and ``along`` is the sign of Z in the cutting direction.
+    ``depth`` is the depth of the last pass from the start point, ``first`` is the I word per side, and
+    ``taper`` is the change of X from the start point to the end.
     """
 
     x0: float
@@ -49,12 +51,12 @@ class Thread:
 
     @property
     def retract(self) -> float:
-        """X of the way back: 3 I off S, and off the far end of a taper that rises."""
+        """X of the return move: 3 I outside the start point, plus the taper if the far end is farther out."""
         return self.x0 + self.out * (3 * self.first + max(self.out * self.taper, 0.0))
 
 
 def read_thread(state: State, statement: Statement) -> Thread:
-    """The cycle that a line asks for. Raises ProgramError with what is wrong."""
+    """Return the threading cycle of a line. Raises ProgramError if it is invalid."""
     if state.tool_line:
         check_tool(state, statement.line, None, None)
     number(state, statement, "P")
@@ -120,7 +122,7 @@ def _check_spindle(state: State, statement: Statement, lead: float) -> None:
 
 
 def _way(state: State, statement: Statement) -> tuple[float, float]:
-    """Sign of the cutting direction, and Z of the end."""
+    """Return the sign of the cutting direction, and Z of the end."""
     z = checked(state, statement, "Z", on_step(state, statement, "Z")) or 0.0
     z1 = (z if state.absolute else state.pz + z) + state.dz
     if abs(z1 - state.z) <= _NEAR:
@@ -130,7 +132,7 @@ def _way(state: State, statement: Statement) -> tuple[float, float]:
 
 
 def _depth(state: State, statement: Statement) -> tuple[float, float]:
-    """Depth of the last pass below S, and the sign of X away from the work."""
+    """Return the depth of the last pass from the start point, and the sign of X away from the part."""
     x = checked(state, statement, "X", on_step(state, statement, "X")) or 0.0
     x1 = (x if state.absolute else state.px + x) + state.dx
     here = Message("the tool is at radius {x}", x=state.modal.length_text(state.x))
@@ -146,7 +148,7 @@ def _depth(state: State, statement: Statement) -> tuple[float, float]:
 
 
 def _count(statement: Statement, depth: float, first: float, lead: float) -> int:
-    """Return the number of passes. Raises ProgramError for an I that does not fit the lead."""
+    """Return the number of passes. Raises ProgramError if I does not fit the lead."""
     text = "{text}: the first pass would be deeper than the lead."
     hint = "Correct I (the depth of the first pass) or K."
     statement.check(first <= lead, "I", "thread-depth", text, hint, text=statement.words["I"].text)
@@ -160,7 +162,7 @@ def _count(statement: Statement, depth: float, first: float, lead: float) -> int
 
 
 def _across(state: State, statement: Statement, letter: str) -> float | None:
-    """I or A: lengths across the axis, a diameter under G72."""
+    """Return I or A in mm as a radius (a diameter word under G72), or None without the word."""
     value = on_step(state, statement, letter)
     return None if value is None else value * state.scale_x / state.scale_z
 
@@ -170,14 +172,20 @@ _FACE = 1e-9  # mm
 
 
 def thread_blocks(state: State, statement: Statement) -> Iterator[Block]:
-    """The blocks of a line with G33 or G34, from S back to S. Raises ProgramError before the first one."""
+    """Return an iterator of the blocks of a G33 or G34 line, which start and end at the same point.
+
+    Raises ProgramError before the first block.
+    """
     thread = read_thread(state, statement)
     _warn(state, statement, thread)
     return _Cutter(state, statement, thread).blocks()
 
 
 def pass_depths(thread: Thread) -> list[float]:
-    """Depth of each pass from S, mm: I(√k - 1), so that every pass takes a chip of the same area."""
+    """Return the depth of each pass from the start point in mm.
+
+    The depths are I(√k - 1), so that each pass removes the same area.
+    """
     if thread.passes == 1:
         return [thread.depth]
     cuts = [thread.first * (k**0.5 - 1.0) for k in range(1, thread.passes)]
@@ -185,12 +193,12 @@ def pass_depths(thread: Thread) -> list[float]:
 
 
 def start_z(thread: Thread, depth: float) -> float:
-    """Where a pass of this depth starts: shifted along the flank in the cutting direction."""
+    """Return the start Z of a pass of this depth, shifted along the flank in the cutting direction."""
     return thread.z0 + thread.along * depth * tan(thread.angle)
 
 
 class _Cutter:
-    """Makes the blocks of one cycle one after the other."""
+    """Generator of the blocks of one threading cycle."""
 
     def __init__(self, state: State, statement: Statement, thread: Thread) -> None:
         self._state, self._line, self._thread = state, statement.line, thread
@@ -218,7 +226,7 @@ class _Cutter:
         self._state.x, self._state.z = thread.x0, thread.z0
 
     def _rapid(self, x: float, z: float) -> Iterator[Block]:
-        """A rapid, none where the slides stand there."""
+        """Yield a rapid, unless the axes are already at the target."""
         if max(abs(x - self._state.x), abs(z - self._state.z)) > _FACE:
             yield self._block(x, z, Kind.RAPID, self._state.modal.rapid_rate, self._text("G00", x, z))
 
@@ -233,7 +241,7 @@ class _Cutter:
         return state.move(kind, self._line, text, start, feed, per_rev=per_rev, rpm=self._rpm)
 
     def _text(self, code: str, x: float, z: float) -> str:
-        """As a line of the program would say it, in its unit and its X words."""
+        """Return the motion as a program line, in the active unit and X mode."""
         state = self._state
         places = 4 if state.modal.metric else 5
         return f"{code}X{x / state.scale_x + 0.0:.{places}f}Z{z / state.scale_z + 0.0:.{places}f}"
@@ -263,8 +271,11 @@ def _warn(state: State, statement: Statement, thread: Thread) -> None:
 
 
 def _run_up(thread: Thread) -> float:
-    """The way before the work begins, of the deepest pass: to part zero where the pass comes over it, else
-    all of it, since nothing says where the work begins."""
+    """Return the run-up of the deepest pass before the part, in mm.
+
+    It ends at part zero if the pass crosses part zero. Otherwise the whole pass counts, because the start of
+    the part is unknown.
+    """
     z = start_z(thread, thread.depth)
     if copysign(1.0, z) != copysign(1.0, thread.z1) and thread.z1 != 0.0:
         return abs(z)

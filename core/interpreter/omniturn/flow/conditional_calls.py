@@ -1,4 +1,4 @@
-"""Conditional calls (M95, M97) both ways: a pass that can be copied at an input and sent the other way."""
+"""Both branches of conditional calls (M95, M97): a pass that is copied at an input for the other branch."""
 
 from __future__ import annotations
 
@@ -19,48 +19,48 @@ from core.interpreter.shared.job_setup import Setup
 
 
 class Guide(Protocol):
-    """Who decides which ways are gone."""
+    """Record of the branches that have been executed."""
 
     def known(self, way: Branching) -> bool:
-        """Whether another pass has been in this state: all that comes has been gone through then."""
+        """Return whether another pass was in this state, so that the rest has already been checked."""
         ...
 
     def asked(self, way: Branching, statement: Statement, takes: bool) -> None:
-        """The way is about to ask an input, and will go on as ``takes`` says."""
+        """Record that a pass reads an input and continues with or without the call (``takes``)."""
         ...
 
 
 class Branching(Interpreter):
-    """A pass under the eyes of a guide. ``other`` of it goes the other way at the input about to be asked.
+    """A pass that a guide follows. ``other`` returns a copy that takes the other branch at the next input.
 
-    An input is taken to keep its state until something has been done: what stands in the way of that is told
-    by ``unlikely``.
+    An input is assumed to keep its state until an action occurs. ``unlikely`` is True if a branch contradicts
+    this assumption.
     """
 
     def __init__(self, program: Program, setup: Setup, guide: Guide) -> None:
         super().__init__(program, setup)
         self._guide = guide
-        self._approached = False  # a copy begins in the middle
-        self._fresh = False  # a copy whose first line is to be gone the other way
+        self._approached = False  # a copy starts in the middle of the program
+        self._fresh = False  # a copy whose first line must take the other branch
         self._choice: bool | None = None
-        self._held: dict[str, bool] = {}  # answers since which nothing has been done
-        self._held_to = 0  # blocks with the last of them
-        self.merged = False  # it has come to where another pass has been
-        self.unlikely = False  # an input has changed between two questions with nothing between them
+        self._held: dict[str, bool] = {}  # states of inputs since the last action
+        self._held_to = 0  # number of blocks at the last of these states
+        self.merged = False  # the pass has reached the state of another pass
+        self.unlikely = False  # an input has changed between two reads without an action between them
 
     @property
     def count(self) -> int:
-        """Blocks made so far, those of the pass it was copied from included."""
+        """Number of blocks so far, including the blocks of the pass that was copied."""
         return self._state.blocks
 
     @property
     def stopped(self) -> bool:
-        """Whether no block comes any more, because of an error."""
+        """Whether an error has stopped the blocks."""
         return self._stopped
 
     @property
     def key(self) -> Hashable:
-        """Equal in two passes only where everything that comes is equal, but for the inputs."""
+        """Key that is equal in two passes only if all later blocks are equal for equal inputs."""
         state = self._state
         return (
             self._flow.place,
@@ -73,7 +73,7 @@ class Branching(Interpreter):
         )
 
     def other(self, statement: Statement, takes: bool) -> Branching:
-        """The same state at a line that asks an input, to go on the other way with findings of its own."""
+        """Return a copy of this pass that takes the other branch at this line and has its own findings."""
         twin = copy(self)
         twin._log = Log()
         twin._state = state = copy(self._state)
@@ -89,7 +89,10 @@ class Branching(Interpreter):
         return twin
 
     def _answer(self, statement: Statement) -> bool | None:
-        """What the input has just been found to be, as far as the call goes; None: it was not asked."""
+        """Return whether the input of the call is closed, as far as it is known.
+
+        Returns None if the input was not read since the last action.
+        """
         if self._held_to != self._state.blocks:
             self._held = {}
         return self._held.get(terminal(statement))

@@ -1,4 +1,4 @@
-"""Loops, subroutines and the end of a program: found once before anything runs, then followed."""
+"""Loops, subroutines and program end, which are located before execution and then followed."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _CONTOUR_CYCLE = re.compile(r"G7[58](?![0-9])", re.IGNORECASE)
 
 
 class Structure(NamedTuple):
-    """Where the flow of a program goes; all positions are indices of lines, from 0."""
+    """Structure of a program. All positions are line indices from 0."""
 
     loop_ends: dict[int, int]  # index of LS → index of its LF
     loop_starts: dict[int, int]
@@ -31,18 +31,18 @@ class Structure(NamedTuple):
 
 
 class _Finder:
-    """Goes once through the statements that matter for structure."""
+    """Finder of the program structure, which reads the relevant statements once."""
 
     def __init__(self, length: int) -> None:
         self.found = Structure({}, {}, {}, {}, length, {})
         self.problems: list[Diagnostic] = []
         self._loops: list[Statement] = []
-        self._inside: int | None = None  # subroutine being read
-        self._job_end: int | None = None  # M30 or M02 in it after which nothing else has come, index of line
+        self._inside: int | None = None  # number of the subroutine that is being read
+        self._job_end: int | None = None  # line index of an M30 or M02 in it that no other statement follows
         self._ended = False
-        self._stray = False  # a line that nothing reaches has been told
-        self._contour: Statement | None = None  # G75 or G78 whose RF is still to come
-        self._contour_lost = False  # it is on a line that cannot be read
+        self._stray = False  # an unreachable line has been reported
+        self._contour: Statement | None = None  # G75 or G78 without its RF so far
+        self._contour_lost = False  # the G75 or G78 is on a line that cannot be read
 
     def take(self, statement: Statement) -> None:
         if self._in_contour(statement):
@@ -67,7 +67,10 @@ class _Finder:
             self._end_main(statement.line)
 
     def _in_contour(self, statement: Statement) -> bool:
-        """Whether the line is one of a contour, or its RF; it steers nothing then."""
+        """Return whether the line belongs to a contour or is its RF.
+
+        Such a line does not affect the structure.
+        """
         if statement.flow == "RF":
             if self._contour is None and not self._contour_lost:
                 self._refuse(
@@ -81,7 +84,7 @@ class _Finder:
             self._contour, self._contour_lost = None, False
             return True
         if statement.flow == UNREADABLE and _CONTOUR_CYCLE.search(statement.text):
-            self._contour_lost = True  # told already; its RF is no second mistake
+            self._contour_lost = True  # The error is already reported, so its RF must not cause another one.
         if statement.flow in {"}", "M99"} or statement.ends_program:
             self._open_contour()
         inside = self._contour is not None
@@ -132,7 +135,7 @@ class _Finder:
         self._inside = None
 
     def _closed_by_job_end(self, number: int) -> bool:
-        """An M30 or M02 ends the job from inside a subroutine, so one that ends with it needs no M99."""
+        """Return whether M30 or M02 ends the subroutine, so that the subroutine needs no M99."""
         if self._job_end is None:
             return False
         self.found.subroutine_ends.setdefault(number, self._job_end)
@@ -151,7 +154,7 @@ class _Finder:
     def _unclosed_loops(self) -> None:
         for statement in self._loops:
             if statement.flow == UNREADABLE:
-                continue  # told already
+                continue  # already reported
             self._refuse(
                 statement,
                 "loop-open",
@@ -173,7 +176,7 @@ class _Finder:
         self._ended = True
         self.found = self.found._replace(main_end=line)
         if any(problem.code == "m99-outside" for problem in self.problems):
-            return  # M99 was meant to end the program
+            return  # M99 was intended as the end of the program.
         text = "The main program ends without M30 or M02."
         self.problems.append(refusal(line, 0, "no-end", text, "Write M30 before the subroutines."))
 
@@ -194,19 +197,19 @@ class _Finder:
 
 
 def _ends(statement: Statement) -> bool:
-    """Whether the line ends the job, or was meant to."""
+    """Return whether the line ends the program, or is an unreadable line that was intended to do so."""
     return statement.ends_program or _unread(statement, "M0*(?:30|2)(?![0-9])")
 
 
 def _unread(statement: Statement, word: str) -> bool:
-    """Whether a line that cannot be read was meant as this: what follows from it is no second mistake."""
+    """Return whether an unreadable line was probably intended as this word."""
     return statement.flow == UNREADABLE and re.search(word, statement.text.upper()) is not None
 
 
 def find_structure(statements: Iterable[Statement], length: int) -> tuple[Structure, list[Diagnostic]]:
-    """The structure of a program of ``length`` lines, and what is wrong with it.
+    """Return the structure of a program of ``length`` lines, and its errors.
 
-    ``statements``: its lines that are more than X and Z, in order.
+    ``statements`` are the lines with more than X and Z, in order.
     """
     finder = _Finder(length)
     calls: list[Statement] = []
@@ -229,66 +232,69 @@ def find_structure(statements: Iterable[Statement], length: int) -> tuple[Struct
 
 
 def call_target(statement: Statement) -> int:
-    """Number of the subroutine that a call names; M95 always means 1."""
+    """Return the number of the called subroutine; M95 always calls subroutine 1."""
     return 1 if statement.flow == "M95" else int(statement.value("P") or 0)
 
 
 def terminal(statement: Statement) -> str:
-    """The input that a conditional call asks."""
+    """Return the input that a conditional call reads."""
     return FLOW_CODES[statement.flow].terminal[0] or f"{statement.value('I'):.0f}"
 
 
 def takes_call(statement: Statement, inputs: Callable[[str], bool]) -> bool:
-    """Whether a conditional call is made as the inputs stand."""
+    """Return whether a conditional call is made with the present states of the inputs."""
     return inputs(terminal(statement)) == called_when(statement)
 
 
 def called_when(statement: Statement) -> bool:
-    """The state of its input in which a conditional call is made."""
+    """Return the input state in which a conditional call is made."""
     return statement.flow == "M95" or statement.value("C") == 1
 
 
 class Flow(ControlFlow[Frame[Structure]]):
-    """The place in a program, with the line before which it has to stop."""
+    """Position in a program, with an optional line at which execution stops."""
 
     def __init__(self, structure: Structure) -> None:
         super().__init__(Frame(structure, 0, structure.main_end))
-        self._stop: int | None = None  # index of a line before which it stops, wherever it comes to it
+        self._stop: int | None = None  # index of the line before which execution stops
 
     def twin(self) -> Flow:
-        """The same place, to go on from there by itself."""
+        """Return an independent copy of this position."""
         twin = copy(self)
         twin.frames = [replace(each, left=dict(each.left)) for each in self.frames]
         twin.here = twin.frames[-1]
         return twin
 
     def stop(self) -> None:
-        """End the program here: no line is executed any more."""
+        """End the program here, so that no further line is executed."""
         self._stop = None
         self.end = self.at
 
     def until(self, line: int) -> None:
-        """Stop before this line, counted from 1, in whatever pass or call it comes next."""
+        """Stop before this line (from 1) the next time execution reaches it, in any loop pass or call."""
         self._stop = line - 1
         self._bound()
 
     @property
     def stopped(self) -> bool:
-        """Whether the line of ``until`` is what would be executed next."""
+        """Whether the line of ``until`` is the next line."""
         return self._stop is not None and self.at == self._stop
 
     def pass_stop(self) -> None:
-        """Execute the line of ``until`` this time, and stop when it comes again."""
+        """Execute the line of ``until`` once, and stop when execution reaches it again."""
         self.end = self.here.end
 
     @property
     def place(self) -> FlowPlace:
-        """The line, and the loops and calls under way, outermost first: equal where all to come is."""
+        """The position with all active loops and calls, the outermost first.
+
+        Programs continue equally from equal positions.
+        """
         self.here.at = self.at
         return tuple(FlowLevel(each.at, each.end, tuple(each.left.items())) for each in self.frames)
 
     def resume(self, line: int, place: FlowPlace) -> None:
-        """Be before this line, counted from 1, with these loops and calls under way."""
+        """Set the next line (from 1) and the active loops and calls."""
         if place:
             structure = self.here.routine
             self.frames = [Frame(structure, run.back, run.end, dict(run.loops)) for run in place]
@@ -296,21 +302,21 @@ class Flow(ControlFlow[Frame[Structure]]):
         self.at = line - 1
 
     def _bound(self) -> None:
-        """The run goes to its end, or to where it has to stop before."""
+        """Set the end of execution: the end of the frame, or the line before which execution stops."""
         stop, end = self._stop, self.here.end
         self.end = stop if stop is not None and self.at <= stop < end else end
 
     def passes_left(self, start: int) -> int:
-        """How often the inner loop will go back from its LF; 0 where its LS is not that of this index."""
+        """Return the remaining repeats of the innermost loop; 0 if its LS is not at index ``start``."""
         left = self.here.left
         return left[start] if left and next(reversed(left)) == start else 0
 
     def passed(self, start: int, times: int) -> None:
-        """The loop with this LS has been gone through so often, each time back to its first line."""
+        """Record ``times`` executions of the loop with this LS, each ending back at its first line."""
         self.here.left[start] -= times
 
     def steer(self, statement: Statement) -> None:
-        """Follow a line of LS, LF or M99."""
+        """Execute a line with LS, LF or M99."""
         flow, self.at = statement.flow, statement.line
         frame, here = self.here, statement.line - 1
         if flow == "LF":
@@ -323,12 +329,12 @@ class Flow(ControlFlow[Frame[Structure]]):
             self._bound()
 
     def call(self, statement: Statement) -> None:
-        """Go to the subroutine that the line names. Raises ProgramError for calls nested too deep."""
+        """Enter the subroutine that the line calls. Raises ProgramError if calls are nested too deeply."""
         number, structure = call_target(statement), self.here.routine
         self.at = statement.line
         start = structure.subroutines.get(number)
         if start is None:
-            return  # told when the program was read
+            return  # already reported when the program was read
         if len(self.frames) > DEEPEST_CALL:
             text = Message(
                 "Subroutine calls are nested more than {deepest_call} levels deep.", deepest_call=DEEPEST_CALL
@@ -339,9 +345,9 @@ class Flow(ControlFlow[Frame[Structure]]):
             self._bound()
 
     def contour(self, statement: Statement) -> range | None:
-        """Indices of the lines that describe the contour of a G75 or G78, which the flow passes by.
+        """Return the line indices of the contour of a G75 or G78, and skip these lines.
 
-        None where there are none; that has been told when the program was read.
+        Returns None if the contour is missing, which was reported when the program was read.
         """
         structure = self.here.routine
         if "P" not in statement.words:
@@ -355,7 +361,7 @@ class Flow(ControlFlow[Frame[Structure]]):
         return None if start is None else range(start + 1, structure.subroutine_ends.get(number, start))
 
     def _loop_end(self, left: dict[int, int], start: int | None) -> None:
-        """Back to the line behind LS, as often as it says; only from the LF of the inner loop."""
+        """Jump back to the line after LS while repeats remain, but only from the LF of the innermost loop."""
         if start is None or next(reversed(left), None) != start:
             return
         if left[start] > 0:

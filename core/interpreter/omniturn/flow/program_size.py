@@ -1,4 +1,4 @@
-"""How much a program would execute, worked out before it runs: loops of loops are refused, not tried."""
+"""Size of a program, calculated before execution, so that programs with excessive loops are rejected."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from core.message import Message
 
 
 class Count(NamedTuple):
-    """Elementary blocks and executed lines, and the line of the loop that is to blame (0: none)."""
+    """Number of elementary blocks and executed lines, and the line of the largest loop (0 for none)."""
 
     blocks: int = 0
     lines: int = 0
@@ -24,9 +24,10 @@ class Count(NamedTuple):
 
 
 def refuse_too_large(program: Program, inputs: Callable[[str], bool]) -> Diagnostic | None:
-    """The error for a program that would execute too much, or None.
+    """Return the error for a program that executes too many blocks or lines, or None.
 
-    Loops multiply, subroutines count where they are called, conditional calls as the inputs stand now.
+    Loops multiply the counts, and subroutines count at each call. Conditional calls depend on the present
+    inputs.
     """
     if not program.structure.loop_ends and not program.structure.subroutines:
         return _refusal(Count(len(program.ready), len(program.ready)))
@@ -54,7 +55,7 @@ def _refusal(count: Count) -> Diagnostic | None:
 
 
 def _written(count: int) -> str:
-    """The count in full up to 10^24; deep nests of loops make numbers that no line and no reader holds."""
+    """Return a count as text, up to 10^24 in full and above that as a power of ten."""
     tens = int(math.log10(count))
     return f"{count:,}" if tens < 24 else Message("about 10^{tens}", tens=tens)
 
@@ -66,8 +67,9 @@ class _Counter:
         self._known: dict[tuple[int, int], Count] = {}
 
     def region(self, start: int, end: int, depth: int) -> Count:
-        """What the lines from ``start`` to before ``end`` execute, called ``depth`` deep."""
-        open_loops: list[tuple[int, int, Count]] = []  # where it ends, how often it runs, what came before
+        """Return the count of the lines from index ``start`` to before ``end``, at call depth ``depth``."""
+        # end of the loop, number of passes, count before the loop
+        open_loops: list[tuple[int, int, Count]] = []
         total = Count()
         loop_ends, ready = self._program.structure.loop_ends, self._program.ready
         at = start
@@ -124,7 +126,7 @@ def _sum(a: Count, b: Count) -> Count:
 
 
 def blocks_of(statement: Statement) -> int:
-    """Elementary blocks that a line makes at most; of a cycle, at least."""
+    """Return the maximum number of elementary blocks of a line; for a cycle, the minimum."""
     if statement.flow:
         return (
             1
@@ -139,5 +141,5 @@ def blocks_of(statement: Statement) -> int:
 
 
 def corner_words(statement: Statement) -> int:
-    """Blocks that C and R put between this move and the next; C may be an axis word instead."""
+    """Return the number of blocks that C and R add before the next move; C may also be an axis word."""
     return int(statement.one_shot is None and not {"C", "R"}.isdisjoint(statement.words))

@@ -1,4 +1,4 @@
-"""Arcs, G02 and G03: the centre by R, or by I and K."""
+"""Arcs with G02 and G03, with the center from R or from I and K."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from core.message import Message
 
 _TOLERANCE = 0.0005 * units.MM_PER_INCH * (1 + 1e-9)
 _SAME = 1e-9  # mm
-_ROUNDED = 0.01  # radians: what rounded end points and centers add to half a circle
+_ROUNDED = 0.01  # radians; tolerance for rounded end points and centers at half a circle
 
 
 def arc_move(state: State, statement: Statement) -> Block:
-    """The arc of a line. Raises ProgramError where its words give no arc."""
+    """Return the block of an arc. Raises ProgramError if its words do not define an arc."""
     x, z = on_step(state, statement, "X"), on_step(state, statement, "Z")
     start, programmed = (state.x, state.z), (state.px, state.pz)
-    go(state, x, z)  # before any refusal, so that the lines after it are judged from the right point
+    go(state, x, z)  # The position is set before any error, so that later lines start from the correct point.
     check_tool(state, statement.line, x, z)
     check_when(state, statement, statement.entry)
     check_together(statement, statement.entry)
@@ -45,7 +45,10 @@ def arc_move(state: State, statement: Statement) -> Block:
 
 
 def _warn_of_long_way(state: State, statement: Statement, sweep: float) -> None:
-    """More than half a circle by I and K: an insert can hardly cut it; the code is that of the other way."""
+    """Log a warning for an arc of more than half a circle with I and K.
+
+    An insert can hardly cut such an arc, so the code is probably that of the opposite direction.
+    """
     if pi + _ROUNDED < sweep < 2.0 * pi - _ROUNDED:
         text = "The arc spans {sweep} degrees."
         hint = "Check G02 and G03, and the signs of I and K."
@@ -76,7 +79,7 @@ def _centre_by_radius(state: State, statement: Statement, start: Point, *, clock
 
 
 def _centre_by_words(state: State, statement: Statement, start: Point) -> Point:
-    """Centre by I and K: coordinates under G90 G73, else distances from the start of the arc."""
+    """Return the center from I and K: coordinates under G90 with G73, otherwise distances from the start."""
     i, k = on_step(state, statement, "I"), on_step(state, statement, "K")
     if state.modal.diameter or not state.absolute:
         return start[0] + (i or 0.0) + state.dx, start[1] + (k or 0.0) + state.dz

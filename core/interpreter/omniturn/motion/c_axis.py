@@ -1,4 +1,4 @@
-"""Spindle positioning: M19, M89 and G89 make the spindle the axis C; CA, CI and C turn it."""
+"""C axis: M19, M89 and G89 lock the spindle as the C axis, and CA, CI and C move it."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ _SAME = 1e-9  # degrees, mm
 
 
 def positions(state: State, statement: Statement) -> bool:
-    """Whether S on this line is the speed of C and not of the spindle."""
+    """Return whether S on this line is the speed of the C axis instead of the spindle speed."""
     return statement.locks or (statement.turns and state.modal.c_locked)
 
 
 def lock(state: State, statement: Statement) -> Iterator[Block]:
-    """M19, M89, G89: stop and lock; M19 then turns to 0 and counts from there."""
+    """Yield the blocks of M19, M89 or G89, which stop and lock the spindle; M19 then turns C to 0."""
     word = statement.m_word if statement.m in {19, 89} else statement.code
     code = statement.m_code if statement.m_code is not None and statement.m in {19, 89} else statement.entry
     check_when(state, statement, code, word=word)
@@ -43,20 +43,23 @@ def lock(state: State, statement: Statement) -> Iterator[Block]:
 
 
 def _entry(state: State, statement: Statement) -> Code:
-    """Of the word that turns C; C alone counts like CA under G90 and like CI under G91."""
+    """Return the entry of the word that moves C; C alone acts like CA under G90 and like CI under G91."""
     return LETTERS[
         "CI" if "CI" in statement.words or ("C" in statement.words and not state.absolute) else "CA"
     ]
 
 
 def speed_of_c(state: State, statement: Statement, code: Code) -> float | None:
-    """S of the line in rpm, unsigned; None without S. Raises ProgramError beyond what C can do."""
+    """Return S of the line in rpm, unsigned, or None. Raises ProgramError above the limit of C."""
     speed = statement.value("S")
     return None if speed is None else checked(state, statement, "S", abs(speed), code)
 
 
 def _to_zero(state: State, statement: Statement) -> Iterator[Block]:
-    """Turn to 0 by the sign of S, without S by the short way. C then counts from 0 again."""
+    """Yield the turn of C to 0 in the direction of the sign of S, or by the shorter distance without S.
+
+    C then counts from 0 again.
+    """
     at = state.c + state.modal.offset_c
     over = at % _TURN
     if min(over, _TURN - over) <= _SAME:
@@ -73,7 +76,7 @@ def _to_zero(state: State, statement: Statement) -> Iterator[Block]:
 
 
 def c_move(state: State, statement: Statement) -> Iterator[Block]:
-    """A line with C: alone it turns C, with X or Z it is one move of all of them."""
+    """Yield the move of a line with C, alone or together with X and Z."""
     word = _c_word(state, statement)
     warn_of_short_dwell(state)
     c0, x0, z0 = state.c, state.x, state.z
@@ -103,7 +106,7 @@ def c_move(state: State, statement: Statement) -> Iterator[Block]:
 
 
 def rotation(state: State, line: int, text: str, goal: float) -> Block:
-    """C alone turns to ``goal`` (degrees) at the speed in force; the state stands there afterwards."""
+    """Return the block that turns C alone to ``goal`` (degrees) at the active speed, and update the state."""
     rpm = state.modal.c_rpm or state.setup.limits.c_max_rpm
     c0, state.c = state.c, goal
     start = state.x, state.z, c0
@@ -121,7 +124,7 @@ def _c_word(state: State, statement: Statement) -> Word:
 
 
 def _goal(state: State, statement: Statement, word: Word) -> float:
-    """Where C shall stand, degrees, on its step."""
+    """Return the target of C in degrees, rounded to its step."""
     step, value = state.setup.limits.c_step, word.value or 0.0
     count = round(value / step)
     if abs(value / step - count) > 1e-6:
@@ -141,7 +144,10 @@ def _goal(state: State, statement: Statement, word: Word) -> float:
 
 
 def _check_turns(state: State, statement: Statement, word: Word, way: float, turn: float) -> None:
-    """A slide fed by the turns of C: C must turn far enough, at a speed that somebody has given."""
+    """Check a move with feed per revolution of C. Raises ProgramError.
+
+    C must turn far enough for the move, and its speed must be programmed.
+    """
     modal, limits = state.modal, state.setup.limits
     feed = modal.feed or 0.0
     if modal.c_rpm is None:

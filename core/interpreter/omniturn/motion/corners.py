@@ -1,4 +1,4 @@
-"""C and R on a straight move, and from the moves of the lines to the blocks: corners, then the nose."""
+"""Corners with C and R, and the stages from the moves of the lines to blocks: corners, then compensation."""
 
 from __future__ import annotations
 
@@ -32,9 +32,9 @@ point, or all motion before it must have ended."""
 
 
 def read_corner(state: State, statement: Statement) -> None:
-    """Note the corner of a line whose straight move has been made. Raises ProgramError for a bad size.
+    """Store the corner of a line after its straight move. Raises ProgramError for an invalid size.
 
-    A C word is a corner unless C is an axis at the moment.
+    A C word is a corner unless C is an axis.
     """
     chamfers = None if state.modal.c_locked else statement.words.get("C")
     word = statement.words.get("R") or chamfers
@@ -48,13 +48,13 @@ def read_corner(state: State, statement: Statement) -> None:
 
 
 def corner_size(state: State, statement: Statement, word: Word) -> float:
-    """The size that a C or R word gives a corner, mm. Raises ProgramError where it is none."""
+    """Return the size of a corner in mm. Raises ProgramError if it is invalid."""
     size = on_step(state, statement, word.letter)
     return checked(state, statement, word.letter, size or 0.0, LETTERS[word.letter]) or 0.0
 
 
 def refuse_radius(state: State, statement: Statement) -> None:
-    """Raises ProgramError for R on a line without a straight move of X and Z alone."""
+    """Raise ProgramError for R on a line without a straight move of only X and Z."""
     word = statement.words.get("R")
     if word is not None:
         check_when(state, statement, LETTERS["R"], word=word)
@@ -64,14 +64,14 @@ _Held = HeldMove[Corner, CompensationSwitch]
 
 
 class Corners(CornerStage[Corner, CompensationSwitch]):
-    """Corners between two straight moves."""
+    """Corner stage for corners between two straight moves."""
 
     def __init__(self, log: Log, moves: AdjustedMoves) -> None:
         super().__init__(moves)
         self._log = log
 
     def check(self, statement: Statement) -> None:
-        """Refuse a line that begins with no plain move while one waits. Raises ProgramError."""
+        """Raise ProgramError if a corner waits for a move and the line does not begin with a plain move."""
         held = self._held
         if held is not None and statement.one_shot is not None and not statement.entry.before_corner:
             what = statement.code.text if statement.code is not None else "the motion"
@@ -79,7 +79,7 @@ class Corners(CornerStage[Corner, CompensationSwitch]):
             raise _refused(held, "corner-next", text)
 
     def end(self) -> None:
-        """No block comes any more. Raises ProgramError where a corner is left."""
+        """Check the end of the program. Raises ProgramError if a corner remains."""
         held, self._held = self._held, None
         if held is not None:
             raise _refused(held, "corner-next", "no move follows the corner")
@@ -138,10 +138,10 @@ class Corners(CornerStage[Corner, CompensationSwitch]):
 
 
 class ContourCorners(Corners):
-    """Those of a contour that a cycle reads."""
+    """Corner stage for the contour of a cycle."""
 
     def cut(self, moves: Iterable[tuple[Block, Corner | None]]) -> list[Block]:
-        """The moves with their corners cut. Raises ProgramError for a corner that cannot be made."""
+        """Return the moves with their corners inserted. Raises ProgramError if a corner is not possible."""
         found = [each for move in moves for each in self.take(*move) if isinstance(each, Block)]
         if self._held is not None:
             raise _refused(self._held, "corner-next", "the contour ends at this corner")
@@ -181,10 +181,10 @@ def _refused(held: _Held, code: str, why: str) -> ProgramError:
 
 
 class ContourModifier:
-    """Holds blocks back while a corner waits for its second move or nose compensation is on.
+    """Buffer of blocks while a corner waits for its second move or nose compensation is on.
 
-    It holds no more than one corner and the moves that compensation looks ahead; the blocks that come out
-    are counted on without a gap.
+    It buffers at most one corner and the moves that compensation looks ahead. The returned blocks are
+    numbered without a gap.
     """
 
     def __init__(self, state: State) -> None:
@@ -192,12 +192,12 @@ class ContourModifier:
         moves = WordedMoves(state.setup.limits.max_rpm)
         self._corners = Corners(state.log, moves)
         self._nose = Compensation(state.log, moves)
-        self._count: int | None = None  # number of the last block handed out, while active
+        self._count: int | None = None  # number of the last returned block while the modifier is active
 
     def take(self, block: Block) -> Iterator[Block]:
-        """Take a block as its line made it; yields the blocks that no later line can change.
+        """Accept a block, and yield the blocks that no later line can change.
 
-        Raises ProgramError where the corner cannot be cut, or the nose cannot follow.
+        Raises ProgramError if the corner or the compensation is not possible.
         """
         state = self._state
         corner, state.contour.corner = state.contour.corner, None
@@ -208,23 +208,26 @@ class ContourModifier:
         yield from self._put(block, corner)
 
     def check(self, statement: Statement) -> None:
-        """Refuse a line that may not follow the moves that are held back. Raises ProgramError."""
+        """Raise ProgramError if a line is not allowed after the buffered moves."""
         if self._state.contour.active:
             self._corners.check(statement)
             check_under_nose(self._state, statement)
 
     def switch(self, switch: CompensationSwitch) -> Iterator[Block]:
-        """G41, G42 or G40; yields the blocks that no later line can change. Raises ProgramError."""
+        """Process G41, G42 or G40, and yield the blocks that no later line can change.
+
+        Raises ProgramError if compensation is not possible.
+        """
         self._begin(self._state.blocks)
         yield from self._put(switch, None)
 
     def end(self) -> Iterator[Block]:
-        """The program is over. Raises ProgramError where a corner still waits for its second move."""
+        """Process the end of the program. Raises ProgramError if a corner still waits for its second move."""
         self._corners.end()
         yield from ()
 
     def drop(self) -> None:
-        """After an error: forget all that is held back, so that none of it is handed out."""
+        """Discard all buffered blocks after an error."""
         self._corners.drop()
         self._nose.drop()
         self._count = None
@@ -248,5 +251,5 @@ class ContourModifier:
         state.contour.active = self._corners.holds or self._nose.active
         if not state.contour.active:
             state.blocks = count
-            state.contour.approach = 0  # a T may have ended what had not begun
+            state.contour.approach = 0  # A T may have canceled compensation before its approach.
             self._count = None

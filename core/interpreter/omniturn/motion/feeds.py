@@ -1,6 +1,6 @@
-"""Feed words: G94 G95, F, G00 G01, what a feed move needs before it may run; coarse feeds G35, G35F2, G36.
+"""Feed words G94, G95, F, G00 and G01, checks of feed moves, and the coarse feeds G35, G35F2 and G36.
 
-A coarse feed is bought with a coarser step, so the position is said anew each time.
+A coarse feed has a coarser resolution, so the position must be programmed again (G92) at each change.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ from core.language.omniturn import Word
 from core.message import Message
 
 _LEAST = LETTERS["F"].rules["F"].least * units.MM_PER_INCH  # per minute or per revolution
-SLOW_MOVE = 30.0  # s; a single move that takes longer was hardly meant
-_TAPPING_LINES = 6  # so soon after the feed the spindle turns back
+SLOW_MOVE = 30.0  # s; a longer move is probably a mistake
+_TAPPING_LINES = 6  # number of lines within which tapping reverses the spindle
 _ROUNDING = 1 + 1e-9
 
 
 def feed_words(state: State, statement: Statement, *, first: bool) -> None:
-    """G94, G95, G00, G01 and F of a line. ``first``: it is the program's first line."""
+    """Execute G94, G95, G00, G01 and F of a line; ``first`` means the first line of the program."""
     modes = {0, 1, 94, 95}.intersection(statement.modal)
     word = statement.words.get("F") if statement.f_is_feed else None
     if not modes and word is None:
@@ -79,7 +79,8 @@ def _feed(state: State, statement: Statement, word: Word, *, first: bool) -> Non
     state.title_rapid = 0
     state.reported.discard("feed-missing")
     least = _LEAST if modal.per_rev else _LEAST / 60
-    within = min(max(feed, least), most)  # after an error too, so that the rest can be judged
+    # The feed is also set after an error, so that later lines can be checked.
+    within = min(max(feed, least), most)
     if first and not modal.per_rev:
         state.first_feed = within
         state.adopt(state.modal._replace(feed=within, rapid=False, rapid_rate=within))
@@ -93,10 +94,10 @@ def _feed(state: State, statement: Statement, word: Word, *, first: bool) -> Non
 
 
 def another_feed(state: State, f: float) -> bool:
-    """Takes F of a plain move into force where that is all its line changes: another feed of a cut.
+    """Set the feed of a plain move if a new cutting feed is its only change; return whether it was set.
 
-    False, and nothing is changed, where its statement is needed: after a rapid, while a cycle or compensation
-    is described, under G35 and G36, for a feed that is refused or warned of.
+    Returns False, without a change, if the full statement is needed: after a rapid, during a contour or
+    compensation, under G35 and G36, and for a feed that causes an error or a warning.
     """
     feed = state.feed_word(f)
     if state.modal.coarse or state.contour.active or not _is_usual(state, feed):
@@ -108,7 +109,7 @@ def another_feed(state: State, f: float) -> bool:
 
 
 def _is_usual(state: State, feed: float) -> bool:
-    """Whether a cut is under way for which this feed, mm/s or mm/rev, is neither refused nor warned of."""
+    """Return whether this cutting feed (mm/s or mm/rev) causes neither an error nor a warning."""
     per_rev = state.modal.per_rev
     most = limit(state, Limit.FEED_IN_FORCE)
     least, most = (_LEAST, min(most, HIGH_FEED)) if per_rev else (_LEAST / 60, most)
@@ -116,9 +117,9 @@ def _is_usual(state: State, feed: float) -> bool:
 
 
 def is_free(state: State, feed: float) -> bool:
-    """Whether a move at another feed, mm/s or mm/rev, would pass all checks but that of its length.
+    """Return whether a move at another feed (mm/s or mm/rev) passes all checks except that of its length.
 
-    ``state.fast`` must hold: a move at the feed in force has passed them.
+    Requires ``state.fast``: a move at the active feed must have passed the checks.
     """
     if not (state.cut and _is_usual(state, feed)) or state.is_first_feed(feed):
         return False
@@ -126,19 +127,19 @@ def is_free(state: State, feed: float) -> bool:
 
 
 def speed_of(state: State, feed: Numbers) -> Numbers:
-    """mm/s of feeds as they are programmed, of a spindle whose speed does not change."""
+    """Return programmed feeds in mm/s at a constant spindle speed."""
     return feed * abs(state.rpm) / 60 if state.modal.per_rev else feed
 
 
 def set_feed(state: State, feed: float) -> None:
-    """Take the feed of the last move of a series into force; the next plain move needs no check either."""
+    """Set the feed of the last move of a series, so that the next plain move needs no checks."""
     state.adopt(with_feed(state.modal, feed))
     state.slow_length = speed_of(state, feed) * SLOW_MOVE
     state.fast = True
 
 
 def out_of_range(modal: Modal, feed: float, least: float, most: float) -> tuple[str, str, str]:
-    """Code, sentence and remedy for a feed that is none, as G94 or G95 counts it."""
+    """Return code, message and remedy for an invalid feed under G94 or G95."""
     rule = LETTERS["F"].rules["F"]
     refusal = rule.too_great if feed > most else rule.wrong
     assert refusal is not None
@@ -152,7 +153,7 @@ def out_of_range(modal: Modal, feed: float, least: float, most: float) -> tuple[
 
 
 def warn_of_crash_feed(state: State, statement: Statement, ahead: Sequence[ReadyLine]) -> None:
-    """F003 for F.003: warn of a G95 feed over .05 in/rev, unless the spindle turns back soon (tapping)."""
+    """Warn of F003 for F.003: a G95 feed above 0.05 in/rev, unless the spindle reverses soon (tapping)."""
     modal, word = state.modal, statement.words.get("F")
     if word is None or not statement.f_is_feed or not modal.per_rev or modal.coarse or modal.feed is None:
         return
@@ -172,9 +173,9 @@ def _taps(spindle: int, ahead: Sequence[ReadyLine]) -> bool:
 
 
 def check_move(state: State, line: int, x0: float, x: float, length: float) -> None:
-    """Whether a straight move or arc from radius ``x0`` to ``x`` may run at the feed in force.
+    """Check the feed of a straight move or arc from radius ``x0`` to ``x``, with ``length`` in mm.
 
-    Raises ProgramError with code feed-missing, spindle-stopped or feed-over-speed.
+    Raises ProgramError with the code feed-missing, spindle-stopped, surface-speed-missing or feed-over-speed.
     """
     if state.turning is not None:
         warn_of_short_dwell(state)
@@ -198,7 +199,7 @@ def check_move(state: State, line: int, x0: float, x: float, length: float) -> N
         _once(state, line, "surface-speed-missing", text, "Program S together with G96.")
         return
     rpm = max(abs(state.rpm_at(x0)), abs(state.rpm_at(x)))
-    if x0 * x < 0:  # over the centre
+    if x0 * x < 0:  # across the spindle centerline
         rpm = max(rpm, abs(state.rpm_at(0.0)))
     if not rpm:
         text = (
@@ -230,7 +231,7 @@ def check_move(state: State, line: int, x0: float, x: float, length: float) -> N
 
 
 def _once(state: State, line: int, code: str, message: str, hint: str) -> None:
-    """Refuse a move; the moves after it that lack the same thing say nothing new."""
+    """Raise ProgramError for a move, but only once for each code."""
     if code not in state.reported:
         state.reported.add(code)
         raise program_error(line, 0, code, message, hint)
@@ -248,16 +249,19 @@ def _warn_slow(state: State, line: int, length: float, speed: float) -> None:
 
 
 COARSE = frozenset({35, 36})
-_COARSE_STEP = 0.0005 * units.MM_PER_INCH * (1 + 1e-9)  # mm; the coarsest step
+_COARSE_STEP = 0.0005 * units.MM_PER_INCH * (1 + 1e-9)  # mm; the coarsest resolution
 
 
 def looks_ahead(statement: Statement) -> bool:
-    """Whether the lines that follow must be known: G92 behind G35 and G36, tapping behind F."""
+    """Return whether a line needs the following lines: G92 after G35 and G36, or tapping after F."""
     return "F" in statement.words or not COARSE.isdisjoint(statement.modal)
 
 
 def coarse_line(state: State, statement: Statement, ahead: Sequence[ReadyLine]) -> bool:
-    """Carry out a line of G35 or G36; False for any other. Raises ProgramError, for a T under G35 too."""
+    """Execute a line with G35 or G36; return False for any other line. Raises ProgramError.
+
+    T is an error while G35 is active.
+    """
     if COARSE.isdisjoint(statement.modal):
         if "T" in statement.words:
             check_when(state, statement, LETTERS["T"])
@@ -267,7 +271,7 @@ def coarse_line(state: State, statement: Statement, ahead: Sequence[ReadyLine]) 
 
 
 def _change(state: State, statement: Statement, ahead: Sequence[ReadyLine]) -> None:
-    """Take up or leave a coarse step. ``ahead``: the lines that follow."""
+    """Start or end the coarse feed; ``ahead`` are the following lines."""
     code = 35 if 35 in statement.modal else 36
     before = state.modal.coarse
     entry = G_CODES[code]
@@ -285,7 +289,7 @@ def _change(state: State, statement: Statement, ahead: Sequence[ReadyLine]) -> N
 
 
 def _check_place(state: State, statement: Statement, code: int) -> None:
-    """G36 ends a coarse feed where G35 began it."""
+    """Check that G36 is at the position of its G35. Raises ProgramError."""
     if code == 35 or state.coarse_at is None:
         return
     x, z = state.coarse_at
@@ -294,14 +298,15 @@ def _check_place(state: State, statement: Statement, code: int) -> None:
             state.modal.length_text(x - state.offset_x),
             state.modal.length_text(z - state.offset_z),
         )
-        state.adopt(state.modal._replace(coarse=0))  # so that the rest is judged as it was meant
+        # G36 takes effect, so that later lines are checked as intended.
+        state.adopt(state.modal._replace(coarse=0))
         text = "G36 is not at the same position as G35, which was at radius {place}, Z {place2}."
         hint = "Move back to the G35 position before G36."
         raise statement.refuse(1, "coarse-place", text, hint, place=place[0], place2=place[1])
 
 
 def _check_preset(state: State, statement: Statement, code: int, ahead: Sequence[ReadyLine]) -> None:
-    """The next line says where the slides stand: G92 with the coordinates in force."""
+    """Check that the next line is G92 with the present coordinates. Raises ProgramError."""
     line = next((step for step in ahead if step is not None), None)
     hint = "Write G92 with the current X and Z on the next line."
     if not isinstance(line, Statement) or line.one_shot != 92 or not {"X", "Z"}.issubset(line.words):

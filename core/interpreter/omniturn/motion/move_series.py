@@ -1,7 +1,7 @@
-"""Straight moves of many lines at once, as a series: consecutive lines, or passes of a loop.
+"""Series of straight moves from many lines: consecutive lines, or passes of a loop.
 
-Nothing is decided here. ``in_force`` says which words change nothing, moves end where ``line_to`` ends, and a
-word off the step or a move that takes long is told by whoever tells it of a single line.
+All rules are in other modules: ``in_force`` determines which words change nothing, the end points are those
+of ``line_to``, and warnings are logged by the functions for single lines.
 """
 
 from __future__ import annotations
@@ -22,21 +22,24 @@ from core.interpreter.shared.elementary_blocks import Block, Series, with_feed
 
 
 def unchanged(state: State, lines: Columns) -> Bools:
-    """Lines (m,) that hold nothing but X, Z and what is in force already."""
+    """Return a mask (m,) of the lines with only X, Z and words that are already active."""
     answer = lines.known.copy()
     fed = ~np.isnan(lines.f)
     for g in (0, 1, NO_CODE):
         coded = lines.g == g
         if g != NO_CODE and not in_force(state, g, None):
             answer &= ~coded | fed
-        for f in set(lines.f[coded & fed].tolist()):  # np.unique would load masked arrays first
+        for f in set(lines.f[coded & fed].tolist()):  # np.unique would first import masked arrays.
             if not in_force(state, g, f):
                 answer &= ~coded | (lines.f != f)
     return answer
 
 
 def plain(state: State, lines: Columns) -> Bools:
-    """Lines (m,) that are ``unchanged`` but for another F of a cut, which passes all checks."""
+    """Return a mask (m,) of the lines that can be part of a series.
+
+    These are the ``unchanged`` lines, and lines that only change the cutting feed to one that needs no check.
+    """
     answer = unchanged(state, lines)
     if state.steady_feed is None:
         return answer
@@ -48,7 +51,7 @@ def plain(state: State, lines: Columns) -> Bools:
 
 
 def _feeds(state: State, lines: Columns) -> Floats | None:
-    """The feed in force in each of the lines (m,), mm/s or mm/rev; None where none has another one."""
+    """Return the feed (m,) of each line in mm/s or mm/rev; None if no line changes the feed."""
     fed = ~np.isnan(lines.f)
     feeds = np.where(fed, state.feed_word(lines.f), state.feed)
     if (feeds == state.feed).all():
@@ -58,9 +61,9 @@ def _feeds(state: State, lines: Columns) -> Floats | None:
 
 
 def series(state: State, lines: Columns, line: Ints, texts: Sequence[str]) -> Series:
-    """The moves of these lines, which all are ``plain``; ``line`` (m,) are their numbers.
+    """Return these lines as a series of moves; ``line`` (m,) are their numbers.
 
-    ``state.fast`` must hold: a move under this state has passed all checks.
+    All lines must be ``plain``. Requires ``state.fast``: a move with this state must have passed all checks.
     """
     x, x_finer = _on_step(state, "X", lines.x, lines.fine)
     z, z_finer = _on_step(state, "Z", lines.z, lines.fine)
@@ -86,7 +89,7 @@ def series(state: State, lines: Columns, line: Ints, texts: Sequence[str]) -> Se
 
 
 def _along(state: State, word: Floats, at: float, scale: float) -> Floats:
-    """Where the words of one letter (NaN: none) lead from ``at`` on, mm, by G90 or G91."""
+    """Return the positions in mm after each word (NaN for none) from position ``at``, by G90 or G91."""
     named = ~np.isnan(word)
     if not state.absolute:
         ways = np.where(named, word, 0.0) + 0.0  # -0 as 0
@@ -99,7 +102,10 @@ def _along(state: State, word: Floats, at: float, scale: float) -> Floats:
 
 
 def _on_step(state: State, letter: str, word: Floats, fine: Bools) -> tuple[Floats, Bools]:
-    """Numbers with a fifth decimal on the control's step, and which were not; as ``moves.rounded``."""
+    """Return the numbers rounded to the control's resolution, and a mask of the numbers that were finer.
+
+    The rounding is that of ``straight_moves.rounded``.
+    """
     if not fine.any():
         return word, fine
     step = step_of(state, letter)
@@ -110,7 +116,7 @@ def _on_step(state: State, letter: str, word: Floats, fine: Bools) -> tuple[Floa
 
 
 def _tell(state: State, made: Series, lines: Columns, finer: Bools) -> None:
-    """Warn of words off the step and of moves that take long, line by line, while warnings are kept."""
+    """Log warnings for rounded words and slow moves, line by line, until the log is full."""
     dx, dz = made.x - made.x0, made.z - made.z0
     slow_length = state.slow_length if made.feed is None else speed_of(state, made.feed) * SLOW_MOVE
     slow = (np.abs(dx) + np.abs(dz) > slow_length) & state.cut
@@ -132,29 +138,30 @@ LEAST = 48
 
 
 class SeriesLookAhead:
-    """Looks from the place in a program ahead, and takes what can be taken at once."""
+    """Look-ahead that combines the next moves of a program in one series."""
 
     def __init__(self, state: State, program: Program, flow: Flow) -> None:
         self._state, self._flow = state, flow
         self._ready, self._texts = program.ready, program.source.lines
         self._loops = program.structure.loop_ends
-        self._without = range(0)  # indices of lines at which no series begins
+        self._without = range(0)  # indices of lines at which no series starts
 
     def take(self, lines: int, blocks: int) -> tuple[Series, int] | None:
-        """The moves that come next and how many lines they have executed; None where they do not pay.
+        """Return the next moves and the number of executed lines; None if a series is not worthwhile.
 
-        ``lines`` and ``blocks`` are how many may yet be executed and made. ``state.fast`` must hold.
+        ``lines`` and ``blocks`` are the remaining limits. Requires ``state.fast``.
         """
         at = self._flow.at
         if at in self._without:
             return None
-        self._without = range(at, at + LEAST)  # unless one is found, or there is another line before that
+        # This range changes if a series or another kind of line is found.
+        self._without = range(at, at + LEAST)
         return (
             self._passes(at, lines, blocks) if at - 1 in self._loops else self._consecutive(at, lines, blocks)
         )
 
     def _consecutive(self, at: int, lines: int, blocks: int) -> tuple[Series, int] | None:
-        """Lines one after the other."""
+        """Return the series of consecutive lines, or None."""
         end = min(self._ready.moves_until(at), self._flow.end, at + min(MOST, lines, blocks))
         columns = self._ready.columns
         if end - at < LEAST:
@@ -170,7 +177,7 @@ class SeriesLookAhead:
         return series(self._state, part.part(slice(0, count)), numbers, self._texts), count
 
     def _passes(self, at: int, lines: int, blocks: int) -> tuple[Series, int] | None:
-        """All of a loop but the last pass, as often as there is room."""
+        """Return the series of all passes of a loop except the last one, within the limits, or None."""
         length = self._loops[at - 1] - at
         if not length or self._flow.end <= at + length:
             return None

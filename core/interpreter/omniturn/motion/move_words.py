@@ -1,4 +1,4 @@
-"""Moves as lines of the program would say them, in the mode and unit in force."""
+"""Moves as text of program lines, in the active mode and unit."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ _WORD = re.compile(r"([A-Z])([-+0-9.]*)")
 _PLACE = frozenset("XZIKRC")
 _ANEW = frozenset({"G02", "G03"})
 _SAME = 1e-9  # mm
-_HALF_TURN = pi - 1e-3  # rad; a longer arc is not safely said by its R
+_HALF_TURN = pi - 1e-3  # rad; R does not define a longer arc reliably
 
 
 def move_words(modal: Modal, element: Element, named: str = "") -> str:
-    """An element in the program's frame as a move: coordinates, or distances under G91.
+    """Return an element of the program frame as words: coordinates, or distances under G91.
 
-    ``named``: letters that stand there even where nothing moves along them.
+    ``named`` are letters that are included even if that axis does not move.
     """
     start, end = element.start, element.end
     scale = units.per_unit(metric=modal.metric)
@@ -51,7 +51,10 @@ def _arc(modal: Modal, arc: Arc, words: str) -> str:
 
 
 def with_other_words(block: Block, element: Element) -> str:
-    """The text of a block that now follows ``element``: its own modal words, feed and D, the place anew."""
+    """Return the text of a block whose move now follows ``element``.
+
+    The text has the block's modal words, feed and D, with new coordinates.
+    """
     words = [match for match in _WORD.finditer(block.text.upper()) if match[0] not in _ANEW]
     before = "".join(word[0] for word in words if word[1] not in _PLACE and word[1] != "D")
     offset = "".join(word[0] for word in words if word[1] == "D")
@@ -61,7 +64,7 @@ def with_other_words(block: Block, element: Element) -> str:
 
 
 def _without_change(block: Block, element: Element, words: dict[str, float]) -> Element:
-    """The element whose distances lack what D adds to the way of its line: more than X and Z say."""
+    """Return the element without the distance that D adds to the X and Z words of its line."""
     scale = units.per_unit(metric=block.modal.metric)
     scale_x = scale / 2 if block.modal.diameter else scale
     x = block.x - block.x0 - words.get("X", 0.0) * scale_x
@@ -74,7 +77,7 @@ def _without_change(block: Block, element: Element, words: dict[str, float]) -> 
 
 
 def number(value: float, *, metric: bool) -> str:
-    """A number of the program: five places in inch, four in metric, without needless zeros."""
+    """Return a number as program text: five decimal places in inches, four in mm, without trailing zeros."""
     text = f"{value:.{4 if metric else 5}f}".rstrip("0").rstrip(".")
     if text in {"-0", ""}:
         return "0"
@@ -82,22 +85,22 @@ def number(value: float, *, metric: bool) -> str:
 
 
 class WordedMoves(AdjustedMoves):
-    """Moves cut at a corner or beside the contour: their text says the new place."""
+    """Factory of adjusted moves whose text states the new coordinates."""
 
     def __init__(self, max_rpm: float) -> None:
         self._max_rpm = max_rpm
 
     @property
     def highest_rpm(self) -> float:
-        """The speed limit of the spindle."""
+        """The speed limit of the spindle in rpm."""
         return self._max_rpm
 
     def along(self, block: Block, element: Element) -> Block:
-        """The block's own move along another element of its kind."""
+        """Return the block with its move along another element of the same kind."""
         if (block.x0, block.z0) == element.start and (block.x, block.z) == element.end:
             return block
         return self._placed(block, element, with_other_words(block, element))
 
     def inserted(self, block: Block, element: Element) -> Block:
-        """A move of its own after ``block``, of the same line, feed and state, along an element."""
+        """Return a new move along an element, to follow ``block`` with the same line, feed and state."""
         return self._placed(block, element, move_words(block.modal, element))

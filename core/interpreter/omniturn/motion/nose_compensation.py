@@ -1,4 +1,4 @@
-"""G41, G42 and G40: where they may stand, and the nose's path beside the programmed contour between them."""
+"""Nose compensation with G41, G42 and G40: permitted words, and the path of the nose along the contour."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ from core.interpreter.shared.elementary_blocks import Block, Kind
 from core.language.diagnostics import ProgramError, program_error
 from core.message import Message, worded
 
-# --- approach and departure: far enough from the part, and clear of it
+# --- approach and departure: distance from the part, and clearance
 
 
 class ApproachOrDeparture(NamedTuple):
-    """An approach or a departure. ``contour``: the moves that it leads to or from, the nearest first."""
+    """An approach or departure; ``contour`` are the adjacent moves of the contour, the nearest first."""
 
     block: Block
     departs: bool
@@ -42,17 +42,18 @@ class ApproachOrDeparture(NamedTuple):
 
     @property
     def name(self) -> str:
-        """What messages call it."""
+        """Name for messages: approach or departure."""
         return "departure" if self.departs else "approach"
 
     def refused(self, why: str, text: str, hint: str, /, **values: object) -> ProgramError:
-        """The error to raise for this approach or departure; ``why`` ends the diagnostic's code."""
+        """Return the error for this approach or departure; ``why`` is the end of the diagnostic code."""
         return _refused(self.block, f"comp-{self.name}{why}", text, hint, **values)
 
     def check(self, way: Line, free: Point, corner: Point, log: Log) -> None:
-        """Off the part it must begin or end R or more from it, better 2R: else a warning; and never cut it.
+        """Check the distance of its free end from the part, and that the move does not cut the part.
 
-        ``free`` is that end as programmed, ``corner`` where the contour begins or ends. Raises ProgramError.
+        A distance below the nose radius is an error, and below twice the radius a warning. ``free`` is the
+        free end as programmed, and ``corner`` is the end of the contour. Raises ProgramError.
         """
         if dist(free, corner) < self.radius - SAME_POINT:
             raise self.refused(
@@ -81,7 +82,7 @@ class ApproachOrDeparture(NamedTuple):
         log.warn(self.block.line, 0, f"comp-{self.name}-near", text, hint)
 
 
-_NEAR = {  # by whether it is a departure, and nearer than R
+_NEAR = {  # key: whether it is a departure, and whether it is closer than R
     (True, True): "The departure ends {value} from the part, which is less than the nose radius of {nose}.",
     (False, True): "The approach starts {value} from the part, which is less than the nose radius of {nose}.",
     (True, False): "The departure ends {value} from the part, which is less than twice the nose radius of "
@@ -94,8 +95,7 @@ _NEAR = {  # by whether it is a departure, and nearer than R
 class _Contour(ContourStage):
     """The contour between G41 or G42 and G40.
 
-    It has the secondary offset in it, so the path has, too: an offset of the moved contour is the moved
-    offset of the contour.
+    The contour includes the secondary offset, and so does the compensated path.
     """
 
     def __init__(
@@ -107,7 +107,7 @@ class _Contour(ContourStage):
         self._recent: deque[Element] = deque(maxlen=WINDOW)
 
     def move(self, block: Block) -> Iterator[Block]:
-        """One more move; it is the departure if no other one comes. Raises ProgramError."""
+        """Add a move, which is the departure if no other move follows. Raises ProgramError."""
         if block.kind is not Kind.ARC and dist((block.x0, block.z0), (block.x, block.z)) < SAME_POINT:
             self.last.after.append(block)
             return
@@ -121,14 +121,14 @@ class _Contour(ContourStage):
         yield from self._hand_out(self._follow(last, element))
 
     def close(self) -> Iterator[Block]:
-        """G40: the last move departs. Raises ProgramError."""
+        """Process G40, so that the last move is the departure. Raises ProgramError."""
         if not self.count:
             text = "{name} has no contour move between its approach and its departure."
             hint = "Write the contour between the approach and the departure."
             raise _refused(self.last.block, "comp-empty", text, hint, name=self._mark.name)
         pieces = self._rest()
         way = Line(pieces[-1].element.end, (self.last.block.x, self.last.block.z))
-        self._check_departure(way)  # before anything that was held comes out
+        self._check_departure(way)  # This check precedes the output of buffered blocks.
         yield from self._hand_out(pieces)
         yield from self._leave(self.last, [way])
 
@@ -163,7 +163,7 @@ class _Contour(ContourStage):
 
 
 class Compensation:
-    """Takes moves and marks in order, holds them until their compensated places are sure."""
+    """Stage that buffers moves until their compensated paths are final."""
 
     def __init__(self, log: Log, moves: AdjustedMoves) -> None:
         self._log, self._moves = log, moves
@@ -171,17 +171,20 @@ class Compensation:
 
     @property
     def active(self) -> bool:
-        """Whether G41 or G42 is on."""
+        """Whether G41 or G42 is active."""
         return self._mark is not None
 
     def drop(self) -> None:
-        """Forget what is held; compensation is off."""
+        """Discard buffered moves and turn compensation off."""
         self._mark: CompensationSwitch | None = None
-        self.radius = 0.0  # of the nose, mm; to be set when the approach comes
+        self.radius = 0.0  # nose radius in mm, set at the approach
         self._contour: _Contour | None = None
 
     def take(self, item: Item) -> Iterator[Block]:
-        """Yields what no later item can change. Raises ProgramError where the nose cannot follow."""
+        """Accept an item, and yield the blocks that no later item can change.
+
+        Raises ProgramError if compensation is not possible.
+        """
         mark, contour = self._mark, self._contour
         if isinstance(item, CompensationSwitch):
             if mark is not None:
@@ -215,7 +218,7 @@ def _refused(block: Block, code: str, text: str, hint: str, /, **values: object)
     return program_error(block.line, 0, code, worded(text, values), worded(hint, values))
 
 
-# --- words: where they may stand, and what may not stand under them
+# --- words: where they are allowed, and words that they exclude
 
 
 NOSE = frozenset({40, 41, 42})
@@ -223,14 +226,14 @@ _TURNS_C = frozenset({"CA", "CI"})
 
 
 def nose_code(statement: Statement) -> int:
-    """The G40, G41 or G42 of a line, 0 where there is none."""
+    """Return the G40, G41 or G42 of a line, or 0."""
     return next((code for code in statement.modal if code in NOSE), 0)
 
 
 def switch(state: State, statement: Statement, code: int, *, called: bool) -> CompensationSwitch | None:
-    """G41, G42 or G40; None for a G40 with nothing to end. ``called``: the line is in a subroutine.
+    """Return the mark for G41, G42 or G40; None for a G40 without active compensation.
 
-    Raises ProgramError where the code may not stand.
+    ``called`` means that the line is in a subroutine. Raises ProgramError if the code is not allowed.
     """
     on = state.modal.nose_comp
     if code == 40 and on == 40:
@@ -246,7 +249,7 @@ def switch(state: State, statement: Statement, code: int, *, called: bool) -> Co
 
 
 def check_under_nose(state: State, statement: Statement) -> None:
-    """Refuse what nose compensation cannot follow. Raises ProgramError."""
+    """Raise ProgramError for a line that is not allowed while nose compensation is active."""
     on = state.modal.nose_comp
     if on == 40:
         return
@@ -272,7 +275,7 @@ def check_under_nose(state: State, statement: Statement) -> None:
 
 
 def check_approach(state: State, block: Block) -> None:
-    """The first move after G41 or G42: a straight line with D. Raises ProgramError."""
+    """Check that the first move after G41 or G42 is a straight line with D. Raises ProgramError."""
     line, state.contour.approach = state.contour.approach, 0
     if not line:
         return
@@ -300,7 +303,7 @@ def check_approach(state: State, block: Block) -> None:
 
 
 def nose_radius(state: State) -> float:
-    """R of the secondary offset in force, mm."""
+    """Return the nose radius (R) of the active secondary offset, in mm."""
     return max(state.setup.secondary[state.modal.secondary].r, 0.0) if _known(state) else 0.0
 
 

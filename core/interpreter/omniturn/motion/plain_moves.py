@@ -1,9 +1,8 @@
-"""Lines of G00 or G01, X, Z and F and no more: nearly all of a long program, so they are read as numbers.
+"""Lines with only G00 or G01, X, Z and F, which are nearly all lines of a long program, read as numbers.
 
-A statement takes a kilobyte and ten microseconds; here a move takes a hundredth of both. Few lines of a long
-program differ in more than their digits, and lines whose other characters are the same have the same words in
-the same places, so that a column of digits is a column of an array. Lines of a rare shape are read one by
-one, by the same pattern.
+A statement takes 1 kB and 10 µs; a move in this form takes a hundredth of both. Lines of a long program
+mostly differ only in their digits. Lines with the same other characters have the same words at the same
+columns, so that each column of digits is a column of an array. Lines of a rare form are read one by one.
 """
 
 from __future__ import annotations
@@ -39,7 +38,7 @@ _PAGE, _PAGES = 1024, 32
 
 
 def read_move(text: str) -> PlainMove | None:
-    """The numbers of a line of G00 or G01, X, Z and F, or None for a line that is more, or no move."""
+    """Return the numbers of a line with only G00 or G01, X, Z and F; None for any other line."""
     match = _words(text)
     if match is None:
         return None
@@ -51,19 +50,21 @@ def read_move(text: str) -> PlainMove | None:
 
 
 def _words(text: str) -> re.Match[str] | None:
-    """The groups ``g x z f`` of a plain move, which has one of X and Z."""
+    """Return the match with the groups ``g x z f`` of a plain move, which has X or Z; otherwise None."""
     match = _MOVE.fullmatch(text)
     return None if match is None or match["x"] is match["z"] is None else match
 
 
 def _is_fine(text: str) -> bool:
-    """Whether a number has a fifth decimal."""
+    """Return whether a number has a fifth decimal place."""
     return _FIVE_PLACES.search(text) is not None
 
 
 class Columns(NamedTuple):
-    """m lines: X, Z and F as written (NaN: none), G 0 or 1 (NO_CODE: none), whether one of the numbers has a
-    fifth decimal; ``known`` where the line is a plain move."""
+    """Arrays of m lines: X, Z and F as written (NaN for none), and G 0, 1 or NO_CODE.
+
+    ``fine`` marks lines with a fifth decimal place, and ``known`` marks plain moves.
+    """
 
     x: Floats
     z: Floats
@@ -74,29 +75,29 @@ class Columns(NamedTuple):
 
     @staticmethod
     def empty(m: int) -> Columns:
-        """So many lines, none of them known."""
+        """Return the columns of m lines, none of which is known."""
         x, z, f = (np.full(m, np.nan) for _ in range(3))
         return Columns(x, z, f, np.full(m, NO_CODE, np.int8), np.zeros(m, bool), np.zeros(m, bool))
 
     def put(self, at: int, move: PlainMove) -> None:
-        """A line that has been read alone."""
+        """Store a line that was read separately."""
         x, z, f, g, fine = move
         self.x[at], self.z[at], self.f[at] = (np.nan if v is None else v for v in (x, z, f))
         self.g[at], self.fine[at], self.known[at] = g, fine, True
 
     def moves(self) -> list[PlainMove | None]:
-        """Each line as it would have been read alone; None where it is no plain move."""
+        """Return each line as ``read_move`` returns it; None for a line that is not a plain move."""
         x, z, f = (_words_of(column) for column in self[:3])
         rows = zip(x, z, f, self.g.tolist(), self.fine.tolist(), strict=True)
         return [row if known else None for row, known in zip(rows, self.known.tolist(), strict=True)]
 
     def part(self, at: slice | Ints) -> Columns:
-        """The lines of a slice, or of these indices."""
+        """Return the lines of a slice or with these indices."""
         return Columns(self.x[at], self.z[at], self.f[at], self.g[at], self.fine[at], self.known[at])
 
 
 def _words_of(column: Floats) -> list[float | None]:
-    """The numbers of a column, None where a line has none."""
+    """Return the numbers of a column, with None for NaN."""
     numbers: list[float | None] = column.tolist()
     for at in np.isnan(column).nonzero()[0].tolist():
         numbers[at] = None
@@ -104,8 +105,8 @@ def _words_of(column: Floats) -> list[float | None]:
 
 
 def read_columns(text: str, columns: Columns) -> None:
-    """Put in the lines; ``known`` stays False for any that is another kind of line, or of a rare shape."""
-    raw = text.encode("ascii", "replace")  # a character, a byte
+    """Fill the columns from the text; ``known`` remains False for other lines and lines of a rare form."""
+    raw = text.encode("ascii", "replace")  # one byte per character
     digits = np.frombuffer(raw, np.uint8)
     starts = np.concatenate([[0], np.flatnonzero(digits == _NEW_LINE) + 1])
     shapes = raw.translate(_SHAPE).split(b"\n")
@@ -121,7 +122,7 @@ def read_columns(text: str, columns: Columns) -> None:
 
 
 def _read_shape(columns: Columns, rows: Ints, match: re.Match[str], digits: Digits, starts: Ints) -> None:
-    """Put in the lines ``rows``, all of the shape that has matched."""
+    """Fill the lines ``rows``, all of which have the form of the match."""
     first = starts[rows]
     known = np.ones(len(rows), bool)
     for name, column in (("x", columns.x), ("z", columns.z), ("f", columns.f)):
@@ -138,8 +139,11 @@ def _read_shape(columns: Columns, rows: Ints, match: re.Match[str], digits: Digi
 
 
 def _numbers(match: re.Match[str], name: str, first: Ints, digits: Digits) -> Floats:
-    """A word's numbers. Digits as a whole number and a power of ten are exact, so their quotient is the
-    double next to the decimal fraction, as ``float`` gives it."""
+    """Return the numbers of a word in these lines.
+
+    Digits as a whole number and powers of ten are exact, so that their quotient equals the result of
+    ``float``.
+    """
     text, start = match[name], match.start(name)
     places = [start + k for k, character in enumerate(text) if character.isdigit()]
     whole = digits[first[:, None] + np.array(places)].astype(np.float64) - ord("0")
@@ -150,7 +154,7 @@ def _numbers(match: re.Match[str], name: str, first: Ints, digits: Digits) -> Fl
 
 
 class ReadyLines(Sequence[ReadyLine]):
-    """The lines of a program, from index 0: plain moves in ``columns``, all others ready to run."""
+    """The lines of a program from index 0: plain moves in ``columns``, all other lines as statements."""
 
     def __init__(self, columns: Columns, others: dict[int, ReadyLine]) -> None:
         self.columns = columns
@@ -158,7 +162,7 @@ class ReadyLines(Sequence[ReadyLine]):
         self._pages: dict[int, list[ReadyLine]] = {}
 
     def copy(self) -> ReadyLines:
-        """Lines of their own; the numbers in them are shared."""
+        """Return a copy with its own lines; the arrays of numbers are shared."""
         return ReadyLines(self.columns._replace(known=self.columns.known.copy()), self._others.copy())
 
     def __len__(self) -> int:
@@ -175,7 +179,7 @@ class ReadyLines(Sequence[ReadyLine]):
         return page[at % _PAGE]
 
     def __setitem__(self, at: int, line: ReadyLine) -> None:
-        """A line that no column holds from now on."""
+        """Replace a line, which is then no longer in the columns."""
         self._others[at] = self._page(at // _PAGE)[at % _PAGE] = line
         self.columns.known[at] = False
 
@@ -184,7 +188,7 @@ class ReadyLines(Sequence[ReadyLine]):
             yield from self._page(number)
 
     def moves_until(self, at: int) -> int:
-        """The next line from this one on that is no plain move, or one that is MOST or more away."""
+        """Return the index of the next line that is not a plain move, at most MOST lines away."""
         known = self.columns.known[at : at + MOST]
         first = int(known.argmin()) if len(known) else 0
         return at + (len(known) if len(known) and known[first] else first)
@@ -207,9 +211,11 @@ def _joined(lines: Sequence[str], these: range) -> str:
 
 
 def read_lines(lines: Sequence[str], read: Callable[[int, str], ReadyLine], *, in_order: bool) -> ReadyLines:
-    """The lines ready to run. ``read`` (number from 1, text) is asked, in order, for those not read at once.
+    """Return the lines ready for execution.
 
-    ``in_order``: what a line means hangs on the lines before it, so that ``read`` is asked for each.
+    ``read`` (number from 1, text) is called for lines not read as arrays.
+
+    With ``in_order``, ``read`` is called for each line, because the meaning depends on earlier lines.
     """
     columns = Columns.empty(len(lines))
     others: dict[int, ReadyLine] = {}

@@ -24,7 +24,7 @@ from core.interpreter.shared.turn_at_axis import turns_at_axis
 from core.language.diagnostics import ProgramError
 from core.message import Message
 
-# --- moves of the virtual mill, through the axis too
+# --- moves of the virtual mill, including those through the spindle centerline
 
 
 _TOLERANCE = 0.0005 * units.MM_PER_INCH * (1 + 1e-9)
@@ -33,7 +33,7 @@ _ENDS = np.array([0.0, 1.0])
 
 
 def plane_move(state: State, statement: Statement, mill: Mill) -> Iterator[Block]:
-    """The blocks of a line that moves the mill from where it stands. Raises ProgramError."""
+    """Yield the blocks of a line that moves the mill. Raises ProgramError."""
     assert statement.plane is not None
     warn_of_short_dwell(state)
     target = _target(state, statement, mill)
@@ -83,7 +83,10 @@ def _arc(state: State, statement: Statement, line: PlaneMove) -> PlaneMove:
 
 
 def _legs(state: State, statement: Statement, whole: PlaneMove) -> list[PlaneMove]:
-    """The way as it is, or in two where it goes through the axis. Raises where the tool cannot reach."""
+    """Return the move, or its two parts if it passes through the centerline.
+
+    Raises ProgramError if the tool cannot reach the path.
+    """
     if isinstance(whole.frame, Side):
         return [whole]
     share = whole.nearest()
@@ -103,7 +106,7 @@ def _legs(state: State, statement: Statement, whole: PlaneMove) -> list[PlaneMov
 
 
 def _towards(state: State, statement: Statement, leg: PlaneMove) -> Iterator[Block]:
-    """Standing on the axis C turns until the way leads out along X; nothing is done elsewhere."""
+    """Yield a turn of C if the tool is on the centerline, until the path leads out along X."""
     mill = state.modal.mill
     assert mill is not None
     turn = replace(leg, theta=mill.theta).turn_at_start()
@@ -127,14 +130,14 @@ def _block(state: State, statement: Statement, leg: PlaneMove) -> Block:
 
 
 def plane_length(state: State, statement: Statement, letter: str, default: float) -> float:
-    """A word in mm as written: a length, or the diameter of D and of Z on the side."""
+    """Return a word in mm as written: a length, or the diameter of D or of Z on the side."""
     assert statement.plane is not None
     word = statement.plane.words.get(letter)
     return default if word is None else mill_step(state, statement.line, word)
 
 
 def plane_refusal(statement: Statement, code: str, text: str, hint: str, letter: str = "") -> ProgramError:
-    """An error of a plane's line, at the column of its word where one is to blame."""
+    """Return an error for a line of plane switching, at the word ``letter`` if the line has it."""
     assert statement.plane is not None
     word = statement.plane.words.get(letter)
     return statement.refuse(word.column if word else 1, code, text, hint)
@@ -145,7 +148,7 @@ _SAME = 1e-9
 
 
 def plane_line(state: State, statement: Statement) -> Iterator[Block]:
-    """One line of plane switching. Raises ProgramError for what cannot be done there."""
+    """Yield the blocks of one line of plane switching. Raises ProgramError for an invalid line."""
     line, mill = statement.plane, state.modal.mill
     assert line is not None
     if line.name == "END":
@@ -153,7 +156,7 @@ def plane_line(state: State, statement: Statement) -> Iterator[Block]:
     elif line.name:
         _enter(state, statement, line.name)
     elif mill is None:
-        return  # the entry was refused
+        return  # The entry was rejected.
     elif "H" in line.words:
         _height(state, statement, mill)
     elif "D" in line.words:

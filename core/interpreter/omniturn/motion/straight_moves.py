@@ -1,4 +1,4 @@
-"""Straight moves, and what every move shares: what X and Z mean, where it ends, and what it needs."""
+"""Straight moves, and the meaning of X and Z, resolution and checks that all moves share."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from core.language.omniturn import Word, lex_line
 from core.message import Message
 
 _COARSE = (0.00005, 0.00025, 0.0005)  # inches of radius, by G36, G35, G35F2
-_DIAMETERS = frozenset({"X"})  # words whose number is a diameter under G72
-WHOLE = 1e-6  # of a step: what a decimal fraction lacks in binary
+_DIAMETERS = frozenset({"X"})  # words that are diameters under G72
+WHOLE = 1e-6  # of a step; tolerance for the rounding of decimal fractions
 
 
 def plain_move(state: State, line: int, text: str, move: PlainMove) -> Block | None:
-    """The block of a line of G00 or G01, X, Z and F; None where more changes than the feed of a cut.
+    """Return the block of a line with only G00 or G01, X, Z and F; None if the full statement is needed.
 
     Raises ProgramError as ``line_to`` does.
     """
@@ -27,7 +27,7 @@ def plain_move(state: State, line: int, text: str, move: PlainMove) -> Block | N
     same = (g < 0 and f is None) or in_force(state, g, f)
     if not same and (g == 0 or f is None or not another_feed(state, f)):
         return None
-    # Four decimals lie on every step but a coarse one.
+    # Numbers with four decimal places are multiples of every resolution except a coarse one.
     if fine or state.modal.coarse:
         x, z = rounded(state, line, text, x, z)
     if x is not None:
@@ -38,7 +38,7 @@ def plain_move(state: State, line: int, text: str, move: PlainMove) -> Block | N
 
 
 def in_force(state: State, g: int, f: float | None) -> bool:
-    """Whether G00 or G01 (negative: none) and F (None: none) of a plain move are what is in force already."""
+    """Return whether G00 or G01 (negative for none) and F (None for none) are already active."""
     if g == 0:
         return f is None and state.modal.rapid and not state.title_rapid
     if state.steady_feed is None:
@@ -47,20 +47,20 @@ def in_force(state: State, g: int, f: float | None) -> bool:
 
 
 def statement_move(state: State, statement: Statement) -> Block:
-    """The straight move of a line, with every check. Raises ProgramError."""
+    """Return the straight move of a line after all checks. Raises ProgramError."""
     x, z = on_step(state, statement, "X"), on_step(state, statement, "Z")
     state.fast = False
     return line_to(state, statement.line, statement.part("move"), x, z)
 
 
 def line_to(state: State, line: int, text: str, x: float | None, z: float | None) -> Block:
-    """A straight move to words X and Z in mm, None where there is none.
+    """Return the straight move to X and Z in mm, with None for a word that is not programmed.
 
-    Where ``state.fast`` holds, a move under this state has passed all checks, and none is made but for its
-    length. Raises ProgramError.
+    If ``state.fast`` is True, an earlier move with this state passed all checks, and only the length is
+    checked. Raises ProgramError.
     """
     x0, z0 = state.x, state.z
-    if state.absolute:  # as ``go``, without the call
+    if state.absolute:  # This is the same as ``go`` but avoids the call.
         state.px = state.px if x is None else x
         state.pz = state.pz if z is None else z
     else:
@@ -78,7 +78,7 @@ def line_to(state: State, line: int, text: str, x: float | None, z: float | None
         warn_of_title_rapid(state, line)
         modal = state.modal
         rpm, surface_speed = state.rpm_at(x1), modal.css_speed
-        # G95's limit depends on a speed that only constant surface speed changes from move to move.
+        # The limit of G95 depends on the spindle speed, which changes between moves only under G96.
         state.fast = not modal.css and not modal.coarse and not state.reported and not state.contour.active
     state.blocks = n = state.blocks + 1
     c = state.c
@@ -89,7 +89,7 @@ def line_to(state: State, line: int, text: str, x: float | None, z: float | None
 
 
 def go(state: State, x: float | None, z: float | None) -> None:
-    """Move the position to words X and Z (mm), by G90 or G91, with the secondary offset in it."""
+    """Set the position to X and Z (mm) by G90 or G91, including the secondary offset."""
     if state.absolute:
         state.px = state.px if x is None else x
         state.pz = state.pz if z is None else z
@@ -100,7 +100,7 @@ def go(state: State, x: float | None, z: float | None) -> None:
 
 
 def check_tool(state: State, line: int, x: float | None, z: float | None) -> None:
-    """The first motion after a T must say both coordinates. Raises ProgramError (tool-first-move)."""
+    """Check that the first motion after a T has X and Z. Raises ProgramError (tool-first-move)."""
     tool_line, state.tool_line = state.tool_line, 0
     if tool_line and (x is None or z is None):
         where = Message("the T word on line {tool_line}", tool_line=tool_line) if tool_line > 0 else "the T"
@@ -113,7 +113,7 @@ def check_tool(state: State, line: int, x: float | None, z: float | None) -> Non
 
 
 def warn_of_title_rapid(state: State, line: int) -> None:
-    """``G00 (TITLE)`` switched the rapid on, and here a move follows that would have cut."""
+    """Warn of a rapid that ``G00 (TITLE)`` turned on before a move that would have cut."""
     if state.title_rapid and state.modal.rapid:
         text = "This move is a rapid because of the G00 next to the comment on line {title_rapid}."
         hint = "Write G01 if the move is meant to cut."
@@ -122,7 +122,10 @@ def warn_of_title_rapid(state: State, line: int) -> None:
 
 
 def on_step(state: State, statement: Statement, letter: str) -> float | None:
-    """A length word in mm, X as a radius by G72/G73, rounded to the control's step with a warning."""
+    """Return a length word in mm (X as a radius by G72/G73), rounded to the resolution with a warning.
+
+    Returns None without the word.
+    """
     word = statement.words.get(letter)
     if word is None or word.value is None or not isfinite(word.value):
         return None
@@ -133,7 +136,7 @@ def on_step(state: State, statement: Statement, letter: str) -> float | None:
 
 
 def mill_step(state: State, line: int, word: Word) -> float:
-    """A length of plane switching in mm, as written: never halved, rounded to the control's step."""
+    """Return a length of plane switching in mm, never halved, rounded to the resolution with a warning."""
     step = units.METRIC_STEP if state.modal.metric else _COARSE[state.modal.coarse]
     value, finer = _nearest(step, word.value or 0.0)
     if finer:
@@ -146,7 +149,7 @@ def mill_step(state: State, line: int, word: Word) -> float:
 def rounded(
     state: State, line: int, text: str, x: float | None, z: float | None
 ) -> tuple[float | None, float | None]:
-    """X and Z of a line on the control's step, with a warning for each word that was not."""
+    """Return X and Z of a line rounded to the resolution, with a warning for each rounded word."""
     new_x, x_finer = (None, False) if x is None else _nearest_step(state, "X", x)
     new_z, z_finer = (None, False) if z is None else _nearest_step(state, "Z", z)
     if x_finer or z_finer:
@@ -160,7 +163,7 @@ def rounded(
 
 
 def step_of(state: State, letter: str) -> float:
-    """The control's step in the unit of the program's numbers."""
+    """Return the resolution of the control in the unit of the program."""
     modal = state.modal
     if modal.metric:
         return units.METRIC_STEP
@@ -168,13 +171,13 @@ def step_of(state: State, letter: str) -> float:
 
 
 def _nearest_step(state: State, letter: str, value: float) -> tuple[float, bool]:
-    """The number on the control's step, and whether it was not there before."""
+    """Return the number rounded to the resolution, and whether it changed."""
     return _nearest(step_of(state, letter), value)
 
 
 def _nearest(step: float, value: float) -> tuple[float, bool]:
     count = value / step
-    whole = copysign(floor(abs(count) + 0.5 + WHOLE), count)  # half a step goes away from zero
+    whole = copysign(floor(abs(count) + 0.5 + WHOLE), count)  # half a step is rounded away from zero
     if abs(count - whole) <= max(WHOLE, abs(count) * 1e-12):
         return value, False
     return whole * step, True
@@ -197,7 +200,7 @@ def _warn_of_finer(state: State, line: int, word: Word, value: float) -> None:
 
 
 def geometry_modes(state: State, statement: Statement) -> None:
-    """Distance, units and X words of a line; the other groups belong to feed and spindle."""
+    """Execute the modes for distance, units and X words of a line."""
     if not statement.modal:
         return
     modal = state.modal

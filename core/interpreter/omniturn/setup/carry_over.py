@@ -1,4 +1,4 @@
-"""What one program leaves to the next: unit and rapid rate, and what its end leaves of the modal state."""
+"""Settings that one program leaves for the next: units, rapid rate, and the modal state after its end."""
 
 from __future__ import annotations
 
@@ -16,7 +16,10 @@ _PER_REV = re.compile(r"G95(?![0-9])")
 
 
 def inherited_settings(source: Source) -> frozenset[str]:
-    """``units`` and ``rapid``, as far as they come from before; other dialects say all themselves."""
+    """Return which of ``units`` and ``rapid`` the program inherits.
+
+    Programs of other dialects do not inherit settings.
+    """
     if source.dialect is not Dialect.OMNITURN:
         return frozenset()
     first = next((words for words in map(_words, source.lines) if words), "")
@@ -33,9 +36,10 @@ def _words(line: str) -> str:
 
 
 def after_end(old: Modal, rpm: float, *, reset: bool) -> Modal:
-    """The state of power-up, but for units, the tool's frame and, without ``reset``, the M functions.
+    """Return the modal state after the program end.
 
-    ``rpm`` (unsigned) is the commanded speed at the end. M30 resets the M functions, M02 does not.
+    It is the power-up state except for units, tool offset, preset, and, without ``reset``, the M functions.
+    ``rpm`` is the unsigned commanded speed at the end. M30 resets the M functions, and M02 does not.
     """
     return Modal(
         metric=old.metric,
@@ -51,6 +55,7 @@ def after_end(old: Modal, rpm: float, *, reset: bool) -> Modal:
         coolant=old.coolant and not reset,
         outputs=frozenset() if reset else old.outputs,
         comment=old.comment,
-        offset_c=old.offset_c if old.offset_c % 360.0 == 0.0 else 0.0,  # whole turns stay, offsets go
+        # Whole revolutions remain; other offsets are removed.
+        offset_c=old.offset_c if old.offset_c % 360.0 == 0.0 else 0.0,
         wraps_c=old.wraps_c,
     )

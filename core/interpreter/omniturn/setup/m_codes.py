@@ -1,4 +1,4 @@
-"""M codes: which block each makes, before or after the motion of its line."""
+"""Blocks of the M codes, before or after the motion of their line."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from core.message import Message
 
 
 def before_motion(state: State, statement: Statement) -> Iterator[Block]:
-    """The block of an M code that acts before the motion; M03 and M04 are the spindle's."""
+    """Yield the block of an M code that acts before the motion, other than M03 and M04."""
     code = statement.m_code
     if code is None:
         yield from _machine_output(state, statement, on=True)
@@ -37,13 +37,13 @@ def after_motion(state: State, statement: Statement) -> Iterator[Block]:
 
 
 def coolant(state: State, statement: Statement) -> Iterator[Block]:
-    """The block of M08 or M09: coolant on, off."""
+    """Yield the block of M08 (coolant on) or M09 (coolant off)."""
     state.adopt(state.modal._replace(coolant=statement.m == 8))
     yield _done(state, statement, actions.Coolant(on=statement.m == 8))
 
 
 def collet(state: State, statement: Statement) -> Iterator[Block]:
-    """The block of M12 (clamps) or M13. Raises ProgramError where it may not open while the spindle turns."""
+    """Yield the block of M12 (clamp) or M13 (unclamp). Raises ProgramError if the spindle must be stopped."""
     opens = statement.m == 13
     assert statement.m_code is not None
     check_when(state, statement, statement.m_code)
@@ -52,13 +52,13 @@ def collet(state: State, statement: Statement) -> Iterator[Block]:
 
 
 def wait_for_input(state: State, statement: Statement) -> Iterator[Block]:
-    """The block of M91 to M94: wait until the terminal is open or closed."""
+    """Yield the block of M91 to M94, which wait until a terminal is open or closed."""
     assert statement.m_code is not None
     yield _done(state, statement, actions.WaitInput(*statement.m_code.terminal))
 
 
 def program_stop(state: State, statement: Statement) -> Iterator[Block]:
-    """The block of M00 or M01, with the comment that the operator is shown."""
+    """Yield the block of M00 or M01, with the comment for the operator."""
     yield _done(
         state,
         statement,
@@ -67,12 +67,12 @@ def program_stop(state: State, statement: Statement) -> Iterator[Block]:
 
 
 def repeat_off(state: State, statement: Statement) -> Iterator[Block]:
-    """The block of M31: cancels Cycle Repeat."""
+    """Yield the block of M31, which cancels Cycle Repeat."""
     yield _done(state, statement, actions.RepeatOff())
 
 
 def program_end(state: State, statement: Statement) -> Iterator[Block]:
-    """The block of M30, which resets the M functions, or M02, which leaves them."""
+    """Yield the block of M30, which resets the M functions, or of M02, which does not."""
     reset = statement.m == 30
     warn_of_short_dwell(state)
     state.stay(after_end(state.modal, abs(state.rpm_at(state.x)), reset=reset))
@@ -80,7 +80,7 @@ def program_end(state: State, statement: Statement) -> Iterator[Block]:
 
 
 def check_m_codes(state: State, lines: tuple[Statement, ...]) -> None:
-    """Report the M codes that neither the control nor the machine file knows."""
+    """Report the M codes that neither the control nor the machine file defines."""
     for statement in lines:
         if statement.m in state.setup.limits.m_ignored:
             column = statement.m_word.column if statement.m_word else 0
@@ -112,7 +112,7 @@ def _done(state: State, statement: Statement, action: actions.Action) -> Block:
 
 
 def _machine_output(state: State, statement: Statement, *, on: bool) -> Iterator[Block]:
-    """An M code of the machine file: an output switched on before the motion, or off after it."""
+    """Yield the block of an M code of the machine file: output on before the motion, or off after it."""
     output = state.setup.limits.m_outputs.get(statement.m or 0)
     if statement.m in state.setup.limits.m_ignored:
         return

@@ -1,4 +1,4 @@
-"""Spindle words (M03 M04 M05, S, constant surface speed), and G04, which also gives C time to arrive."""
+"""Spindle words (M03, M04, M05, S, constant surface speed), and G04, which also waits for the C axis."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from core.message import Message
 
 
 def spindle_modes(state: State, statement: Statement) -> None:
-    """G96, G97, G76 and G77 of a line; S next to G76 or G77 is theirs."""
+    """Execute G96, G97, G76 and G77 of a line; with G76 or G77, S is their limit."""
     if not statement.modal:
         return
     modal = state.modal
     if 96 in statement.modal and not modal.css:
         state.adopt(state.modal._replace(css=True))
     elif 97 in statement.modal and modal.css:
-        # The drive goes on at the speed it has; jumping back to an old S would be a surprise.
+        # The spindle continues at its present speed, because a jump to an old S would be unexpected.
         rpm = abs(state.rpm_at(state.x)) if modal.spindle else modal.rpm
         state.adopt(state.modal._replace(css=False, rpm=rpm))
     if 76 in statement.modal:
@@ -46,7 +46,7 @@ def _limit(state: State, statement: Statement, code: int) -> float:
 
 
 def speed_word(state: State, statement: Statement) -> None:
-    """S of a line: rpm under G97, surface speed under G96."""
+    """Execute S of a line: rpm under G97, surface speed under G96."""
     word = statement.words.get("S")
     if word is None or word.value is None or statement.s_is_limit:
         return
@@ -56,13 +56,13 @@ def speed_word(state: State, statement: Statement) -> None:
         checked(state, statement, "S", speed * unit, G_CODES[96])
         state.adopt(modal._replace(surface_speed=speed * unit))
         return
-    if speed >= 0:  # after an error too, so that what follows is judged by the spindle that there is
+    if speed >= 0:  # The speed is also set after an error, so that later lines can be checked.
         state.adopt(modal._replace(rpm=min(speed, state.setup.limits.max_rpm)))
     number(state, statement, "S", LETTERS["S"])
 
 
 def run_block(state: State, statement: Statement) -> Iterator[Block]:
-    """The spindle block of a line with M03, M04 or S; none where the spindle stands and shall stand."""
+    """Yield the spindle block of a line with M03, M04 or S, unless the spindle remains stopped."""
     direction = {3: 1, 4: -1}.get(statement.m or 0, 0)
     if direction:
         check_when(state, statement, M_CODES[statement.m or 0])
@@ -77,18 +77,18 @@ def run_block(state: State, statement: Statement) -> Iterator[Block]:
 
 
 def stop_block(state: State, statement: Statement) -> Iterator[Block]:
-    """The block of M05: the spindle stops, and C is released."""
+    """Yield the block of M05, which stops the spindle and releases C."""
     state.adopt(state.modal._replace(spindle=0, c_locked=False, c_rpm=None))
     yield state.action(statement.line, statement.part("m"), SpindleStop())
 
 
 _SHORTEST = G_CODES[4].rules["F"].least  # s
-_LONG = 60.0  # s with a tool in force: warm-up programs have none
+_LONG = 60.0  # s with an active tool; warm-up programs have no tool
 _DONE = 1e-9  # s, degrees
 
 
 def dwell(state: State, statement: Statement) -> Iterator[Block]:
-    """The block of G04. Raises ProgramError where F is missing or out of range."""
+    """Yield the block of G04. Raises ProgramError if F is missing or out of range."""
     seconds = number(state, statement, "F") or 0.0
     if seconds > _LONG and state.modal.tool:
         state.log.warn(
@@ -104,7 +104,7 @@ def dwell(state: State, statement: Statement) -> Iterator[Block]:
 
 
 def expect_arrival(state: State, line: int, column: int, turn: float) -> None:
-    """Note in the state how long a turn of C by ``turn`` degrees takes, where its drive does not tell."""
+    """Record the time of a turn of C by ``turn`` degrees, if its drive does not report the position."""
     limits = state.setup.limits
     if limits.c_feedback or turn <= _DONE:
         return
@@ -115,7 +115,7 @@ def expect_arrival(state: State, line: int, column: int, turn: float) -> None:
 
 
 def warn_of_short_dwell(state: State) -> None:
-    """Something moves or ends: warn where C would still be on its way."""
+    """Log a warning if a move or the end occurs before C is in position."""
     if state.turning is None:
         return
     (line, column, left), state.turning = state.turning, None
@@ -130,7 +130,7 @@ def warn_of_short_dwell(state: State) -> None:
 
 
 def _shorten_arrival(state: State, seconds: float) -> None:
-    """A dwell gives C time to arrive."""
+    """Subtract a dwell from the time that C needs to reach its position."""
     if state.turning is not None:
         line, column, left = state.turning
         state.turning = (line, column, left - seconds)

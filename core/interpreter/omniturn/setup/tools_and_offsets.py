@@ -1,4 +1,4 @@
-"""T, D, G10 and G92: which machine point the program's numbers mean."""
+"""Tools and offsets (T, D, G10 and G92), which relate program coordinates to machine positions."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from core.message import Message
 
 
 def _offset(state: State, line: int, word: Word, use: ToolUse) -> ToolOffset:
-    """The offset of a T word; 0 with a warning where it has never been set."""
+    """Return the offset of a T word; 0 with a warning if it was never set."""
     number = int(word.value or 0)
     offset = use.offset(number, state.setup.tools) if number else ToolOffset()
     if offset is None:
@@ -27,7 +27,7 @@ def _offset(state: State, line: int, word: Word, use: ToolUse) -> ToolOffset:
 
 
 def missing_offset(tools: Sequence[int], line: int, column: int) -> Diagnostic:
-    """The warning for tools whose offset nobody has set."""
+    """Return the warning for tools whose offset was never set."""
     names, hint = ", ".join(f"T{number}" for number in tools), "Set the tool offsets."
     text = Message("{names} have no offset, so 0 is used and the machine will not start.", names=names)
     if len(tools) == 1:
@@ -39,7 +39,7 @@ def missing_offset(tools: Sequence[int], line: int, column: int) -> Diagnostic:
 
 
 def tool_change(state: State, statement: Statement, word: Word, use: ToolUse) -> Block:
-    """T: another offset, the shift summed up by G10, no preset, no D, no nose compensation."""
+    """Return the block of T: a new tool offset and the sum of G10; T cancels G92, D and compensation."""
     modal = state.modal
     number = int(word.value or 0)
     if modal.css and number:
@@ -58,13 +58,13 @@ def tool_change(state: State, statement: Statement, word: Word, use: ToolUse) ->
         )
     )  # fmt: skip
     state.tool_line = statement.line if number else 0
-    state.fast = False  # the same tool again changes no word, and yet the next move has to be looked at
+    state.fast = False  # The same tool may not change the modal state, but the next move must be checked.
     secondary(state, statement)
     return state.action(statement.line, statement.part("tool"), ToolChange(number))
 
 
 def secondary(state: State, statement: Statement) -> None:
-    """D: its pair is in the end point of this line's move and of all later ones."""
+    """Execute D: its offset applies to the end point of this line's move and of all later moves."""
     number = statement.value("D")
     if number is None:
         return
@@ -74,7 +74,7 @@ def secondary(state: State, statement: Statement) -> None:
 
 
 def work_shift(state: State, statement: Statement) -> Iterator[Block]:
-    """G10: X and Z add to the shift that the next T takes. Raises ProgramError without either."""
+    """Yield the block of G10, which adds to the shift at the next T. Raises ProgramError without X and Z."""
     check_together(statement, statement.entry)
     x, z = on_step(state, statement, "X") or 0.0, on_step(state, statement, "Z") or 0.0
     modal = state.modal
@@ -86,7 +86,7 @@ def work_shift(state: State, statement: Statement) -> Iterator[Block]:
 
 
 def preset(state: State, statement: Statement) -> Iterator[Block]:
-    """G92: the current point gets these coordinates. Raises ProgramError without any."""
+    """Yield the block of G92, which sets the present coordinates. Raises ProgramError without X and Z."""
     check_together(statement, statement.entry)
     if {"X", "Z", "F"} <= statement.words.keys():
         text = (
@@ -103,7 +103,7 @@ def preset(state: State, statement: Statement) -> Iterator[Block]:
 
 
 def warn_of_idle_shifts(state: State) -> None:
-    """At the end: a G10 that no T followed did nothing."""
+    """Log a warning at the end for each G10 that no T followed."""
     for line, taken in state.pending_shift.items():
         if not taken:
             text = "No T follows this G10, so its work shift never takes effect."

@@ -1,1 +1,1 @@
-"""Standard cycles of SINUMERIK: turning, grooves, undercuts, threads, drilling and tapping."""
+"""Standard cycles of SINUMERIK: stock removal, grooves, undercuts, threads, drilling and tapping."""

@@ -1,4 +1,4 @@
-"""Which cycle a call of CYCLE… runs, and what all of them share before the first move."""
+"""Calls of standard cycles: selection of the cycle, and the contour of CYCLE95."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ _RUN: Mapping[str, Callable[[Cycle], Iterator[Block]]] = {
 
 
 def cycle_blocks(state: State, line: Line, flow: Flow) -> Iterator[Block]:
-    """All blocks of a standard cycle. Raises ProgramError before the first of them."""
+    """Return an iterator of the blocks of a standard cycle. Raises ProgramError before the first block."""
     cycle = Cycle(state, line)
     if line.call == "CYCLE95":
         return stock_removal(cycle, _contour(cycle, flow))
@@ -80,6 +80,6 @@ def _contour(cycle: Cycle, flow: Flow) -> list[Element]:
 
 
 def _told_at(line: Line, shown: str, found: Diagnostic) -> Diagnostic:
-    """A mistake in the contour's own file, at the line of the cycle."""
+    """Return an error in the contour's file as a finding at the line of the cycle."""
     message = Message("{source} line {line}: {value}", source=shown, line=found.line, value=found.message)
     return replace(found, line=line.number, column=line.call_column, message=message)

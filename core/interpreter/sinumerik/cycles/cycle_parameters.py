@@ -1,4 +1,4 @@
-"""Parameters of a standard cycle by name, bounds refused with the name, and the cycle's motions as blocks."""
+"""Parameters of a standard cycle by name, with range checks, and the motions of the cycle as blocks."""
 
 from __future__ import annotations
 
@@ -30,14 +30,16 @@ _OWN = "cycle-parameter"
 _Alarm = int | str
 MACHINING_TYPE = 61002
 MOST_PASSES = 10_000
-RETRACT = 1.0  # mm by which a cycle stays off the part where _VRT says nothing
+RETRACT = 1.0  # mm; default retract distance from the part without _VRT
 _SAME = 1e-9  # mm
 
 
 class Step(NamedTuple):
-    """One motion of a cycle in the program's frame, mm, X a radius. ``feed`` as modal.feed, or the lead of a
-    thread; None for a rapid. With ``action`` nothing moves. ``turn``: what C turns meanwhile, degrees, and
-    ``feed`` is then mm/s. A ``tap`` follows the spindle alone; ``in_hole``: behind it a tap is still there.
+    """One motion of a cycle in the program frame, in mm with X as a radius.
+
+    ``feed`` is in the unit of ``modal.feed``, or the lead of a thread, or None for a rapid. A step with
+    ``action`` does not move. ``turn`` is the simultaneous turn of C in degrees; ``feed`` is then in mm/s. A
+    ``tap`` step follows the spindle, and ``in_hole`` means that the tap is in the hole at its end.
     """
 
     x: float
@@ -48,7 +50,7 @@ class Step(NamedTuple):
     thread: bool = False
     action: Action | None = None
     turn: float = 0.0
-    spindle: int | None = None  # +1, 0, -1: what the action makes of it
+    spindle: int | None = None  # spindle direction after the action: +1, 0 or -1
     tap: bool = False
     in_hole: bool = False
 
@@ -58,7 +60,10 @@ _LIVE = frozenset(("CYCLE81", "CYCLE82", "CYCLE83", "CYCLE85", "CYCLE89", "HOLES
 
 
 class Cycle:
-    """One call of a standard cycle. ``x z`` is where the tip stands as the program counts: mm, X a radius."""
+    """One call of a standard cycle.
+
+    ``x z`` is the position of the tip in the program frame, in mm with X as a radius.
+    """
 
     def __init__(self, state: State, line: Line) -> None:
         self.state, self.line = state, line
@@ -81,7 +86,11 @@ class Cycle:
         return {name: each for name, each in zip(names, arguments, strict=False) if each.given}
 
     def _check(self) -> None:
-        """Raises ProgramError where no cycle can run: the frame is turned, or compensation is on."""
+        """Raise ProgramError if the cycle is not allowed in the present state.
+
+        It is not allowed in a rotated, scaled or mirrored frame, or with nose compensation. With TRANSMIT,
+        only drilling cycles are allowed.
+        """
         text = "{call} cannot run in a frame that is rotated, scaled or mirrored."
         hint = "Write TRANS without axes before this block."
         self.require(self.state.programmed.plain, "cycle-frame", text, hint)
@@ -99,16 +108,16 @@ class Cycle:
         self.require(on == 40, "comp-with", text, hint, what=self.line.call, state=on)
 
     def given(self, name: str) -> bool:
-        """Whether the call hands this parameter over."""
+        """Return whether the call passes this parameter."""
         return name in self._arguments
 
     def text(self, name: str) -> str:
-        """A text in quotes, in capitals; empty without it."""
+        """Return a string parameter in capitals; empty without it."""
         argument = self._arguments.get(name)
         return "" if argument is None or argument.text is None else argument.text.upper()
 
     def number(self, name: str, default: float = 0.0) -> float:
-        """A number as written. Raises ProgramError for a text."""
+        """Return a number as written. Raises ProgramError for a string."""
         argument = self._arguments.get(name)
         if argument is None:
             return default
@@ -120,31 +129,31 @@ class Cycle:
         )
 
     def length(self, name: str, default: float = 0.0) -> float:
-        """A length in mm, of inches under G70."""
+        """Return a length in mm, converted from inches under G70."""
         if not self.given(name):
             return default
         return self.number(name) * (1.0 if self.state.modal.metric else 25.4)
 
     def size(self, name: str, default: float = 0.0) -> float:
-        """A length without a sign. Raises ProgramError under 0."""
+        """Return a length without a sign, in mm. Raises ProgramError if it is negative."""
         value = self.length(name, default)
         self.check(value >= 0.0, name, "{name} is a size and cannot be negative", "Remove the sign.")
         return value
 
     def needed(self, name: str) -> float:
-        """A length that must be there. Raises ProgramError."""
+        """Return a required length in mm. Raises ProgramError if it is missing."""
         if not self.given(name):
             raise self.wrong(name, "{name} is missing", "Add this parameter to {call}.", call=self.line.call)
         return self.length(name)
 
     def over_zero(self, name: str, alarm: _Alarm = _OWN) -> float:
-        """A length that must be there and over 0. Raises ProgramError."""
+        """Return a required length above 0, in mm. Raises ProgramError if it is missing or not above 0."""
         value = self.needed(name)
         self.check(value > 0.0, name, "{name} must be greater than 0", "Correct the value.", alarm)
         return value
 
     def whole(self, name: str, default: int, low: int, high: int) -> int:
-        """A whole number between two. Raises ProgramError."""
+        """Return a whole number from ``low`` to ``high``. Raises ProgramError for any other value."""
         value = self.number(name, float(default))
         self._demand_whole(name, value)
         text = "{name} is {value} but must be between {low} and {high}"
@@ -156,12 +165,12 @@ class Cycle:
         self.check(value == round(value), name, text, "Enter a whole number.", value=value)
 
     def zero_only(self, name: str, why: str) -> None:
-        """Raises ProgramError where a parameter asks for what is not built."""
+        """Raise ProgramError if a parameter requests a function that is not supported."""
         if self.number(name):
             raise self.wrong(name, "{name} is not supported; {why}", "Omit {name}.", "not-in-subset", why=why)
 
     def feed(self, name: str) -> float | None:
-        """A feed as modal.feed has it; that in force without the parameter."""
+        """Return a feed in the unit of ``modal.feed``; without the parameter, the active feed."""
         if not self.given(name) or not self.number(name):
             return self.state.modal.feed
         value = self.number(name)
@@ -170,7 +179,7 @@ class Cycle:
         return value if self.state.modal.per_rev else value / 60.0
 
     def machining(self, name: str, known: range) -> int:
-        """VARI. Raises ProgramError, the alarm of the control for a type that it does not have."""
+        """Return VARI. Raises ProgramError with the alarm of the control for an invalid type."""
         value = self.number(name)
         self._demand_whole(name, value)
         if round(value) not in known:
@@ -181,7 +190,7 @@ class Cycle:
         return round(value)
 
     def angle(self, name: str, text: str) -> float:
-        """An angle from 0 to less than 360 degrees. Raises ProgramError."""
+        """Return an angle from 0 to less than 360 degrees. Raises ProgramError for any other value."""
         value = self.number(name)
         self.check(0.0 <= value < 360.0, name, text)
         return value
@@ -189,7 +198,10 @@ class Cycle:
     def pass_count(
         self, whole: float, each: float, name: str, text: str, hint: str = _POINT, most: int = MOST_PASSES
     ) -> int:
-        """How many passes of ``each`` a depth takes. Raises ProgramError for more than anyone means."""
+        """Return the number of passes of ``each`` mm for a depth in mm.
+
+        Raises ProgramError if there are too many.
+        """
         count = pass_count(whole, each)
         self.check(count <= min(most, MOST_PASSES), name, text, hint, count=f"{count:,}")
         return count
@@ -197,24 +209,27 @@ class Cycle:
     def known_feed(
         self, feed: float | None, alarm: int = NO_F, hint: str = "Program F before this block."
     ) -> float:
-        """The feed. Raises ProgramError where there is none."""
+        """Return the feed. Raises ProgramError if it is None."""
         if feed is None:
             raise self.refused(alarm, "no feedrate is programmed.", hint)
         return feed
 
     def off_part(self, clear: float, out: float = 1.0) -> list[Step]:
-        """To X ``clear`` where the tool is nearer to the part; ``out``: the sign of X away from it."""
+        """Return a step to X ``clear`` if the tool is closer to the part.
+
+        ``out`` is the sign of X away from the part.
+        """
         return [] if out * self.x >= out * clear else [Step(clear, self.z)]
 
     def demand_tool(self) -> None:
-        """Raises ProgramError unless a tool with an offset is active."""
+        """Raise ProgramError unless a tool with an offset is active."""
         modal, text = self.state.modal, "{call} needs an active tool with an offset."
         self.require(modal.tool and modal.edge, 61000, text, "Write T and D before this block.")
 
     def wrong(
         self, name: str, what: str, hint: str = _CORRECT, code: _Alarm = _OWN, /, **values: object
     ) -> ProgramError:
-        """Return an error about one parameter; ``what`` and ``hint`` have holes for values."""
+        """Return an error about one parameter; ``values`` fill the placeholders of ``what`` and ``hint``."""
         argument = self._arguments.get(name)
         column = self.line.call_column if argument is None else argument.column
         values = {"name": name, "call": self.line.call, **values}
@@ -224,17 +239,17 @@ class Cycle:
     def check(
         self, ok: object, name: str, what: str, hint: str = _CORRECT, code: _Alarm = _OWN, /, **values: object
     ) -> None:
-        """Raise ``wrong`` unless a condition holds."""
+        """Raise the error of ``wrong`` unless the condition ``ok`` is true."""
         if not ok:
             raise self.wrong(name, what, hint, code, **values)
 
     def refused(self, code: _Alarm, text: str, hint: str, /, **values: object) -> ProgramError:
-        """Return an error about the whole call; ``text`` and ``hint`` have holes for values."""
+        """Return an error about the whole call; ``values`` fill the placeholders of ``text`` and ``hint``."""
         values = {"call": self.line.call, **values}
         return self._fault(self.line.call_column, code, worded(text, values), worded(hint, values))
 
     def require(self, ok: object, code: _Alarm, text: str, hint: str, /, **values: object) -> None:
-        """Raise ``refused`` unless a condition holds."""
+        """Raise the error of ``refused`` unless the condition ``ok`` is true."""
         if not ok:
             raise self.refused(code, text, hint, **values)
 
@@ -242,12 +257,12 @@ class Cycle:
         return ProgramError(fault(self.line.number, column, code, self.line.block, text, hint))
 
     def warn(self, code: str, text: str, hint: str, /, **values: object) -> None:
-        """Warn about the call."""
+        """Log a warning about the call."""
         found = self.refused(code, text, hint, **values).diagnostic
         self.state.log.add(replace(found, severity=Severity.WARNING))
 
     def blocks(self, steps: Sequence[Step]) -> Iterator[Block]:
-        """The motions as blocks. All feeds are checked before the first comes. Raises ProgramError."""
+        """Yield the motions as blocks. All feeds are checked before the first block. Raises ProgramError."""
         at, kept = (self.x, self.z), list[tuple[Step, float]]()
         for step in steps:
             still = step.action is None and step.centre is None and not step.turn
@@ -262,7 +277,7 @@ class Cycle:
             yield self._block(step, feed)
 
     def _check_feed(self, step: Step, x0: float) -> float:
-        """The feed of a step as its block has it. Raises ProgramError."""
+        """Return the feed of a step in the unit of its block. Raises ProgramError if it is invalid."""
         state, modal = self.state, self.state.modal
         state.adopt(modal._replace(feed=step.feed))
         try:
@@ -307,17 +322,17 @@ class Cycle:
 
 
 def acting(action: Action, spindle: int | None = None) -> Step:
-    """Something that is done where the tool stands; ``spindle`` as in ``Step``."""
+    """Return a step with an action at the present position; ``spindle`` is as in ``Step``."""
     return Step(0.0, 0.0, action=action, spindle=spindle)
 
 
 def dwell(seconds: float) -> list[Step]:
-    """Time at rest, where there is any."""
+    """Return a dwell step, or an empty list for 0 s."""
     return [acting(Dwell(seconds))] if seconds > 0.0 else []
 
 
 def _words(step: Step, diameter: bool) -> str:
-    # G2 is clockwise seen with X up, the other way round from what blocks count.
+    # G2 is clockwise in the view with X up. Blocks use the view with X down.
     code = "G33" if step.thread else "G0" if step.feed is None else "G1"
     if step.centre is not None:
         code = "G3" if step.clockwise else "G2"

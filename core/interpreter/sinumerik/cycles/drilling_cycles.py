@@ -1,6 +1,6 @@
-"""CYCLE81 to 83 and 85 to 89: a hole along Z under G17, with dwells and feeds; HOLES1, HOLES2: its places.
+"""Drilling cycles CYCLE81 to 83 and 85 to 89 along Z under G17, and the hole patterns HOLES1 and HOLES2.
 
-CYCLE86, 87 and 88 bore, and end with the spindle held, or stopped for the operator.
+CYCLE86, CYCLE87 and CYCLE88 are boring cycles that orient or stop the spindle at the bottom.
 """
 
 from __future__ import annotations
@@ -35,9 +35,9 @@ _SAME = 1e-6  # mm
 
 
 class Hole(NamedTuple):
-    """Z of retraction plane, reference plane, safety distance before it, bottom; ``down`` is -1 or +1.
+    """Z positions of one hole: retract plane, reference plane, safety clearance and bottom.
 
-    ``x`` is where the tool stands, and where all of the hole lies.
+    ``down`` is the drilling direction, -1 or +1. ``x`` is the present X position of the tool.
     """
 
     x: float
@@ -48,12 +48,12 @@ class Hole(NamedTuple):
     down: float
 
     def to(self, z: float, feed: float | None = None) -> Step:
-        """Down or up to ``z``; without a feed in rapid."""
+        """Return a step to ``z``, in rapid without a feed."""
         return Step(self.x, z, feed)
 
 
 def hole_of(cycle: Cycle) -> Hole:
-    """The hole that a call asks for. Raises ProgramError by the parameter's name."""
+    """Return the hole of a call. Raises ProgramError with the name of an invalid parameter."""
     if cycle.state.plane != 17:
         text = "{call} drills perpendicular to plane G{plane}; drilling along Z needs G17."
         hint = "Write G17 before this block and G18 after it."
@@ -85,7 +85,7 @@ def hole_of(cycle: Cycle) -> Hole:
 
 
 def seconds(cycle: Cycle, name: str) -> float:
-    """A dwell: seconds, or under 0 revolutions of the spindle."""
+    """Return a dwell in seconds; a negative value is in spindle revolutions."""
     value = cycle.number(name)
     if value >= 0.0:
         return value
@@ -100,14 +100,14 @@ def _feed(cycle: Cycle) -> float:
 
 
 def drill(cycle: Cycle) -> Iterator[Block]:
-    """CYCLE81, CYCLE82: feed to the depth, dwell, rapid out."""
+    """Return the blocks of CYCLE81 and CYCLE82: feed to the depth, dwell, rapid out."""
     hole, feed = hole_of(cycle), _feed(cycle)
     dwells = dwell(seconds(cycle, "DTB"))
     return cycle.blocks([hole.to(hole.clear), hole.to(hole.bottom, feed), *dwells, hole.to(hole.retract)])
 
 
 def bore(cycle: Cycle) -> Iterator[Block]:
-    """CYCLE85, CYCLE89: out at a feed, too."""
+    """Return the blocks of CYCLE85 and CYCLE89: feed to the depth, dwell, feed out."""
     hole = hole_of(cycle)
     into, out = cycle.known_feed(cycle.feed("FFR")), cycle.known_feed(cycle.feed("RFF"))
     steps = [hole.to(hole.clear), hole.to(hole.bottom, into), *dwell(seconds(cycle, "DTB"))]
@@ -115,7 +115,10 @@ def bore(cycle: Cycle) -> Iterator[Block]:
 
 
 def peck(cycle: Cycle) -> Iterator[Block]:
-    """CYCLE83: pecks that grow smaller by DAM, with a way out (VARI 1) or a short one back (VARI 0)."""
+    """Return the blocks of CYCLE83: pecks that decrease by DAM.
+
+    After each peck, the drill retracts fully (VARI 1) or by a short distance (VARI 0).
+    """
     hole, feed = hole_of(cycle), _feed(cycle)
     factor = cycle.number("FRF", 1.0) or 1.0
     if not 0.001 <= factor <= 1.0:
@@ -140,7 +143,10 @@ def peck(cycle: Cycle) -> Iterator[Block]:
 
 
 def depths(cycle: Cycle, hole: Hole) -> list[float]:
-    """Z of each peck: FDEP or FDPR first, each then less by DAM (under 0: times), the last two alike."""
+    """Return Z of each peck: the first at FDEP or FDPR, each following peck reduced by DAM.
+
+    A negative DAM is a factor. The last two pecks are equal.
+    """
     whole = abs(hole.bottom - hole.reference)
     first = abs(cycle.length("FDEP") - hole.reference) if cycle.given("FDEP") else cycle.size("FDPR")
     if cycle.given("FDEP") and (cycle.length("FDEP") - hole.reference) * hole.down < -_SAME:
@@ -167,7 +173,7 @@ def depths(cycle: Cycle, hole: Hole) -> list[float]:
 
 
 def _turning(cycle: Cycle) -> list[Step]:
-    """The spindle in the direction SDIR. Raises ProgramError."""
+    """Return a spindle start in the direction SDIR, if necessary. Raises ProgramError without a speed."""
     direction = cycle.number("SDIR")
     if direction not in {3.0, 4.0}:
         raise cycle.wrong("SDIR", "{name} must be 3 or 4", "Enter the spindle direction.", NO_DIRECTION)
@@ -178,7 +184,11 @@ def _turning(cycle: Cycle) -> list[Step]:
 
 
 def lift_off(cycle: Cycle) -> Iterator[Block]:
-    """CYCLE86: at the bottom the spindle is held at POSS, the edge lifted by RPA and RPAP, and rapid out."""
+    """Return the blocks of CYCLE86.
+
+    At the bottom, the spindle is oriented to POSS, and the edge is lifted by RPA and RPAP. The retract is a
+    rapid.
+    """
     hole, state = hole_of(cycle), cycle.state
     demand_position(state, lambda text, hint: cycle.refused("spindle-position", text, hint))
     cycle.zero_only("RPO", "this lathe has no Y axis")
@@ -193,27 +203,27 @@ def lift_off(cycle: Cycle) -> Iterator[Block]:
 
 
 def _bored(cycle: Cycle, hole: Hole) -> list[Step]:
-    """To the bottom with the spindle turning as SDIR says, and the dwell there."""
+    """Return the steps to the bottom with the spindle turning by SDIR, and the dwell there."""
     steps = [hole.to(hole.clear), *_turning(cycle), hole.to(hole.bottom, _feed(cycle))]
     return [*steps, *dwell(seconds(cycle, "DTB"))]
 
 
 def _held_at(cycle: Cycle, hole: Hole, angle: float) -> list[Step]:
-    """The spindle at an angle: by its drive, or held as C and turned there."""
+    """Return the steps that bring the spindle to an angle, by its drive or as the C axis."""
     if oriented_by_drive(cycle.state):
         return [acting(SpindleOrient(angle), 0)]
     return locked(cycle, hole.to(hole.bottom), angle)
 
 
 def locked(cycle: Cycle, at: Step, angle: float) -> list[Step]:
-    """The spindle held as C where the tool stands, and turned to an angle."""
+    """Return the steps that lock the spindle as C at the present position and turn it to an angle."""
     turn, speed = shortest_turn(cycle.state, angle), cycle.state.setup.limits.speeds[2]
     turned = [at._replace(feed=speed, turn=turn)] if turn else []
     return [acting(SpindleLock(orient=False), 0), *turned]
 
 
 def stop(cycle: Cycle) -> Iterator[Block]:
-    """CYCLE87, CYCLE88: at the bottom the spindle comes to rest, M0 waits for the operator, and rapid out."""
+    """Return the blocks of CYCLE87 and CYCLE88: stop the spindle at the bottom, M0, rapid out."""
     hole = hole_of(cycle)
     rest = [acting(SpindleStop(stands=True), 0), acting(ProgramStop(optional=False))]
     return cycle.blocks([*_bored(cycle, hole), *rest, hole.to(hole.retract)])
@@ -224,14 +234,14 @@ _MOST = 1000
 
 
 def no_cycle(line: Line) -> ProgramError:
-    """A pattern without a cycle to drill with."""
+    """Return the error for a hole pattern without a drilling cycle."""
     text = Message("{call} uses the cycle called with MCALL, but no MCALL is active.", call=line.call)
     hint = "Write MCALL CYCLE81( ) or another cycle before this block."
     return line.refuse(line.call_column, "pattern-cycle", text, hint)
 
 
 def places(state: State, line: Line) -> Iterator[Block]:
-    """A rapid to each place, X and Y of the face. Raises ProgramError."""
+    """Yield a rapid to each hole of a pattern in X and Y of the face. Raises ProgramError."""
     cycle = Cycle(state, line)
     plane = state.transformation
     if plane is None or not plane.along_z:
@@ -250,7 +260,7 @@ def places(state: State, line: Line) -> Iterator[Block]:
 
 
 def _row(cycle: Cycle, number: int) -> list[tuple[float, float]]:
-    """Along STA1 from SPCA, SPCO: the first FDIS away, DBH between them."""
+    """Return the holes of HOLES1: along the angle STA1 from SPCA, SPCO, the first at FDIS, spaced by DBH."""
     x, y, angle = cycle.length("SPCA"), cycle.length("SPCO"), radians(cycle.number("STA1"))
     first, apart = cycle.length("FDIS"), cycle.size("DBH")
     if number > 1 and not apart:
@@ -264,7 +274,10 @@ def _row(cycle: Cycle, number: int) -> list[tuple[float, float]]:
 
 
 def _circle(cycle: Cycle, number: int) -> list[tuple[float, float]]:
-    """Round CPA, CPO on RAD from STA1 on, INDA between them; without it all round."""
+    """Return the holes of HOLES2: on radius RAD about CPA, CPO from the angle STA1, spaced by INDA.
+
+    Without INDA, the holes are spaced equally on the full circle.
+    """
     x, y, radius = cycle.length("CPA"), cycle.length("CPO"), cycle.over_zero("RAD")
     first, apart = cycle.number("STA1"), cycle.number("INDA") or 360.0 / number
     angles = [radians(first + apart * k) for k in range(number)]

@@ -1,12 +1,12 @@
-"""CYCLE93, CYCLE92: a groove with square or slanted flanks, outside or inside; the part parted off.
+"""Grooving with CYCLE93, with straight or tapered flanks, outside or inside, and part-off with CYCLE92.
 
-WIDG is the width of the bottom, and SPL the corner of the surface at which the groove begins: slanted flanks
-make it wider outwards. The tool's width is the way between its two cutting edges, D and _DN of the table, or
-D+1, as on the control.
+WIDG is the width of the bottom, and SPL is the corner of the surface at which the groove begins. Tapered
+flanks make the groove wider toward the surface. The tool width is the distance between its two cutting edges,
+D and _DN in the tool table, or D+1 without _DN, as on the original control.
 
-Parting off is slower near the axis; the edge in force goes down at SPL. What the parameters of CYCLE92 mean
-is told by the maker's operating manuals, their names and order by public lists of them; what the digits of
-``_DMODE`` and ``_AMODE`` mean is told nowhere, so that only depths as diameters are taken.
+Part-off is slower near the axis. The active edge moves down at SPL. The meaning of the parameters of CYCLE92
+follows the manufacturer's operating manuals, and their names and order follow published lists. The digits of
+``_DMODE`` and ``_AMODE`` are not documented, so that only depths as diameters are accepted.
 """
 
 from __future__ import annotations
@@ -34,14 +34,18 @@ WRONG_WIDTH = 61602
 WRONG_FORM = 61603
 _SAME = 1e-6  # mm
 _STEEPEST = 89.999  # degrees
-_USUAL_WIDTH = 3.0  # mm, of a tool that the table does not have
+_USUAL_WIDTH = 3.0  # mm; assumed width of a tool that is not in the table
 _CUTS = "{name} would need {count} cuts, which is too many"
-_OVERLAP = 0.95  # of the tool's width: what a cut beside another takes at most
+_OVERLAP = 0.95  # of the tool width; the maximum offset between adjacent cuts
 
 
 class Groove(NamedTuple):
-    """mm, X a radius. ``out`` is the sign of X from the bottom to the open side. The bottom lies between
-    ``low`` and ``high`` along Z; the flanks go ``low_run`` and ``high_run`` further up to the ``top``.
+    """Geometry of a groove in mm, with X as a radius.
+
+    ``out`` is the sign of X from the bottom to the opening.
+
+    The bottom extends from ``low`` to ``high`` along Z. The flanks extend ``low_run`` and ``high_run``
+    farther at the ``top``.
     """
 
     out: float
@@ -54,7 +58,7 @@ class Groove(NamedTuple):
 
 
 def groove_of(cycle: Cycle) -> Groove:
-    """The groove that a call asks for. Raises ProgramError by the parameter's name."""
+    """Return the groove of a call. Raises ProgramError with the name of an invalid parameter."""
     kind = (cycle.machining("VARI", range(1, 19)) - 1) % 10 + 1
     cycle.check(kind <= 8, "VARI", "{name} must be 1 to 8 or 11 to 18", "Correct the value.", 61002)
     cycle.zero_only("STA1", "program a groove on a taper as a CYCLE95 contour")
@@ -76,7 +80,7 @@ def groove_of(cycle: Cycle) -> Groove:
 
 
 def _run(cycle: Cycle, name: str, depth: float) -> float:
-    """How far a flank goes along Z from the bottom to the surface, mm. Raises ProgramError."""
+    """Return the Z extent of a flank from the bottom to the surface, in mm. Raises ProgramError."""
     angle = cycle.number(name)
     text = "{name} must be a flank angle from 0 to less than 90 degrees"
     cycle.check(0.0 <= angle <= _STEEPEST, name, text)
@@ -84,10 +88,10 @@ def _run(cycle: Cycle, name: str, depth: float) -> float:
 
 
 def tool_width(cycle: Cycle, widest: float) -> tuple[float, bool]:
-    """Width of the tool, mm, and whether the edge in force is the one at the lower end of it.
+    """Return the width of the tool in mm, and whether the active edge is its lower corner.
 
-    A tool that the table does not have starts nothing; it is taken for ``widest`` at most, with a warning.
-    Raises ProgramError where the table has one edge of the two.
+    A tool that is not in the table gets at most the width ``widest``, with a warning; such a program cannot
+    start. Raises ProgramError if the table has only one of the two edges.
     """
     state = cycle.state
     key, tools = state.modal.tool, state.setup.tools
@@ -106,7 +110,7 @@ def tool_width(cycle: Cycle, widest: float) -> tuple[float, bool]:
         hint = "Set {other} on the TOOL OFFSETS page (F8)."
         raise cycle.refused(WRONG_WIDTH, text, hint, name=name, other=edge_name(other))
     here, there = tools[key], tools[other]
-    # A corner further to plus has the smaller machine position at part zero.
+    # A corner farther in the plus direction has the smaller machine position at part zero.
     way = here.z - there.z
     text = "{key} and {other} are at the same position, so the tool has no width."
     hint = "Correct the offsets of the two tool corners."
@@ -115,7 +119,10 @@ def tool_width(cycle: Cycle, widest: float) -> tuple[float, bool]:
 
 
 def groove(cycle: Cycle) -> Iterator[Block]:
-    """Cuts side by side, each in steps of IDEP, then the flanks and the bottom. Raises ProgramError."""
+    """Return the blocks of CYCLE93: adjacent cuts in steps of IDEP, then flanks and bottom.
+
+    Raises ProgramError for invalid parameters.
+    """
     shape = groove_of(cycle)
     bottom_left, flank_left = cycle.size("FAL1"), cycle.size("FAL2")
     width, at_low = tool_width(cycle, shape.high - shape.low - 2.0 * flank_left)
@@ -140,7 +147,7 @@ def groove(cycle: Cycle) -> Iterator[Block]:
 
 
 class _Plan:
-    """Motions by depth and place; a place is Z of the tool's lower corner."""
+    """Motions by depth and Z position of the lower tool corner."""
 
     def __init__(self, cycle: Cycle, shape: Groove, feed: float, clear: float, corner: float) -> None:
         self._cycle, self._shape, self._feed = cycle, shape, feed
@@ -149,7 +156,10 @@ class _Plan:
         cycle.check(self._dwell >= 0.0, "DTB", "{name} must be a time of 0 s or more")
 
     def plunge(self, place: float, bottom: float) -> list[Step]:
-        """Down in steps of IDEP, each with a short way back to break the chip; dwell; out."""
+        """Return a plunge in steps of IDEP, a dwell, and the retract.
+
+        A short retract after each step breaks the chip.
+        """
         shape = self._shape
         whole = abs(bottom - shape.top)
         text = "{name} would need {count} steps, which is too many"
@@ -163,7 +173,7 @@ class _Plan:
         return [*steps, *dwell(self._dwell), self._to(self._clear, place)]
 
     def beside(self, place: float, run: float, width: float, bottom: float) -> list[Step]:
-        """Plunges outwards from ``place`` under a flank that rises by ``run``, each less deep."""
+        """Return plunges from ``place`` outward under a flank with the extent ``run``, each less deep."""
         count = self._cycle.pass_count(abs(run), width * _OVERLAP, "ANG1", _CUTS, "Check the angles.")
         steps: list[Step] = []
         for share in (k / (count + 1) for k in range(1, count + 1)):
@@ -172,7 +182,7 @@ class _Plan:
         return steps
 
     def finish(self, width: float) -> list[Step]:
-        """Down each flank and along the bottom to the middle."""
+        """Return the finishing moves down each flank and along the bottom to the middle."""
         shape, feed = self._shape, self._feed
         high, middle = shape.high - width, (shape.low + shape.high - width) / 2.0
         steps: list[Step] = []
@@ -193,14 +203,15 @@ class _Plan:
 
 WRONG_DEPTH = 61604
 _SPEED = "{name} is {value}, which is not a valid speed for this spindle"
-_DIRECTION = {3: 1, 4: -1}  # of _SDAC
+_DIRECTION = {3: 1, 4: -1}  # spindle direction by _SDAC
 
 
 def part_off(cycle: Cycle) -> Iterator[Block]:
-    """Down to _DIAG1 at _FF1, from there to _DIAG2 at _FF2 and _SS2 rpm. Raises ProgramError before a block.
+    """Yield the blocks of CYCLE92: down to _DIAG1 at _FF1, then to _DIAG2 at _FF2 and _SS2 rpm.
 
-    A speed _SV1 is one of the surface beside its limit _SV2, counted as G96 counts S, else rpm; behind the
-    cycle the speed of before is in force again, or the last one where the spindle stood without a speed.
+    With the limit _SV2, _SV1 is a surface speed as for G96; otherwise it is in rpm. After the cycle, the
+    previous speed is active again, or the last speed of the cycle if there was none. Raises ProgramError
+    before the first block.
     """
     cycle.zero_only("_RC", "cut the chamfer or the radius with G1 before the cycle")
     cycle.zero_only("_VARI", "the tool only retracts, because this machine has no parts catcher")
@@ -221,7 +232,7 @@ def part_off(cycle: Cycle) -> Iterator[Block]:
 
 
 def _depths(cycle: Cycle) -> tuple[float, float]:
-    """Radii at which the tool slows down and stands still. Raises ProgramError."""
+    """Return the radii at which the tool slows down and stops. Raises ProgramError."""
     surface, last = cycle.over_zero("SPD"), cycle.needed("_DIAG2")
     slow = cycle.length("_DIAG1", last) if cycle.given("_DIAG1") else last
     if not last <= slow <= surface:
@@ -238,7 +249,10 @@ def _feeds(cycle: Cycle) -> tuple[float, float]:
 
 
 def _speed(cycle: Cycle, before: Modal) -> Modal:
-    """What is in force down to _DIAG1. Raises ProgramError where the spindle would stand."""
+    """Return the modal state with the speed that applies down to _DIAG1.
+
+    Raises ProgramError if the spindle does not run.
+    """
     value, most = cycle.number("_SV1"), cycle.number("_SV2")
     direction = cycle.whole("_SDAC", 0, 0, 4)
     if direction and direction not in _DIRECTION:
@@ -262,7 +276,7 @@ def _speed(cycle: Cycle, before: Modal) -> Modal:
 def _blocks(
     cycle: Cycle, speeds: tuple[Modal, Modal, float], down: list[Step], through: list[Step]
 ) -> Iterator[Block]:
-    """Both halves, each at its speed. The first asks for all that can be refused."""
+    """Yield the blocks of both sections, each at its speed. All checks are in the first section."""
     fast, before, rpm = speeds
     state = cycle.state
     slow = fast._replace(css=False, rpm=rpm) if rpm else fast
@@ -281,11 +295,11 @@ def _blocks(
         if state.rpm:
             yield _turning(cycle)
         else:
-            state.adopt(slow)  # it goes on turning, and what is in force says so
+            state.adopt(slow)  # The spindle continues to turn, so the modal state has its speed.
 
 
 def _turning(cycle: Cycle) -> Block:
-    """The spindle at the speed that is in force now."""
+    """Return the block that runs the spindle at the active speed."""
     state = cycle.state
     text = f"G96 S{(state.css or 0.0) / METRES_PER_MINUTE:g}" if state.css else f"S{abs(state.rpm):g}"
     return state.action(cycle.line.number, text, SpindleRun(state.rpm, state.css))

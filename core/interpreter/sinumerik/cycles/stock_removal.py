@@ -1,9 +1,8 @@
-"""CYCLE95: a contour turned out of the stock, along Z or X, outside or inside, roughed, finished or both.
+"""Stock removal with CYCLE95: roughing and finishing of a contour, along Z or X, outside or inside.
 
-Passes, runs along the contour and their ways are those of ``contour_passes``; the cycle starts beside the
-contour by itself, from wherever the tool stands. It is reckoned for the nose's centre, so that tapers and
-arcs have their size; what comes out are the ways of the tip. The contour is a subprogram, or the lines
-between two labels.
+``contour_passes`` calculates the passes. The cycle calculates its start point from the contour, independent
+of the tool position. It is calculated for the nose center, so that tapers and arcs are accurate, and its
+output is the path of the tip. The contour is a subprogram, or the lines between two labels.
 """
 
 from __future__ import annotations
@@ -52,7 +51,7 @@ _END = frozenset({2, 17, 30})
 
 
 def contour_lines(named: str, running: Routine, known: Routine | None) -> list[SourceLine] | None:
-    """The lines of a contour by its name; None where there is none."""
+    """Return the lines of a contour by its name, or None if the name does not exist."""
     if ":" in named:
         first, last = (part.strip() for part in named.split(":", 1))
         start = find_label(Steering.GOTO, first, running, running.lines.start - 1)
@@ -64,9 +63,9 @@ def contour_lines(named: str, running: Routine, known: Routine | None) -> list[S
 
 
 def read_contour(state: State, lines: Iterable[SourceLine]) -> list[Element]:
-    """The lines and arcs of a contour in the program's frame, mm; its first move is its first point.
+    """Return the lines and arcs of a contour in the program frame, in mm; the first move is its first point.
 
-    The state in force stays as it is. Raises ProgramError for a line that no contour can hold.
+    The active state does not change. Raises ProgramError for a line that is not allowed in a contour.
     """
     reader = _Reader(state)
     for line in lines:
@@ -85,14 +84,14 @@ class _Reader:
         own.variables.scope = Scope(dict(state.variables.scope.numbers))
         own.variables.r = dict(state.variables.r)
         own.threads, own.rounding, own.motion = (), 0.0, Motion.LINE
-        # Its feeds do not count, so that none is missing.
+        # The feeds of a contour have no effect, so a missing feed is not an error.
         own.adopt(state.modal._replace(feed=1.0, per_rev=False, css=False))
         self._state = own
         self._corners = Corners(own, own.log)
         self._blocks: list[Block] = []
 
     def take(self, line: SourceLine) -> bool:
-        """One line; whether it ends the contour. Raises ProgramError."""
+        """Read one line, and return whether it ends the contour. Raises ProgramError."""
         for found in line.errors:
             raise ProgramError(found)
         if line.call or line.modal_call or (line.jump is not None and line.jump.steering not in _TAKEN):
@@ -123,7 +122,7 @@ class _Reader:
             raise _refused(statement.line, "C and frames are not allowed in a contour")
 
     def elements(self) -> list[Element]:
-        """Everything behind the first move."""
+        """Return all elements after the first move."""
         self._blocks += self._corners.end()
         elements = [element_of(block) for block in self._blocks[1:] if block.moves]
         return [each for each in elements if each.length > _SAME]
@@ -144,11 +143,13 @@ def _refused(line: SourceLine, why: str) -> ProgramError:
 
 NO_INFEED = 61610
 _SAME = 1e-6  # mm
-_ROUNDING = 200  # VARI from here on leaves the steps; the run along the contour takes them here
+# With a VARI above this value, the steps between passes are left; here, the last pass along the contour cuts
+# them.
+_ROUNDING = 200
 
 
 class Kind(NamedTuple):
-    """What VARI says: ``across`` along X instead of Z, ``inside``, and which of roughing and finishing."""
+    """Machining type of VARI: ``across`` (along X instead of Z), ``inside``, roughing and finishing."""
 
     across: bool
     inside: bool
@@ -157,7 +158,7 @@ class Kind(NamedTuple):
 
 
 def kind_of(cycle: Cycle) -> Kind:
-    """VARI 1 to 12, or 201 to 212. Raises ProgramError."""
+    """Return the type of VARI 1 to 12 or 201 to 212. Raises ProgramError for any other value."""
     value = cycle.number("VARI", -1.0)
     number = round(value) % _ROUNDING
     if value != round(value) or value < 1 or number not in range(1, 13) or value > _ROUNDING + 12:
@@ -171,7 +172,7 @@ def kind_of(cycle: Cycle) -> Kind:
 
 
 def stock_removal(cycle: Cycle, contour: list[Element]) -> Iterator[Block]:
-    """The whole cycle. Raises ProgramError before the first block."""
+    """Return the blocks of the cycle. Raises ProgramError before the first block."""
     kind = kind_of(cycle)
     text = "{name} refers to a contour without lines or arcs"
     cycle.check(contour, "NPP", text, "Write the points of the contour.", WRONG_CONTOUR)
@@ -191,7 +192,7 @@ def stock_removal(cycle: Cycle, contour: list[Element]) -> Iterator[Block]:
 
 
 class _Plan:
-    """In depth and way: X and Z, or for passes along X the other way round."""
+    """Motions in depth and length, which are X and Z, or Z and X for passes along X."""
 
     def __init__(self, cycle: Cycle, kind: Kind, contour: list[Element]) -> None:
         self._cycle, self._kind = cycle, kind
@@ -208,8 +209,8 @@ class _Plan:
         self._start = self._start_point()
 
     def _free_side(self) -> tuple[float, float]:
-        """+1 or -1 for depth and way: from the material out of it, at the contour's end of the free side."""
-        if self._kind.across:  # the face is that on the right
+        """Return the signs of depth and length from the part to the open side of the contour."""
+        if self._kind.across:  # The face is on the right side.
             return 1.0, (-1.0 if self._kind.inside else 1.0)
         first, last = self._contour[0].start, self._contour[-1].end
         out = -1.0 if self._kind.inside else 1.0
@@ -217,7 +218,10 @@ class _Plan:
         return out, (1.0 if deep[1] >= other[1] else -1.0)
 
     def _lengthened(self) -> list[Element]:
-        """The contour, longer by the nose radius at an end that leads straight out: so the tip gets there."""
+        """Return the contour, extended by the nose radius at ends that lead straight out.
+
+        The tip then reaches the programmed end.
+        """
         *_, last = contour = list(self._contour)
         contour[-1] = self._straight_out(last)
         contour[0] = self._straight_out(contour[0].reversed()).reversed()
@@ -230,7 +234,10 @@ class _Plan:
         return Line(element.start, (x + self._signs[0] * self._nose, z))
 
     def _start_point(self) -> Point:
-        """Beside both ends: at the contour's outermost depth, and off its front by allowance and _VRT."""
+        """Return the start point of the cycle, outside both ends of the contour.
+
+        It is at the outermost depth of the contour, and in front of it by the allowance and _VRT.
+        """
         out, front = self._signs
         boxes = [each.box for each in self._contour]
         depth = max(b[1] for b in boxes) if out > 0 else min(b[0] for b in boxes)
@@ -249,7 +256,7 @@ class _Plan:
             raise self._cycle.wrong("FAL", text, hint, 61606) from None
 
     def approach(self) -> list[Step]:
-        """To the start point: first off the part in depth, then beside it."""
+        """Return the steps to the start point: first away from the part in depth, then in length."""
         out, _ = self._signs
         depth, way = self._start
         x, z = self._cycle.x - self._tip[0], self._cycle.z - self._tip[1]
@@ -261,7 +268,10 @@ class _Plan:
                 self._step(Move(depth, way, 1.0))]  # fmt: skip
 
     def rough(self) -> list[Step]:
-        """Equal passes of MID at most, and the run along the contour at its allowance."""
+        """Return the roughing steps.
+
+        These are equal passes of at most MID, and a pass along the contour that leaves the allowance.
+        """
         cycle = self._cycle
         infeed = cycle.size("MID")
         text = "{name} is missing, so the depth of a pass is not defined"
@@ -281,7 +291,7 @@ class _Plan:
         return self._fed(moves, cycle.feed("FF1"), cycle.feed("FF2"), breaks=True)
 
     def finish(self) -> list[Step]:
-        """Along the contour itself."""
+        """Return the steps of the finishing pass along the contour."""
         area, view = self._area(self._contour, 0.0)
         return self._fed(self._run(Rougher(area, 1.0, self._off), view), self._cycle.feed("FF3"), None)
 
@@ -295,7 +305,10 @@ class _Plan:
         return [view.placed(move) for move in rougher.moves]
 
     def _with_allowance(self) -> tuple[list[Element], float]:
-        """The contour moved off by FALX and FALZ; where it also falls, the larger of them all along it."""
+        """Return the contour shifted by FALX and FALZ, and the remaining allowance.
+
+        For a contour with a recess, the contour is not shifted, and the larger value is the allowance.
+        """
         depth, way = self._allow
         out, front = self._signs
         if not depth and not way:
@@ -319,7 +332,7 @@ class _Plan:
         steps: list[Step] = []
         at = self._start
         for move in moves:
-            # Into a relief the tool goes in depth alone, off the front of the area.
+            # In a recess, the tool moves only in depth, away from the front of the area.
             deeper = self._signs[0] * (at[0] - move.x) > _SAME and abs(move.z - at[1]) < _SAME
             into = deeper and abs(at[1] - self._start[1]) > _SAME
             speed = plunge if into and plunge is not None else feed
@@ -328,7 +341,7 @@ class _Plan:
         return steps
 
     def _broken(self, at: Point, move: Move, feed: float) -> list[Step]:
-        """A cut along the way with a dwell DT after each DAM, so that chips break."""
+        """Return a cut with a dwell DT after each distance DAM to break chips."""
         length, seconds = self._cycle.size("DAM"), self._cycle.number("DT")
         way = move.z - at[1]
         if not length or move.rapid is not None or move.centre is not None or abs(way) <= length + _SAME:
@@ -345,7 +358,7 @@ class _Plan:
         return steps
 
     def _step(self, move: Move, feed: float | None = None) -> Step:
-        """A motion of the nose's centre in depth and way as one of the tip in X and Z."""
+        """Return a motion of the nose center, in depth and length, as a step of the tip in X and Z."""
         dx, dz = self._tip
         at, centre, clockwise = (move.x, move.z), move.centre, move.clockwise
         if self._kind.across:
@@ -356,9 +369,10 @@ class _Plan:
 
 
 def _nose_of(cycle: Cycle) -> tuple[float, Point]:
-    """Nose radius, and where the tip lies from the nose's centre, mm: X, Z.
+    """Return the nose radius, and the position of the tip relative to the nose center in mm (X, Z).
 
-    Without a tip quadrant nobody knows where the centre is: the tip runs along the contour, which is told.
+    Without a tip quadrant, the position of the center is unknown. The tip then follows the contour, with a
+    warning.
     """
     edge = cycle.state.edge
     if not cycle.state.modal.edge or not edge.nose_radius:

@@ -1,7 +1,7 @@
-"""CYCLE84, CYCLE840, G331, G332: tapping with the spindle held as C, and with a compensating chuck.
+"""Tapping with CYCLE84, CYCLE840, G331 and G332: rigid with the C axis, or with a compensating chuck.
 
-Rigid: C turns in proportion to the way along Z, one turn a lead, as two axes of one move. With a compensating
-chuck the slide is fed by the revolution, and the spindle turned back at the bottom.
+In rigid tapping, C turns in proportion to the travel along Z, one revolution per lead. With a compensating
+chuck, Z moves at a feed per revolution, and the spindle reverses at the bottom.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ _INCH = 25.4
 
 
 def lead_of_tap(cycle: Cycle) -> float:
-    """PIT or MPIT, under 0 for a left-hand thread: mm a revolution; 0 where neither is written."""
+    """Return the lead (PIT or MPIT) in mm/rev, negative for a left-hand thread; 0 if neither is given."""
     unit = cycle.whole("_PITA", 0, 0, 4)
     text = "{name} is 4, which specifies the lead as a module"
     cycle.check(unit != 4, "_PITA", text, "Enter PIT in mm.", WRONG_LEAD)
@@ -43,7 +43,10 @@ def lead_of_tap(cycle: Cycle) -> float:
 
 
 def rigid(cycle: Cycle) -> Iterator[Block]:
-    """CYCLE84: the spindle stops at POSS, turns in with Z by SST, and out by SST1. Raises ProgramError."""
+    """Return the blocks of CYCLE84: orient the spindle to POSS, tap in at SST and out at SST1.
+
+    Raises ProgramError for invalid parameters.
+    """
     hole, state = hole_of(cycle), cycle.state
     demand_spindle_as_c(state, lambda text, hint: cycle.refused("spindle-position", text, hint))
     lead = lead_of_tap(cycle)
@@ -60,13 +63,13 @@ def rigid(cycle: Cycle) -> Iterator[Block]:
 
 
 def _after(cycle: Cycle, rest: int) -> list[Step]:
-    """What the spindle does behind the cycle: 3 and 4 as M3 and M4, 5 nothing."""
+    """Return the spindle start after the cycle: 3 and 4 as M3 and M4, nothing for 5."""
     sign = 1 if rest == 3 else -1
     return [] if rest == 5 else [acting(SpindleRun(sign * cycle.state.modal.rpm), sign)]
 
 
 def _speed(cycle: Cycle, name: str, default: float) -> float:
-    """A speed for tapping, rpm, no faster than C turns."""
+    """Return a tapping speed in rpm, limited to the maximum speed of C, with a warning."""
     value = cycle.number(name, default) or default
     most = cycle.state.setup.limits.c_max_rpm
     text = "{name} does not define a speed"
@@ -82,7 +85,10 @@ def _speed(cycle: Cycle, name: str, default: float) -> float:
 
 
 def _ways(cycle: Cycle, hole: Hole, lead: float, speeds: tuple[float, float]) -> list[Step]:
-    """In one go, or by _DAM with a way back each time: _VRT (_VARI 1), or out of the hole (_VARI 2)."""
+    """Return the tapping steps in one pass or in steps of _DAM.
+
+    After each step, the tap retracts by _VRT (_VARI 1) or out of the hole (_VARI 2).
+    """
     kind, each = cycle.whole("_VARI", 0, 0, 2), cycle.size("_DAM")
     whole = abs(hole.bottom - hole.clear)
     text = "{name} would need {count} steps, which is too many"
@@ -90,7 +96,7 @@ def _ways(cycle: Cycle, hole: Hole, lead: float, speeds: tuple[float, float]) ->
     back, at, steps = cycle.size("_VRT") or 1.0, hole.clear, list[Step]()
 
     def turned(to: float, rpm: float) -> Step:
-        # The way into the hole turns a right-hand tap as M3 does.
+        # A move into the hole turns a right-hand tap in the direction of M3.
         turn = (to - at) * hole.down / lead * 360.0
         return Step(cycle.x, to, abs(lead) * rpm / 60.0, turn=turn)
 
@@ -111,7 +117,10 @@ def _ways(cycle: Cycle, hole: Hole, lead: float, speeds: tuple[float, float]) ->
 
 
 def compensating(cycle: Cycle) -> Iterator[Block]:
-    """CYCLE840: fed in by the lead, the spindle turned back, fed out, turned as SDAC. Raises ProgramError."""
+    """Return the blocks of CYCLE840: feed in by the lead, reverse, feed out, then SDAC.
+
+    Raises ProgramError for invalid parameters.
+    """
     hole, state = hole_of(cycle), cycle.state
     modal, sign = state.modal, state.modal.spindle
     text = "{call} needs the spindle to turn at a speed in rpm."
@@ -133,7 +142,7 @@ def compensating(cycle: Cycle) -> Iterator[Block]:
 
 
 def _by_feed(cycle: Cycle) -> bool:
-    """ENC: 0, 11 and 20 take the lead from PIT or MPIT, 1 from the feed in force. Raises ProgramError."""
+    """Return whether ENC uses the active feed (1) instead of the lead (0, 11, 20). Raises ProgramError."""
     value = cycle.whole("ENC", 0, 0, 20)
     text = "{name} is {value} but must be 0, 1, 11 or 20"
     cycle.check(value in {0, 1, 11, 20}, "ENC", text, "Correct the value.", value=value)
@@ -144,7 +153,10 @@ def _by_feed(cycle: Cycle) -> bool:
 
 
 def tap(state: State, statement: Statement) -> Block:
-    """G331 into the hole, G332 out of it, with C held: lead K, speed S. Raises ProgramError."""
+    """Return the block of G331 (into the hole) or G332 (out), with C locked, lead K and speed S.
+
+    Raises ProgramError for invalid words.
+    """
     word = statement.g.get("motion")
     code = f"G{int(state.motion)}"
     demand_spindle_as_c(state, lambda text, hint: statement.refuse(word, "spindle-position", text, hint))
@@ -169,7 +181,7 @@ def tap(state: State, statement: Statement) -> Block:
     text = "No spindle speed is programmed for {code}."
     statement.check(rpm, word, "speed-missing", text, "Write S in the block.", code=code)
     rpm = min(rpm, state.setup.limits.c_max_rpm)
-    # Into the hole, G331, a lead over 0 turns as M3 does; G332 is the same the other way round.
+    # With G331, a positive lead turns in the direction of M3. With G332, the direction is reversed.
     sense = 1.0 if state.motion is Motion.TAP else -1.0
     turn = sense * abs(way) / pitch * 360.0
     made = block_of(state, statement, travel._replace(c=travel.c0 + turn), Kind.FEED, abs(pitch) * rpm / 60.0)

@@ -1,7 +1,7 @@
-"""CYCLE97, 98, 99: threads, straight or tapered, with one start or several, in passes of equal depth or chip.
+"""Thread cycles CYCLE97, 98 and 99: straight or tapered, single- or multi-start, in equal depths or chips.
 
-CYCLE98 cuts three threads one behind the other in one sweep, each with its lead and taper. The passes are
-those of G33; a start angle is the same as beginning so much of the lead further away.
+CYCLE98 cuts a chain of three threads in one pass, each with its lead and taper. The passes are those of G33.
+A start angle is equivalent to a start point that is farther away by a fraction of the lead.
 """
 
 from __future__ import annotations
@@ -33,18 +33,18 @@ COARSE_LEADS = {
 
 
 def coarse_lead(size: float) -> float:
-    """Lead of a coarse thread, mm; 0 for a size that has none. ``size`` is under 0 for a left-hand thread."""
+    """Return the lead of a coarse thread in mm; 0 if the size has none. Left-hand sizes are negative."""
     return COARSE_LEADS.get(round(abs(size)), 0.0) if size == round(size) else 0.0
 
 
 def check_lead(cycle: Cycle, lead: float, name: str) -> None:
-    """Raises ProgramError, by the name of a parameter, where there is no lead."""
+    """Raise ProgramError with the name of a parameter if the lead is 0."""
     hint = "Enter PIT, or MPIT from 3 to 68 for M3 to M68."
     cycle.check(lead, name, "{name} does not define a lead", hint, WRONG_LEAD)
 
 
 def _lead(cycle: Cycle) -> float:
-    """PIT, or what MPIT stands for. Raises ProgramError."""
+    """Return the lead from PIT or MPIT in mm. Raises ProgramError."""
     for name in ("_PIT1", "_GST", "_MID", "_FDEP"):
         if cycle.line.call == "CYCLE99":
             cycle.zero_only(name, "CYCLE99 supports only the functions of CYCLE97")
@@ -62,7 +62,7 @@ def _lead(cycle: Cycle) -> float:
 
 
 def _depths(cycle: Cycle, *, equal_chip: bool) -> tuple[float, ...]:
-    """Roughing to TDEP less FAL in NRC passes, FAL in one, then NID passes without infeed."""
+    """Return the depths of the passes: NRC to TDEP minus FAL, one for FAL, then NID without infeed."""
     depth, left = cycle.over_zero("TDEP"), cycle.size("FAL")
     count, idle = cycle.whole("NRC", 1, 0, MOST_PASSES), cycle.whole("NID", 0, 0, MOST_PASSES)
     text = "{name} is not less than TDEP, so no depth remains for roughing"
@@ -73,7 +73,7 @@ def _depths(cycle: Cycle, *, equal_chip: bool) -> tuple[float, ...]:
 
 
 def _shifts(cycle: Cycle, depths: tuple[float, ...]) -> tuple[float, ...]:
-    """Along the flank by IANG; under 0 on both flanks in turn."""
+    """Return the shift of each pass along the flank by IANG; a negative IANG alternates the flanks."""
     angle = cycle.number("IANG")
     if cycle.line.call == "CYCLE99" and cycle.number("VARI") // 100 % 10 == 2:
         angle = -abs(angle)
@@ -85,9 +85,9 @@ def _shifts(cycle: Cycle, depths: tuple[float, ...]) -> tuple[float, ...]:
 
 
 def _kind(cycle: Cycle) -> int:
-    """1 outside, 2 inside with passes of equal depth; 3 outside, 4 inside with equal chips: of VARI.
+    """Return the type from VARI: 1 outside, 2 inside in equal depths; 3 outside, 4 inside in equal chips.
 
-    Of CYCLE99 VARI has more digits: 300103 is 3, and the hundreds 2 are both flanks in turn.
+    In CYCLE99, VARI has more digits: 300103 means 3, and 2 in the hundreds place alternates the flanks.
     """
     if cycle.line.call != "CYCLE99":
         return cycle.machining("VARI", range(1, 5))
@@ -102,13 +102,16 @@ def _kind(cycle: Cycle) -> int:
 
 
 def _starts(cycle: Cycle) -> tuple[float, int]:
-    """Start angle of the first thread, degrees, and how many there are. Raises ProgramError."""
+    """Return the start angle of the first thread in degrees, and the number of starts.
+
+    Raises ProgramError for an invalid angle.
+    """
     starts = cycle.whole("NUMTH" if cycle.line.call == "CYCLE99" else "NUMT", 0, 0, 100) or 1
     return cycle.angle("NSP", "{name} must be a start angle from 0 to less than 360 degrees"), starts
 
 
 def thread_cycle(cycle: Cycle) -> Iterator[Block]:
-    """CYCLE97, CYCLE99: all passes of all starts. Raises ProgramError before the first."""
+    """Return the blocks of CYCLE97 or CYCLE99. Raises ProgramError before the first block."""
     lead, kind = _lead(cycle), _kind(cycle)
     out = -1.0 if kind in {2, 4} else 1.0
     z0, z1 = cycle.needed("SPL"), cycle.needed("FPL")
@@ -132,7 +135,7 @@ def thread_cycle(cycle: Cycle) -> Iterator[Block]:
 
 
 def thread_chain(cycle: Cycle) -> Iterator[Block]:
-    """CYCLE98: all passes of all starts. Raises ProgramError before the first."""
+    """Return the blocks of CYCLE98. Raises ProgramError before the first block."""
     kind = _kind(cycle)
     out = -1.0 if kind in {2, 4} else 1.0
     places = [(cycle.over_zero(f"DM{k}") / 2.0, cycle.needed(f"PO{k}")) for k in range(1, 5)]
@@ -155,13 +158,13 @@ def thread_chain(cycle: Cycle) -> Iterator[Block]:
 
 
 def _passes(cycle: Cycle, kind: int) -> list[tuple[float, float]]:
-    """Depth of each pass below the surface, and how much later it begins. Raises ProgramError."""
+    """Return the depth and the start shift of each pass. Raises ProgramError."""
     depths = _depths(cycle, equal_chip=kind in {3, 4})
     return list(zip(depths, _shifts(cycle, depths), strict=True))
 
 
 def _later(cycle: Cycle, leads: list[float]) -> list[float]:
-    """How much later the thread of each start begins, mm. Raises ProgramError."""
+    """Return the delay of the thread of each start along Z, in mm. Raises ProgramError."""
     first, starts = _starts(cycle)
     for lead in leads:
         check_spindle(cycle.state, cycle.statement, lead)
@@ -178,9 +181,9 @@ def _cut(
     start: Callable[[float, float], Point],
     ends: list[tuple[Point, float]],
 ) -> Iterator[Block]:
-    """Each pass of each start: to it, in, along to the ``ends`` by their leads, out to X ``clear``, back.
+    """Return the blocks of all passes: approach, infeed, thread to ``ends`` by their leads, retract, return.
 
-    ``start`` tells the place on the surface for a thread that begins so much later, and for a shift back.
+    ``start`` returns the start point on the surface for a delay and a shift. ``clear`` is X of the retract.
     """
     steps: list[Step] = []
     for later in starts:
@@ -193,5 +196,5 @@ def _cut(
 
 
 def _beyond(a: Point, b: Point, far: float) -> Point:
-    """The point of the line through both that lies ``far`` along Z from ``b``."""
+    """Return the point on the line from ``a`` through ``b`` that is ``far`` along Z from ``b``."""
     return b[0] + (b[0] - a[0]) / (b[1] - a[1]) * far, b[1] + far

@@ -1,7 +1,7 @@
-"""CYCLE94, CYCLE96, CYCLE940: undercuts E, F at a shoulder (DIN 509), A to D behind a thread (DIN 76).
+"""Undercuts with CYCLE94, 96 and 940: forms E and F (DIN 509), and thread undercuts A to D (DIN 76).
 
-The sizes are those of the standards by diameter and by lead. The nose runs beside the profile, so that the
-undercut has these sizes whatever the nose radius is.
+The sizes follow the standards, by diameter and by lead. The path is compensated for the nose radius, so that
+the undercut has these sizes with any nose radius.
 """
 
 from __future__ import annotations
@@ -28,15 +28,17 @@ TOO_SMALL = 61601
 NOSE_TOO_LARGE = 61604
 WRONG_EDGE = 61608
 WRONG_FORM = 61609
-_CLEAR = 2.0  # mm beside the part, where the cycle starts and ends
+_CLEAR = 2.0  # mm from the part; start and end of the cycle
 _SAME = 1e-6  # mm
 _BY_POSITION = {1: (-1.0, -1.0), 2: (-1.0, 1.0), 3: (1.0, 1.0), 4: (1.0, -1.0)}
 """By the tip quadrant: +1 outside, -1 inside; +1 where the shoulder lies towards minus Z."""
 
 
 class Size(NamedTuple):
-    """mm: ``depth`` below the surface, ``width`` from the shoulder, ``radius`` of both corners, ``angle`` of
-    the way in, degrees; ``face``: how deep it goes into the shoulder, 0 for none.
+    """Dimensions of an undercut in mm and degrees.
+
+    ``depth`` is measured below the surface, ``width`` from the shoulder, and ``radius`` is that of both
+    corners. ``angle`` is the entry angle, and ``face`` is the depth in the shoulder (0 for none).
     """
 
     depth: float
@@ -52,7 +54,7 @@ _DIN_509_OVER = (0.4, 4.0, 1.0, 0.3)
 
 _FACE_ANGLE = radians(8.0)
 
-# By the lead: what the diameter of a thread outside lacks, widths of A and B, radius, widths of C and D.
+# By lead: diameter reduction for external threads, widths of A and B, radius, widths of C and D.
 _DIN_76 = {
     0.5: (0.8, 1.75, 1.25, 0.2, 2.7, 2.0), 0.7: (1.1, 2.45, 1.75, 0.4, 3.8, 2.75),
     0.8: (1.3, 2.8, 2.0, 0.4, 4.2, 3.0), 1.0: (1.6, 3.5, 2.5, 0.6, 5.2, 3.7),
@@ -69,12 +71,16 @@ _LEADS = (
 )  # fmt: skip
 """Leads of DIN 76 in the order in which _PITI counts them from 0."""
 
-_CORE = 1.0825  # core diameter of a thread inside: nominal less so many leads
+_CORE = 1.0825  # core diameter of an internal thread: nominal diameter minus this number of leads
 _LARGEST_OF_ALL = 68
 
 
 class Place(NamedTuple):
-    """Where it lies: ``radius`` of the surface, Z of the ``shoulder``, and the signs of ``_BY_POSITION``."""
+    """Position of an undercut.
+
+    ``radius`` is the radius of the surface, ``shoulder`` is Z of the shoulder, and ``out`` and ``side`` are
+    the signs of ``_BY_POSITION``.
+    """
 
     radius: float
     shoulder: float
@@ -82,12 +88,12 @@ class Place(NamedTuple):
     side: float
 
     def point(self, depth: float, way: float) -> Point:
-        """X (a radius) and Z of a place so deep below the surface and so far from the shoulder."""
+        """Return X (radius) and Z of a point at this depth and this distance from the shoulder."""
         return self.radius - self.out * depth, self.shoulder + self.side * way
 
 
 def shoulder_undercut(cycle: Cycle) -> Iterator[Block]:
-    """CYCLE94. Raises ProgramError before the first block."""
+    """Return the blocks of CYCLE94. Raises ProgramError before the first block."""
     form = cycle.text("FORM")
     cycle.check(form in {"E", "F"}, "FORM", '{name} must be "E" or "F"', "Correct the value.", WRONG_FORM)
     size = _at_shoulder(cycle, form)
@@ -97,7 +103,7 @@ def shoulder_undercut(cycle: Cycle) -> Iterator[Block]:
 
 
 def _at_shoulder(cycle: Cycle, form: str) -> Size:
-    """Form E or F of DIN 509 by the diameter SPD. Raises ProgramError."""
+    """Return the size of form E or F (DIN 509) by the diameter SPD. Raises ProgramError."""
     diameter = cycle.over_zero("SPD", TOO_SMALL)
     if diameter <= 3.0:
         text = "{name} is {diameter}, but must be greater than 3 mm for an undercut"
@@ -108,7 +114,7 @@ def _at_shoulder(cycle: Cycle, form: str) -> Size:
 
 
 def thread_undercut(cycle: Cycle) -> Iterator[Block]:
-    """CYCLE96. Raises ProgramError before the first block."""
+    """Return the blocks of CYCLE96. Raises ProgramError before the first block."""
     form = cycle.text("FORM")
     if form not in {"A", "B", "C", "D"}:
         raise cycle.wrong("FORM", '{name} must be "A", "B", "C" or "D"', "Correct the value.", WRONG_FORM)
@@ -147,9 +153,10 @@ _NOT_BUILT = "program the undercut block by block"
 
 
 def undercut(cycle: Cycle) -> Iterator[Block]:
-    """CYCLE940: E and F in one pass, A and B in passes of _MID. Raises ProgramError before the first block.
+    """Return the blocks of CYCLE940: E and F in one pass, A and B in passes of _MID.
 
-    Its first seven parameters, and the order of all of them, are those of the maker's programming manual.
+    The first seven parameters and the order of all parameters follow the manufacturer's programming manual.
+    Raises ProgramError before the first block.
     """
     form = cycle.text("FORM")
     text = "{name} is {form}, which is not supported"
@@ -170,7 +177,10 @@ def undercut(cycle: Cycle) -> Iterator[Block]:
 
 
 def _behind_thread(cycle: Cycle, form: str) -> Size:
-    """Form A or B of DIN 76 by _PITI, or by the coarse thread of SPD. Raises ProgramError."""
+    """Return the size of form A or B (DIN 76) by _PITI, or by the coarse thread of SPD.
+
+    Raises ProgramError if no undercut is defined for the lead.
+    """
     if cycle.given("_PITI"):
         lead = _LEADS[cycle.whole("_PITI", 0, 0, len(_LEADS) - 1)]
     else:
@@ -182,7 +192,10 @@ def _behind_thread(cycle: Cycle, form: str) -> Size:
 
 
 def _in_passes(cycle: Cycle, place: Place, size: Size, feed: float, clear: float) -> list[Step]:
-    """_VARI 1 roughs, 2 finishes, 3 does both: the profile at depths of _MID at most, above _FALX, _FALZ."""
+    """Return the steps of _VARI 1 (roughing), 2 (finishing) or 3 (both).
+
+    Roughing passes have depths of at most _MID and leave the allowances _FALX and _FALZ.
+    """
     kind = cycle.whole("_VARI", 3, 1, 13)
     hint = "Enter 1 for roughing, 2 for finishing or 3 for both."
     cycle.check(kind % 10 in {1, 2, 3}, "_VARI", "{name} cannot be {value}", hint, MACHINING_TYPE, value=kind)
@@ -205,9 +218,9 @@ _ROUGHS, _FINISHES = 1, 2
 
 
 def position(cycle: Cycle, chosen: int) -> tuple[float, float]:
-    """On which side of the part and of the shoulder: 1 to 4, or 0 by the tool's tip quadrant.
+    """Return the signs of the sides of part and shoulder, by ``chosen`` (1 to 4) or by the tip quadrant (0).
 
-    Raises ProgramError.
+    Raises ProgramError without an active tool or a valid quadrant.
     """
     state = cycle.state
     text = "{call} needs an active tool with an offset."
@@ -221,7 +234,7 @@ def position(cycle: Cycle, chosen: int) -> tuple[float, float]:
 
 
 def profile(place: Place, size: Size) -> list[Element]:
-    """From beyond the surface down the slope, along the bottom, and up the shoulder to beyond the surface."""
+    """Return the profile: down the slope from outside, along the bottom, and up the shoulder to outside."""
     slope = tan(radians(size.angle))
     begin = place.point(-RETRACT, size.width + RETRACT / slope)
     foot = place.point(size.depth, size.width - size.depth / slope)
@@ -236,7 +249,10 @@ def profile(place: Place, size: Size) -> list[Element]:
 
 
 def _cut(cycle: Cycle, place: Place, size: Size, feed: float, beside: float) -> list[Step]:
-    """Beside the part, down the slope, along and up; ``beside``: how far off the surface that begins, mm."""
+    """Return the steps of one pass along the profile.
+
+    ``beside`` is the distance of its start from the surface, in mm.
+    """
     way = _of_tip(cycle, place, _rounded(profile(place, size), size.radius, _nose(cycle, size)))
     clear = place.radius + place.out * beside
     (x0, z0), (_, z1) = way[0].start, way[-1].end
@@ -244,12 +260,12 @@ def _cut(cycle: Cycle, place: Place, size: Size, feed: float, beside: float) -> 
     for each in way:
         centre, clockwise = (each.centre, each.clockwise) if isinstance(each, Arc) else (None, False)
         steps.append(Step(*each.end, feed, centre, clockwise))
-    off = z1 + place.side * RETRACT  # not along the shoulder in rapid
+    off = z1 + place.side * RETRACT  # The retract must not move along the shoulder in rapid.
     return [*steps, Step(clear, off), Step(clear, z0)]
 
 
 def _nose(cycle: Cycle, size: Size) -> float:
-    """Nose radius of the tool, which must fit into the corners. Raises ProgramError."""
+    """Return the nose radius of the tool. Raises ProgramError if it does not fit into the corners."""
     nose = cycle.state.edge.nose_radius
     text = "the nose radius {nose} is larger than the radius {radius} of this undercut."
     hint = "Use a tool with a smaller nose radius."
@@ -258,7 +274,7 @@ def _nose(cycle: Cycle, size: Size) -> float:
 
 
 def _rounded(lines: list[Element], radius: float, nose: float) -> list[Element]:
-    """Both corners with their radius; a nose of that radius makes it by itself."""
+    """Return the profile with rounded corners; a nose with the corner radius rounds them without arcs."""
     if abs(nose - radius) <= _SAME:
         return lines
     slope, first, bottom = rounding(lines[0], lines[1], radius)
@@ -267,7 +283,7 @@ def _rounded(lines: list[Element], radius: float, nose: float) -> list[Element]:
 
 
 def _of_tip(cycle: Cycle, place: Place, contour: list[Element]) -> list[Element]:
-    """The way of the tip while the nose touches the contour. Raises ProgramError."""
+    """Return the path of the tip while the nose touches the contour. Raises ProgramError."""
     edge = cycle.state.edge
     if not edge.nose_radius:
         return contour

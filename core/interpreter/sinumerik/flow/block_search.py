@@ -1,6 +1,6 @@
-"""Where a SINUMERIK pass begins that is no start of a program: MDI (MDA), block search with calculation.
+"""Start of a pass from a saved state: MDI (MDA), and block search with calculation.
 
-All that is in force goes over from the pass that was kept; where the slides stand counts as it is now.
+The modal state comes from the saved pass, and the axis positions are the present ones.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from core.tool_edges import edge_name
 
 
 class Parts(NamedTuple):
-    """What an interpreter consists of; ``taken`` is the block that it has read and not yet executed."""
+    """State of an interpreter. ``taken`` is a block that was read but not yet executed."""
 
     state: State
     corners: Corners
@@ -33,7 +33,7 @@ class Parts(NamedTuple):
 
 
 def checkpoint_of(parts: Parts, shared: tuple[object, ...], blocks: int) -> Checkpoint:
-    """All that the block that comes next inherits, to go on from there in another pass."""
+    """Return the state that the next block inherits, so that another pass can continue from it."""
     state, modal = parts.state, parts.state.modal
     x, z, c = state.x - modal.offset_x, state.z - modal.offset_z, state.c - modal.offset_c
     kept = KeptPass(parts, shared, tuple(_lines(state)))
@@ -41,7 +41,7 @@ def checkpoint_of(parts: Parts, shared: tuple[object, ...], blocks: int) -> Chec
 
 
 def take_up(state: State, begin: Begin) -> None:
-    """Stand where the slides are now, with the offsets and the functions of the machine of now."""
+    """Set the present axis positions, offsets and machine functions in the state."""
     was, now = state.modal, begin.checkpoint.modal
     state.x, state.z, state.c = state.setup.start
     if not begin.single:
@@ -65,7 +65,7 @@ def take_up(state: State, begin: Begin) -> None:
 
 
 def _lines(state: State) -> Iterator[StateLine]:
-    """What is in force, one line a group of functions."""
+    """Yield the modal state, one line for each group of functions."""
     modal = state.modal
     yield StateLine("motion", motion_name(state.motion))
     yield StateLine("settable", f"G{modal.settable}" if modal.settable else "G500")
@@ -96,10 +96,10 @@ _ALONE = frozenset({Steering.DEFINE, Steering.MESSAGE})
 
 
 def needs_others(source: Source, third_axis: str = OWN) -> Diagnostic | None:
-    """Why the block means nothing on its own, with its column; None where it does."""
+    """Return the error for a block that cannot be executed alone, or None."""
     line = lex_line(1, source.lines[0] if source.lines else "", third_axis)
     if line.errors:
-        return None  # told when it is executed
+        return None  # reported when the block is executed
     if line.skip is not None:
         return _refuse(1, "/ skips a program block and has no meaning in MDI")
     if line.call or line.modal_call:
@@ -118,7 +118,7 @@ def needs_others(source: Source, third_axis: str = OWN) -> Diagnostic | None:
 
 
 def _words(line: Line) -> Diagnostic | None:
-    """A word that means something with the blocks behind it alone."""
+    """Return the error for a word that needs later blocks, or None."""
     for word in line.words:
         if word.name in CORNERS:
             return _refuse(

@@ -1,4 +1,4 @@
-"""Where a SINUMERIK program goes on behind GOTO, IF, CASE, WHILE, FOR, LOOP, REPEAT; DEF and MSG."""
+"""Control structures of SINUMERIK: jumps, IF, CASE, loops, REPEAT, DEF, MSG and SETAL."""
 
 from __future__ import annotations
 
@@ -26,34 +26,34 @@ _ENDS = {
 _BEGINS = frozenset(_ENDS.values())
 _ASKED = frozenset({Steering.IF, Steering.WHILE, Steering.UNTIL})
 _BACK = frozenset({Steering.END_WHILE, Steering.END_LOOP})
-_SAME = 1e-12  # numbers of CASE that differ by less are equal
+_SAME = 1e-12  # values of CASE with a smaller difference are equal
 _GOTO = frozenset({Steering.GOTO, Steering.GOTO_BACK, Steering.GOTO_FORWARD, Steering.GOTO_START})
 
 
 @dataclass(slots=True)
 class Routine:
-    """One program of one file. ``shown`` names it in findings where it is of another file."""
+    """One program of a file. ``shown`` is its name in findings if it is in another file."""
 
     source: Source
     lines: range
     shown: str = ""
-    third_axis: str = OWN  # its name at this machine
-    repeats: bool = False  # lines of it may run many times, and are kept once they are read
+    third_axis: str = OWN  # name of the third axis on this machine
+    repeats: bool = False  # lines may be executed repeatedly, so they are stored after reading
     _read: dict[int, Line] = field(default_factory=dict)
     _labelled: dict[str, tuple[int, ...]] = field(default_factory=dict)
     _partners: dict[int, tuple[int, ...]] | None = None
 
     def partners(self) -> dict[int, tuple[int, ...]]:
-        """The lines of each IF, WHILE, FOR, LOOP and REPEAT that belong together, by each of their indices.
+        """Return the line indices of each control structure, by the index of each of its lines.
 
-        Raises ProgramError where one has no end, or an end no beginning.
+        Raises ProgramError if a structure has no end or no start.
         """
         if self._partners is None:
             self._partners = belonging(self.line(at) for at in self.lines)
         return self._partners
 
     def line(self, at: int) -> Line:
-        """The line with this index."""
+        """Return the line with this index."""
         line = self._read.get(at)
         if line is None:
             line = lex_line(at + 1, self.source.lines[at], self.third_axis)
@@ -62,32 +62,35 @@ class Routine:
         return line
 
     def labelled(self, label: str) -> tuple[int, ...]:
-        """Indices, rising, of the lines with this label or block number; looked for once."""
+        """Return the indices, in ascending order, of the lines with this label or block number."""
         if label not in self._labelled:
             self._labelled[label] = tuple(at for at in self.lines if self._bears(at, label))
         return self._labelled[label]
 
     def _bears(self, at: int, label: str) -> bool:
-        """Only a line that holds the letters of the label is worth being read for it."""
+        """Return whether a line has this label; only lines that contain its letters are read."""
         if label not in self.source.lines[at].upper():
             return False
         line = self.line(at)
         return label in {line.label, line.block}
 
     def heading(self) -> Jump | None:
-        """Its PROC, which stands before everything else; None without one."""
+        """Return the PROC statement of the first line, or None."""
         first = self.first()
         jump = None if first is None else first.jump
         return jump if jump is not None and jump.steering is Steering.PROCEDURE else None
 
     def first(self) -> Line | None:
-        """Its first line that holds more than a comment."""
+        """Return the first line with more than a comment, or None."""
         lines = (self.line(at) for at in self.lines)
         return next((line for line in lines if line.executable), None)
 
 
 def belonging(lines: Iterable[Line]) -> dict[int, tuple[int, ...]]:
-    """Indices of the lines of each structure, by each of them. Raises ProgramError where one is not whole."""
+    """Return the line indices of each structure, by each of these indices. Raises ProgramError.
+
+    A structure without a start or an end is an error.
+    """
     found: dict[int, tuple[int, ...]] = {}
     opened: list[tuple[Line, Jump, list[int]]] = []
     for line in lines:
@@ -113,7 +116,10 @@ def belonging(lines: Iterable[Line]) -> dict[int, tuple[int, ...]]:
 
 
 def follow(line: Line, jump: Jump, state: State, program: Routine, at: int) -> int | None:
-    """Index of the line to go on with; None where it is the next one. Raises ProgramError."""
+    """Execute a control statement, and return the index of the next line; None for the following line.
+
+    Raises ProgramError for an invalid statement.
+    """
     steering = jump.steering
     if steering in _GOTO:
         if jump.condition is None or _worth(line, jump, state, jump.condition):
@@ -135,9 +141,9 @@ def follow(line: Line, jump: Jump, state: State, program: Routine, at: int) -> i
 
 
 def _structure(line: Line, jump: Jump, state: State, program: Routine, places: tuple[int, ...]) -> int | None:
-    """Index of the line to go on with at a line of IF, WHILE, FOR, LOOP or REPEAT, which stand at ``places``.
+    """Return the index of the next line at a line of IF, WHILE, FOR, LOOP or REPEAT.
 
-    None where it is the next one. Raises ProgramError.
+    ``places`` are the lines of the structure. Returns None for the following line. Raises ProgramError.
     """
     first, last, steering = places[0], places[-1], jump.steering
     if steering is Steering.END_FOR:
@@ -157,7 +163,7 @@ def _structure(line: Line, jump: Jump, state: State, program: Routine, places: t
 
 
 def _counts(line: Line, jump: Jump, begin: Jump, state: State, value: float) -> bool:
-    """Give the variable of FOR its value; whether that is not over the end. Raises ProgramError."""
+    """Set the variable of FOR, and return whether it is not above the end value. Raises ProgramError."""
     if not state.variables.keep(begin.name, value):
         text = Message("the name {jump} is not defined with DEF.", jump=begin.name)
         hint = Message("Write DEF INT {jump} before this block.", jump=begin.name)
@@ -166,7 +172,7 @@ def _counts(line: Line, jump: Jump, begin: Jump, state: State, value: float) -> 
 
 
 def _case(line: Line, jump: Jump, state: State, program: Routine, at: int) -> int | None:
-    """The jump of the first branch with the value of CASE, or of DEFAULT."""
+    """Return the target of the first branch with the value of CASE, or of DEFAULT."""
     value = _worth(line, jump, state, jump.condition)
     for formula, steering, target in jump.choices:
         if formula is None or abs(_worth(line, jump, state, formula) - value) <= _SAME:
@@ -175,7 +181,7 @@ def _case(line: Line, jump: Jump, state: State, program: Routine, at: int) -> in
 
 
 def _define(line: Line, jump: Jump, state: State) -> None:
-    """DEF: numbers, arrays, and texts that MSG shows."""
+    """Execute DEF: numbers, arrays, and strings for MSG."""
     scope = state.variables.scope
     for each in jump.defined:
         if each.kind == "STRING":
@@ -196,7 +202,7 @@ def _define(line: Line, jump: Jump, state: State) -> None:
 
 
 def _sizes(line: Line, jump: Jump, state: State, each: Defined) -> tuple[int, ...]:
-    """How many elements an array has in each dimension. Raises ProgramError for none, and for too many."""
+    """Return the dimensions of an array. Raises ProgramError if a dimension or the size is invalid."""
     sizes = tuple(int(_worth(line, jump, state, size)) for size in each.sizes)
     if len(sizes) > MOST_DIMENSIONS or min(sizes, default=1) < 1 or prod(sizes) > LARGEST_ARRAY:
         told = Message(
@@ -214,7 +220,7 @@ def _sizes(line: Line, jump: Jump, state: State, each: Defined) -> tuple[int, ..
 
 
 def _message(line: Line, jump: Jump, state: State) -> str:
-    """The text of MSG: numbers as they are written, without needless zeros."""
+    """Return the text of MSG, with numbers without trailing zeros."""
     shown = []
     for piece in jump.pieces:
         if isinstance(piece, str):
@@ -232,7 +238,11 @@ def _worth(line: Line, jump: Jump, state: State, formula: Formula | None) -> flo
 
 
 def _target(line: Line, jump: Jump, program: Routine, at: int) -> int:
-    """The index of the label: GOTOF behind the line, GOTOB before it, GOTO behind and then before."""
+    """Return the index of the target label.
+
+    GOTOF searches after the line, GOTOB before it, and GOTO after and then before it. Raises ProgramError if
+    the label does not exist there.
+    """
     if jump.steering is Steering.GOTO_START:
         return program.lines.start
     place = find_label(jump.steering, jump.target, program, at)
@@ -247,7 +257,7 @@ def _target(line: Line, jump: Jump, program: Routine, at: int) -> int:
 
 
 def find_label(steering: Steering, target: str, program: Routine, at: int) -> int | None:
-    """Index of the line with this label or number, where the jump looks for it; None without one."""
+    """Return the index of the line with this label or number in the jump's search direction, or None."""
     places = program.labelled(target)
     behind = next((place for place in places if place > at), None)
     before = next((place for place in reversed(places) if place <= at), None)

@@ -1,6 +1,6 @@
-"""Where a program goes next: into subprograms, back at M17, REPEAT, and its end.
+"""Program flow of SINUMERIK: calls of subprograms, M17, REPEAT and the program end.
 
-A call hands over to PROC values, VAR by reference, and defaults; SAVE brings back what was in force.
+A call passes values, VAR references and defaults to PROC. SAVE restores the modal state after the call.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ _GROUPS = ("absolute", "metric", "diameter", "per_rev", "feed", "settable")
 
 @dataclass(frozen=True, slots=True)
 class Saved:
-    """Modal G functions and the frame at the call of a program with SAVE."""
+    """Modal G functions and frame at the call of a program with SAVE."""
 
     modal: Modal
     motion: Motion
@@ -51,11 +51,11 @@ class Saved:
 
     @classmethod
     def of(cls, state: State) -> Saved:
-        """What is in force now."""
+        """Return a copy of the active functions and frame."""
         return cls(state.modal, state.motion, state.plane, state.settable, state.programmed)
 
     def bring_back(self, state: State) -> None:
-        """G functions and frame as they were; F, S and M stay what the program has made them."""
+        """Restore the G functions and the frame; F, S and M remain as the program has set them."""
         state.motion, state.plane = self.motion, self.plane
         state.settable, state.programmed = self.settable, self.programmed
         kept = {name: getattr(self.modal, name) for name in _GROUPS}
@@ -66,9 +66,9 @@ class Saved:
 
 
 def handed_over(state: State, line: Line, heading: Jump | None) -> tuple[Scope, list[tuple[str, str]]]:
-    """The variables that the program begins with, and its VAR parameters with the caller's place of each.
+    """Return the variables of the called program, and its VAR parameters with the caller's variables.
 
-    Raises ProgramError where the arguments do not fit.
+    Raises ProgramError if the arguments do not match the parameters.
     """
     parameters = () if heading is None else heading.parameters
     arguments = line.arguments or ()
@@ -89,7 +89,7 @@ def handed_over(state: State, line: Line, heading: Jump | None) -> tuple[Scope, 
 
 
 class _HandOver:
-    """What a call hands over, parameter by parameter."""
+    """Transfer of the arguments of a call to the parameters."""
 
     def __init__(self, state: State, line: Line) -> None:
         self._state, self._line = state, line
@@ -97,7 +97,7 @@ class _HandOver:
         self.references: list[tuple[str, str]] = []
 
     def value(self, parameter: Parameter, argument: Argument) -> None:
-        """A number or a text. What is left out is 0, and an empty text. Raises ProgramError."""
+        """Set a number or a string; an omitted argument is 0 or an empty string. Raises ProgramError."""
         given = argument if argument.given else parameter.default
         name = parameter.name
         if parameter.by_reference:
@@ -115,7 +115,7 @@ class _HandOver:
             self.scope.numbers[name] = value if whole else float(round(value))
 
     def array(self, parameter: Parameter, argument: Argument) -> None:
-        """An array of VAR: its elements go in, and come back element by element. Raises ProgramError."""
+        """Copy a VAR array, whose elements are copied back after the call. Raises ProgramError."""
         line, outer, formula = self._line, self._state.variables.scope, argument.formula
         name = formula.letters if isinstance(formula, Variable) and formula.number is None else ""
         sizes = outer.sizes.get(name, ())
@@ -146,7 +146,7 @@ class _HandOver:
             self.references.append((inside, outside))
 
     def _place(self, parameter: Parameter, argument: Argument) -> str:
-        """The caller's variable that VAR writes back to. Raises ProgramError."""
+        """Return the caller's variable to which VAR writes back. Raises ProgramError."""
         state, line, formula = self._state, self._line, argument.formula
         if not isinstance(formula, Variable):
             text = Message(
@@ -167,7 +167,10 @@ def _count(count: int) -> str:
 
 @dataclass(slots=True)
 class _Repeat:
-    """Lines that REPEAT runs again: ``start`` to before ``end``, ``left`` times more; then on at ``back``."""
+    """Lines that REPEAT executes again, from ``start`` to before ``end``.
+
+    ``left`` is the number of repeats that remain, and ``back`` is the line at which execution then continues.
+    """
 
     start: int
     end: int
@@ -178,20 +181,21 @@ class _Repeat:
 @dataclass(slots=True)
 class _Call(Frame[Routine]):
     passes: int = 1
-    modal: bool = False  # MCALL has called it, or a program that has
+    modal: bool = False  # called by MCALL, directly or indirectly
     scope: Scope = field(default_factory=Scope)
-    references: list[tuple[str, str]] = field(default_factory=list)  # VAR: its name here, and the caller's
-    saved: Saved | None = None  # what SAVE brings back
+    # VAR: name in this program, and name in the caller
+    references: list[tuple[str, str]] = field(default_factory=list)
+    saved: Saved | None = None  # state that SAVE restores
     repeats: list[_Repeat] = field(default_factory=list)
 
     @property
     def standing(self) -> tuple[object, ...]:
-        """Where it goes on, and what is left of its passes and repeats."""
+        """The next line, and the remaining passes and repeats, for comparison."""
         return self.file, self.at, self.passes, [(each.start, each.left) for each in self.repeats]
 
 
 class Flow(ControlFlow[_Call]):
-    """The place in a program and its subprograms."""
+    """Position in a program and its subprograms."""
 
     def __init__(self, source: Source, state: State) -> None:
         found, axis = sections(source), state.setup.limits.third_axis
@@ -208,12 +212,12 @@ class Flow(ControlFlow[_Call]):
 
     @property
     def routines(self) -> tuple[Routine, ...]:
-        """All programs that are known, the main one first."""
+        """All known programs, the main program first."""
         return self._main, *self._known.values()
 
     @property
     def by_modal_call(self) -> bool:
-        """Whether the place is in what MCALL has called, which calls nothing by itself."""
+        """Whether the position is in a program called by MCALL, in which MCALL has no effect."""
         return self.here.modal
 
     @property
@@ -222,7 +226,7 @@ class Flow(ControlFlow[_Call]):
         return self.here.routine
 
     def next(self) -> Line | None:
-        """The next line; None where the whole program is at its end."""
+        """Return the next line, or None at the end of the main program."""
         while True:
             here = self.here
             if here.repeats and self.at == here.repeats[-1].end:
@@ -236,7 +240,7 @@ class Flow(ControlFlow[_Call]):
                 return None
 
     def _repeat(self, repeats: list[_Repeat]) -> None:
-        """The end of what REPEAT runs: again, or on behind it."""
+        """Continue at the end of a REPEAT section: repeat it, or continue after the REPEAT."""
         part = repeats[-1]
         part.left -= 1
         if part.left > 0:
@@ -246,7 +250,7 @@ class Flow(ControlFlow[_Call]):
             self.at = part.back
 
     def back(self) -> None:
-        """M17, RET, or the last line of a subprogram: again, or on behind the call."""
+        """End a subprogram (M17, RET or its last line): repeat it, or return to the caller."""
         call = self.here
         call.passes -= 1
         call.repeats.clear()
@@ -264,15 +268,18 @@ class Flow(ControlFlow[_Call]):
                 call.saved.bring_back(self._state)
 
     def knows(self, name: str) -> bool:
-        """Whether there is a program of this name."""
+        """Return whether a program with this name exists."""
         return name in self._known
 
     def routine(self, name: str) -> Routine | None:
-        """The program of this name; None where there is none."""
+        """Return the program with this name, or None."""
         return self._known.get(name)
 
     def call(self, line: Line, *, modal: bool = False) -> None:
-        """Go to the subprogram that the line names. Raises ProgramError where there is none, or too deep."""
+        """Enter the subprogram that the line calls.
+
+        Raises ProgramError if it does not exist or if calls are nested too deeply.
+        """
         routine = self._known.get(line.call)
         if routine is None:
             raise _missing(line)
@@ -283,7 +290,8 @@ class Flow(ControlFlow[_Call]):
             raise line.refuse(line.call_column, "recursion", text, "A subprogram must not call itself.")
         heading = routine.heading()
         first = routine.first()
-        if first is not None and first.errors:  # told when it is run; nobody knows what it takes
+        # The error is reported when the line is executed. Its parameters are unknown.
+        if first is not None and first.errors:
             line = line._replace(arguments=None)
         routine.repeats = True
         scope, references = handed_over(self._state, line, heading)
@@ -297,7 +305,7 @@ class Flow(ControlFlow[_Call]):
         self._state.variables.scope = scope
 
     def steer(self, line: Line, jump: Jump, state: State) -> None:
-        """A line of GOTO, IF, CASE, WHILE, FOR, LOOP, REPEAT, DEF or MSG. Raises ProgramError."""
+        """Execute a line with a control statement. Raises ProgramError."""
         if jump.steering in _AGAIN and jump.target:
             self._begin_repeat(line, jump, state)
             return
@@ -321,7 +329,10 @@ class Flow(ControlFlow[_Call]):
                 raise line.refuse(jump.column, ENDLESS, text, hint)
 
     def _comes_round(self) -> bool:
-        """Whether a jump back has met all that jumps go by before: places, variables, tool and edge."""
+        """Return whether a jump back occurs in the same state as an earlier jump.
+
+        The loop is then endless.
+        """
         if self._loops is None:
             return False
         state = self._state
@@ -330,7 +341,10 @@ class Flow(ControlFlow[_Call]):
         return self._loops.comes_round(self, tool, state.variables.r, numbers)
 
     def _begin_repeat(self, line: Line, jump: Jump, state: State) -> None:
-        """REPEAT and REPEATB: the lines from one label to another, or to here; or the block of the label."""
+        """Start REPEAT or REPEATB.
+
+        The section extends from one label to another or to this line, or is the block of the label.
+        """
         routine, repeats, here = self.running, self.here.repeats, self.at - 1
         start = find_label(Steering.GOTO, jump.target, routine, here)
         until = find_label(Steering.GOTO, jump.until, routine, here) if jump.until else here
@@ -372,7 +386,7 @@ _MOST_PASSES = 9999
 
 
 def _end_label(routine: Routine, start: int, here: int) -> int:
-    """Where the part of REPEAT with one label ends: at ENDLABEL, at the REPEAT itself, with the program."""
+    """Return the end of a REPEAT section with one label: ENDLABEL, the REPEAT, or the program end."""
     for at in range(start, routine.lines.stop):
         if at == here:
             return here
@@ -382,12 +396,12 @@ def _end_label(routine: Routine, start: int, here: int) -> int:
 
 
 def _reads_positions(source: Source) -> bool:
-    """Whether a program asks where the axes stand, so that jumps may go by what no variable shows."""
+    """Return whether a program reads axis positions, on which its jumps may then depend."""
     return any("$AA_I" in line.upper() or "$P_EP" in line.upper() for line in source.lines)
 
 
 def ends_main(statement: Statement, *, called: bool) -> bool:
-    """Whether the block ends the whole program; in a subprogram M2 and M30 lead back as M17 does."""
+    """Return whether the block ends the whole program; in a subprogram, M2 and M30 act like M17."""
     return statement.ends and not called
 
 

@@ -1,4 +1,4 @@
-"""R parameters of all programs, variables that DEF and PROC name in one, and system variables to read."""
+"""R parameters, the variables of DEF and PROC, and readable system variables."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ Refuse = Callable[[int | str, str, str], ProgramError]
 
 @dataclass(slots=True)
 class Scope:
-    """What DEF and PROC have named in one program: numbers by name, elements as ``NAME[2,0]``, texts."""
+    """Variables of one program: numbers by name, array elements as ``NAME[2,0]``, and strings."""
 
     numbers: dict[str, float] = field(default_factory=dict)
     texts: dict[str, str] = field(default_factory=dict)
     sizes: dict[str, tuple[int, ...]] = field(default_factory=dict)
 
     def define(self, name: str, value: float, sizes: tuple[int, ...]) -> None:
-        """A number, or with ``sizes`` an array whose elements all have this value."""
+        """Define a number, or with ``sizes`` an array whose elements all have this value."""
         if not sizes:
             self.numbers[name] = value
             return
@@ -42,20 +42,20 @@ class Scope:
         self.numbers.update(dict.fromkeys(self.elements(name), value))
 
     def elements(self, name: str) -> list[str]:
-        """The places of an array in the order in which a list fills them: the last index runs first."""
+        """Return the names of an array's elements in fill order; the last index changes first."""
         places = product(*(range(size) for size in self.sizes[name]))
         return [f"{name}[{','.join(map(str, each))}]" for each in places]
 
 
 class Variables:
-    """All variables that a line can see."""
+    """All variables that a line can read."""
 
     def __init__(self) -> None:
         self.r: dict[str, float] = {}
         self.scope = Scope()
 
     def value(self, asked: Parameter, worth: Callable[[Formula], float], refuse: Refuse) -> float:
-        """What an R parameter or a variable holds. Raises what ``refuse`` makes where it holds nothing."""
+        """Return the value of an R parameter or a variable. Raises the error of ``refuse`` if it has none."""
         if asked.letters.startswith("$"):
             text = Message(
                 "{letters} is a system variable, which TurnDesk cannot read.", letters=asked.letters
@@ -68,7 +68,7 @@ class Variables:
         return found
 
     def fill(self, letters: str, first: str, values: Values, worth: Callable[[Formula], float]) -> int:
-        """Give elements their values from the place ``first`` on; how many of them had no element left."""
+        """Assign values to elements from ``first`` on; return the number of values without an element."""
         places = _r_places() if letters == "R" else self.scope.elements(letters)
         places = places[places.index(first) :]
         formulas = list(values.formulas)
@@ -81,7 +81,7 @@ class Variables:
         return max(len(formulas) - len(places), 0)
 
     def keep(self, name: str, value: float) -> bool:
-        """This place holds a value from now on; False where no DEF has named it."""
+        """Set a value; return False if the variable is not defined."""
         if name[0] == "R" and name[1:].isdigit():
             self.r[f"R{int(name[1:])}"] = value
         elif name in self.scope.numbers:
@@ -91,13 +91,13 @@ class Variables:
         return True
 
     def number(self, name: str) -> float:
-        """What this place holds; 0 where it holds nothing."""
+        """Return the value of a variable, or 0 if it has none."""
         if name[0] == "R" and name[1:].isdigit():
             return self.r.get(f"R{int(name[1:])}", 0.0)
         return self.scope.numbers.get(name, 0.0)
 
     def missing(self, letters: str, name: str) -> tuple[int | str, str, str]:
-        """Why there is no number at this place: code, text and hint."""
+        """Return code, text and hint of the error for a variable without a number."""
         if name in self.scope.texts:
             return (
                 "text-variable",
@@ -140,7 +140,10 @@ class Variables:
 def place_name(
     letters: str, number: int | Formula | None, worth: Callable[[Formula], float], refuse: Refuse
 ) -> str:
-    """The name of a place: R7, LENGTH, TABLE[2]. Raises the error for an index that is no whole number."""
+    """Return the name of a variable or element, such as R7, LENGTH or TABLE[2].
+
+    Raises the error of ``refuse`` if an index is not a whole number of 0 or more.
+    """
     if number is None or isinstance(number, int):
         return f"{letters}{'' if number is None else number}"
     indices = [worth(each) for each in indices_of(number)]
@@ -162,10 +165,10 @@ def _r_places() -> list[str]:
 
 
 def system_value(name: str, modal: Modal, edge: ToolOffset) -> float | None:
-    """What the control has there; None for a variable that is not read here.
+    """Return the value of a system variable; None if it is not supported or not known.
 
-    ``edge`` is the row of T and D. $P_TOOL is D, $P_TOOLR the nose radius in mm, 0 with D0: under G70 and for
-    a tool without a number nothing is answered, as no number would be right.
+    ``edge`` is the row of T and D. $P_TOOL is D, and $P_TOOLR is the nose radius in mm, or 0 with D0. The
+    radius is unknown under G70, and the tool number is unknown for a tool without a number.
     """
     if name == "$P_TOOL":
         return float(modal.edge or 0)
@@ -180,6 +183,6 @@ _POSITION = re.compile(r"\$(?:AA_IW|P_EP)\[([A-Z][0-9]?)\]")
 
 
 def position_asked(name: str) -> str:
-    """The axis whose position in the program's system a name asks for; empty for any other name."""
+    """Return the axis whose position a system variable reads; empty for any other name."""
     match = _POSITION.fullmatch(name)
     return match[1] if match else ""

@@ -1,1 +1,1 @@
-"""Moves of SINUMERIK: lines, arcs, threads, corners, compensation, TRANSMIT and TRACYL."""
+"""Motions of SINUMERIK: lines, arcs, threads, corners, compensation, TRANSMIT and TRACYL."""

@@ -1,4 +1,7 @@
-"""CHF, CHR and RND: chamfers and roundings between lines and arcs. C ends with the first."""
+"""Chamfers and roundings with CHF, CHR and RND between lines and arcs.
+
+C ends its move with the first element.
+"""
 
 from __future__ import annotations
 
@@ -25,18 +28,19 @@ _CUT = FOLLOWED - {Kind.RAPID}
 
 @dataclass(slots=True)
 class Corner:
-    """What a block asks for at its end; ``size`` in mm: CHF the chamfer, CHR its leg (beside an arc a chord),
-    RND the radius.
+    """Corner at the end of a block. ``size`` in mm is the chamfer (CHF), its leg (CHR) or the radius (RND).
+
+    At an arc, the leg is a chord.
     """
 
     statement: Statement
     word: Word
     size: float
     feed: float | None = None  # FRC, FRCM
-    modal: bool = False  # RNDM: where there is no corner, none is asked for
+    modal: bool = False  # RNDM: blocks that form no corner are not an error
 
     def refuse(self, code: str, why: str, hint: str) -> ProgramError:
-        """An error at the corner's word."""
+        """Return an error at the corner's word."""
         return self.statement.refuse(
             self.word,
             code,
@@ -46,7 +50,7 @@ class Corner:
 
 
 def corner_of(state: State, statement: Statement, block: Block) -> Corner | None:
-    """The corner of a block that has been made. Raises ProgramError."""
+    """Return the corner of a block, or None. Raises ProgramError if it is invalid."""
     word = statement.corner
     if word is None:
         return _modal_corner(state, statement, block)
@@ -61,7 +65,7 @@ def corner_of(state: State, statement: Statement, block: Block) -> Corner | None
 
 
 def _modal_corner(state: State, statement: Statement, block: Block) -> Corner | None:
-    """The rounding of RNDM; None where the block is no line or arc of the contour."""
+    """Return the rounding of RNDM; None if the block is not a line or arc of the contour."""
     if not state.rounding or block.kind not in _CUT or not _moves(block) or state.plane != 18:
         return None
     word = Word("RND", state.rounding, 1, f"RNDM={state.rounding:g}")
@@ -77,14 +81,14 @@ _Held = HeldMove[Corner, Never]
 
 
 class Corners(CornerStage[Corner, Never]):
-    """Corners between lines and arcs."""
+    """Corner stage for corners between lines and arcs."""
 
     def __init__(self, state: State, log: Log) -> None:
         super().__init__(MovesAlong(state))
         self._log = log
 
     def end(self) -> Iterator[Block]:
-        """No block comes any more: what is held back. Raises ProgramError where a corner is left."""
+        """Yield the buffered blocks at the end of the program. Raises ProgramError if a corner remains."""
         held, self._held = self._held, None
         if held is not None and held.corner.modal:
             yield from (held.block, *held.between)

@@ -1,4 +1,4 @@
-"""G74 and G75: in rapid to the home of the machine, or to a fixed point of its axes, without any offset."""
+"""G74 and G75: rapid to machine home or to a fixed point of the machine, without offsets."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _AXES = frozenset({"X", "Z", "X1", "Z1"})
 
 
 def home(state: State, statement: Statement) -> Block:
-    """G74: to the home of the axes that are named, X1=0 Z1=0. Raises ProgramError."""
+    """Return the rapid of G74 to home for the named axes, X1=0 Z1=0. Raises ProgramError."""
     named = _named(state, statement, _AXES)
     for word in named:
         if state.number(statement, word) != 0.0:
@@ -27,9 +27,10 @@ def home(state: State, statement: Statement) -> Block:
 
 
 def fixed_point(state: State, statement: Statement) -> Block:
-    """G75: to a fixed point of the axes that are named, FP=1 to 4; the value of an axis word says nothing.
+    """Return the rapid of G75 to a fixed point (FP=1 to 4) for the named axes.
 
-    Fixed points are the machine file's, in machine coordinates. Raises ProgramError for one that it has not.
+    The values of the axis words have no effect. The machine file defines the points in machine coordinates.
+    Raises ProgramError if a point is not defined.
     """
     named = _named(state, statement, _AXES | {"FP"})
     number = _number(state, statement)
@@ -46,7 +47,7 @@ def fixed_point(state: State, statement: Statement) -> Block:
 
 
 def _named(state: State, statement: Statement, words: frozenset[str]) -> list[Word]:
-    """The axis words of the block, beside which there is nothing. Raises ProgramError."""
+    """Return the axis words of the block. Raises ProgramError if the block has other words."""
     word = statement.g[BLOCKWISE]
     named = [each for name, each in statement.words.items() if name in _AXES]
     others = statement.words.keys() - words or statement.m or statement.sets
@@ -61,7 +62,7 @@ def _named(state: State, statement: Statement, words: frozenset[str]) -> list[Wo
 
 
 def _number(state: State, statement: Statement) -> int:
-    """Which fixed point: FP, or the first."""
+    """Return the number of the fixed point (FP), 1 by default."""
     word = statement.words.get("FP")
     if word is None:
         return 1
@@ -95,7 +96,7 @@ def _missing(statement: Statement, axis: str, number: int, known: int) -> Progra
 
 
 def _tell_value(state: State, statement: Statement, word: Word, end: float) -> None:
-    """Who writes X150 may expect to arrive there."""
+    """Warn that the value of an axis word has no effect."""
     text = Message(
         "{word} has no effect with G75: the axis moves to machine position {end} mm.",
         word=word.text,
@@ -107,7 +108,7 @@ def _tell_value(state: State, statement: Statement, word: Word, end: float) -> N
 
 
 def _to(state: State, statement: Statement, ends: dict[str, float]) -> Block:
-    """The rapid to these machine coordinates; all axes end together."""
+    """Return the rapid to these machine coordinates, in which all axes end together."""
     state.threads = ()
     x, z = ends.get("X", state.x), ends.get("Z", state.z)
     modal = state.modal

@@ -1,4 +1,4 @@
-"""G0 and G1, with C or without: where they lead, at which feed, and their blocks, cut at corners or not."""
+"""Lines with G0 and G1, with or without C: end points, feeds and blocks, also for trimmed moves."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.language.sinumerik.sinumerik_words import ARC, Form, Word
 from core.language.sinumerik.word_table import SUPPRESSION
 
-# --- where the words lead, in machine coordinates
+# --- end points in machine coordinates
 
 
 NO_WAY = 1e-6
@@ -27,9 +27,10 @@ NO_WAY = 1e-6
 
 
 class AxisTravel(NamedTuple):
-    """From where to where, machine coordinates: mm, X a radius, C in degrees over its turns.
+    """Start and end of a move in machine coordinates: mm, X as a radius, C in continuous degrees.
 
-    ``offset_x offset_z``, ``modal`` and ``frame`` are those of the block: under G53 the edge's alone.
+    ``offset_x offset_z``, ``modal`` and ``frame`` are those of the block; under G53, only the offset of the
+    edge applies.
     """
 
     x0: float
@@ -45,28 +46,28 @@ class AxisTravel(NamedTuple):
 
     @property
     def length(self) -> float:
-        """mm of the straight path of X and Z."""
+        """Length of the straight path of X and Z, in mm."""
         return hypot(self.x - self.x0, self.z - self.z0)
 
     @property
     def turn(self) -> float:
-        """Signed travel of C, degrees."""
+        """Signed travel of C, in degrees."""
         return self.c - self.c0
 
     @property
     def begun(self) -> tuple[float, float]:
-        """X and Z of the start as the program counts them: mm, X a radius."""
+        """X (radius) and Z of the start in the program frame, in mm."""
         return self.frame.unturned(self.x0 - self.offset_x, self.z0 - self.offset_z)
 
     def placed(self, x: float, z: float) -> tuple[float, float]:
-        """Machine X and Z of a point of the program."""
+        """Return machine X and Z of a point of the program."""
         x, z = self.frame.turned(x, z)
         return x + self.offset_x, z + self.offset_z
 
     def rapid_rate(self, speeds: tuple[float, float, float]) -> float:
-        """Speed along the path of a rapid, or of C where there is none: mm/s or degrees/s.
+        """Return the rapid speed along the path in mm/s, or of C alone in degrees/s.
 
-        The slowest axis goes at its limit, ``speeds`` of X, Z and C.
+        ``speeds`` are the limits of X, Z and C; the slowest axis moves at its limit.
         """
         ways = (self.x - self.x0, self.z - self.z0, self.turn)
         time = max(abs(way) / speed for way, speed in zip(ways, speeds, strict=True))
@@ -74,7 +75,7 @@ class AxisTravel(NamedTuple):
 
 
 def travel_of(state: State, statement: Statement) -> AxisTravel:
-    """Where a block leads. Raises ProgramError for a word that names no place."""
+    """Return the travel of a block. Raises ProgramError if a word is invalid."""
     check_c(state, statement)
     modal, frame = state.modal, state.programmed
     dx, dz = modal.offset_x, modal.offset_z
@@ -89,7 +90,7 @@ def travel_of(state: State, statement: Statement) -> AxisTravel:
 
 
 def _ends(state: State, statement: Statement, still: AxisTravel) -> tuple[float, float]:
-    """Machine X and Z of the end."""
+    """Return machine X and Z of the end."""
     words = statement.words
     if "RP" in words or "AP" in words:
         return still.placed(*_polar(state, statement))
@@ -106,7 +107,7 @@ def _ends(state: State, statement: Statement, still: AxisTravel) -> tuple[float,
 
 
 def _slide(state: State, statement: Statement, name: str, begun: float) -> float | None:
-    """The end of a linear axis as the program counts it; None where no word says it."""
+    """Return the end of a linear axis in the program frame; None without its word."""
     word = statement.words.get(name)
     if word is None:
         return None
@@ -135,7 +136,7 @@ def _slide(state: State, statement: Statement, name: str, begun: float) -> float
 
 
 def _polar(state: State, statement: Statement) -> tuple[float, float]:
-    """The point of RP and AP about the pole; what is missing stays as it was."""
+    """Return the point of RP and AP about the pole; a missing value is unchanged."""
     last = state.polar or (0.0, 0.0)
     radius, angle = statement.words.get("RP"), statement.words.get("AP")
     for name in ("X", "Z", "ANG"):
@@ -165,7 +166,7 @@ _STEEP = 1e-9
 def _inclined(
     state: State, statement: Statement, begun: tuple[float, float], x: float | None, z: float | None
 ) -> tuple[float | None, float | None]:
-    """The end of a line by its angle and one coordinate."""
+    """Return the end of a line from its angle and one coordinate."""
     word = statement.words["ANG"]
     if state.motion is not Motion.LINE and state.motion is not Motion.RAPID:
         text = "{word} can be used only in a straight move."
@@ -191,7 +192,7 @@ def _inclined(
 
 
 def _turn(state: State, statement: Statement, modal: Modal) -> float:
-    """Signed travel of C."""
+    """Return the signed travel of C, in degrees."""
     word = statement.words.get("C")
     if word is None:
         return 0.0
@@ -199,7 +200,7 @@ def _turn(state: State, statement: Statement, modal: Modal) -> float:
 
 
 def turn_of_c(state: State, statement: Statement, word: Word, form: Form, at: float) -> float:
-    """Signed travel of C to where a word leads from ``at``. Raises ProgramError."""
+    """Return the signed travel of C from ``at`` to the target of a word. Raises ProgramError."""
     value = state.third(statement, word)
     limits = state.setup.limits
     try:
@@ -220,7 +221,7 @@ def turn_of_c(state: State, statement: Statement, word: Word, form: Form, at: fl
 
 
 def _form(state: State, word: Word) -> Form:
-    """How the word is meant; what it does not say itself G90 and G91 do."""
+    """Return the form of a word; G90 and G91 determine a plain word."""
     if word.form is not Form.PLAIN:
         return word.form
     return Form.IC if state.modal.absolute is False else Form.AC
@@ -242,7 +243,7 @@ _HINTS = {
 
 
 def straight(state: State, statement: Statement) -> Block:
-    """G0 or G1 to where the words lead. Raises ProgramError."""
+    """Return the block of a G0 or G1 move. Raises ProgramError if its words are invalid."""
     for name in sorted(ARC & statement.words.keys()):
         raise statement.refuse(
             statement.words[name],
@@ -263,12 +264,12 @@ def straight(state: State, statement: Statement) -> Block:
 
 
 def rapid(state: State, statement: Statement, travel: AxisTravel) -> Block:
-    """A rapid: all axes end together, the slowest at its limit."""
+    """Return a rapid in which all axes end together and the slowest axis moves at its limit."""
     return block_of(state, statement, travel, Kind.RAPID, travel.rapid_rate(state.setup.limits.speeds))
 
 
 def block_of(state: State, statement: Statement, travel: AxisTravel, kind: Kind, feed: float) -> Block:
-    """The block of a move; the state then stands at its end."""
+    """Return the block of a move, and set the state to its end."""
     state.x, state.z, state.c = travel.x, travel.z, travel.c
     modal = travel.modal
     dx, dz, dc = travel.offset_x, travel.offset_z, modal.offset_c
@@ -285,24 +286,24 @@ def block_of(state: State, statement: Statement, travel: AxisTravel, kind: Kind,
 
 
 def keep_direction(state: State, arc: Block) -> Block:
-    """Remember in which direction an arc ends, for CT."""
+    """Store the end direction of an arc for CT, and return the arc."""
     state.direction = element_of(arc).end_direction
     return arc
 
 
 class MovesAlong(AdjustedMoves):
-    """They keep their text; a rapid takes the time of its slowest axis."""
+    """Factory of adjusted moves that keep their text; a rapid takes the time of its slowest axis."""
 
     def __init__(self, state: State) -> None:
         self._state = state
 
     @property
     def highest_rpm(self) -> float:
-        """The speed limit of the spindle, that of G26 included."""
+        """The speed limit of the spindle in rpm, including that of G26."""
         return self._state.highest
 
     def along(self, block: Block, element: Element) -> Block:
-        """The block's own move along an element."""
+        """Return the block with its move along another element."""
         made = self._placed(block, element, block.text)
         if block.kind is not Kind.RAPID:
             return made
@@ -311,5 +312,5 @@ class MovesAlong(AdjustedMoves):
         return replace(made, feed=travel.rapid_rate(self._state.setup.limits.speeds))
 
     def inserted(self, block: Block, element: Element) -> Block:
-        """What is put in behind a block: a move of X and Z alone; C has ended with the block."""
+        """Return a new move of X and Z after a block; C has ended with that block."""
         return replace(self.along(block, element), c0=block.c, text=f"{block.text} ›")

@@ -1,7 +1,7 @@
-"""G41, G42 and G40: the nose beside the contour, NORM and KONT to it and off it, G450 and G451 at corners.
+"""Nose compensation with G41, G42 and G40, with NORM and KONT, and with G450 and G451 at outside corners.
 
-The contour is kept until the move that leaves it is known. What is handed out is the way of the tip: the
-nose's centre runs its radius beside the contour, and the tip lies from it as the tip quadrant says.
+The contour is buffered until the move that leaves it is known. The output is the path of the tip: the nose
+center is one radius away from the contour, and the tip quadrant determines the position of the tip.
 """
 
 from __future__ import annotations
@@ -30,28 +30,31 @@ from core.message import Message
 from core.tool_edges import TIP_DIRECTIONS
 
 _TOUCHES = 0.002  # mm
-_SHARPEST = 2.0 * pi / 3.0  # rad of a turn that G451 still goes round by the intersection
+_SHARPEST = 2.0 * pi / 3.0  # rad; largest turn at which G451 uses the intersection
 
 
 class Compensation:
-    """Takes the blocks of a program in order; while G41 or G42 is on they come out beside the contour."""
+    """Stage that accepts the blocks of a program in order and compensates them while G41 or G42 is active."""
 
     def __init__(self, state: State, log: Log, *, in_plane: bool = False) -> None:
         self._state, self._log = state, log
-        self._in_plane = in_plane  # of TRANSMIT or TRACYL: C of a block is its depth, which may change
+        self._in_plane = in_plane  # in TRANSMIT or TRACYL, C of a block is its depth, which may change
         self._contour: _Contour | None = None
 
     @property
     def holds(self) -> bool:
-        """Whether a contour is under way, which no other pass can begin in."""
+        """Whether a contour is active, so that no other pass can begin here."""
         return self._contour is not None
 
     def drop(self) -> None:
-        """Forget what is held, after an error."""
+        """Discard the buffered contour after an error."""
         self._contour = None
 
     def take(self, block: Block) -> Iterator[Block]:
-        """Yields what no later block can change. Raises ProgramError where the nose cannot follow."""
+        """Accept a block, and yield the blocks that no later block can change.
+
+        Raises ProgramError if compensation is not possible.
+        """
         contour, code = self._contour, block.modal.nose_comp
         ends = isinstance(block.action, ProgramEnd)
         if contour is None:
@@ -68,14 +71,14 @@ class Compensation:
             self._follow(contour, block)
 
     def end(self) -> Iterator[Block]:
-        """No block comes any more. Raises ProgramError where a contour is open."""
+        """Process the end of the program. Raises ProgramError if a contour is not finished."""
         contour, self._contour = self._contour, None
         if contour is not None:
             raise _open(contour.last.block)
         yield from ()
 
     def _begin(self, block: Block) -> None:
-        """The move that leads to the contour."""
+        """Start the contour with its approach move."""
         state, code = self._state, block.modal.nose_comp
         if block.kind not in STRAIGHT or self._turns(block):
             text = Message("the first move with G{code} is not a straight line.", code=code)
@@ -95,14 +98,14 @@ class Compensation:
             self._warn(
                 block, "comp-no-quadrant", text, "Enter the tip quadrant (F8); 9 means the nose center."
             )
-        # G42 is to the right with X up, which is to the left with X down, as blocks count.
+        # G42 is to the right with X up. In the frame of blocks, with X down, it is to the left.
         side = 1.0 if (code == 42) is not state.programmed.mirrored else -1.0
         z, x = TIP_DIRECTIONS[edge.quadrant]
         tip = x * edge.nose_radius, z * edge.nose_radius
         self._contour = _Contour(state, block, side * edge.nose_radius, tip)
 
     def _rest(self, contour: _Contour, block: Block) -> None:
-        """A block in which nothing moves: at the compensated end of the move before it."""
+        """Store a block without motion at the compensated end of the previous move."""
         if isinstance(block.action, ProgramEnd):
             raise _open(block)
         if isinstance(block.action, ToolChange):
@@ -111,7 +114,7 @@ class Compensation:
         contour.last.after.append(block)
 
     def _follow(self, contour: _Contour, block: Block) -> None:
-        """One more move of the contour."""
+        """Add a move to the contour."""
         first, code = contour.approach.block, block.modal.nose_comp
         if code != first.modal.nose_comp:
             text = Message(
@@ -137,7 +140,7 @@ class Compensation:
             contour.moves.append(contour.last)
 
     def _close(self, contour: _Contour, block: Block) -> Iterator[Block]:
-        """The contour, and the move of G40 that leaves it; the program's end leaves the nose where it is."""
+        """Yield the contour and the departure move of G40; at the program end, the nose does not move."""
         code = contour.approach.block.modal.nose_comp
         if block.moves and (block.kind not in STRAIGHT or self._turns(block)):
             text = "the first move with G40 is not a straight line."
@@ -161,9 +164,11 @@ class Compensation:
 
 
 class _End(NamedTuple):
-    """One end of the contour, at ``corner``: the centre goes from ``at`` to ``to``, square beside it.
+    """One end of the contour at ``corner``.
 
-    ``contour`` begins with the element at that end.
+    The center moves from ``at`` to ``to``, perpendicular to the contour.
+
+    ``contour`` begins with the element at this end.
     """
 
     name: str  # approach or departure
@@ -175,7 +180,7 @@ class _End(NamedTuple):
 
 
 class _Contour(ContourStage):
-    """What is kept between G41 or G42 and the move behind G40."""
+    """The contour between G41 or G42 and the move after G40."""
 
     def __init__(self, state: State, approach: Block, left: float, tip: Point) -> None:
         super().__init__(MovesAlong(state), approach, left, tip)
@@ -184,7 +189,7 @@ class _Contour(ContourStage):
         self._elements: list[Element] = []
 
     def close(self, leaving: Block) -> Iterator[Block]:
-        """The contour, and the move that leaves it. Raises ProgramError."""
+        """Yield the contour and the move that leaves it. Raises ProgramError."""
         self._elements = [element_of(move.block) for move in self.moves]
         both = zip(self.moves, self._elements, strict=True)
         pieces = [piece for move, element in both for piece in self._follow(move, element)]
@@ -197,9 +202,10 @@ class _Contour(ContourStage):
             yield from self._standing(ContourMove(leaving, [leaving]))
 
     def _corner(self, block: Block, element: Element) -> Sequence[Element]:
-        """An outside corner: an arc about it, or under G451 the tangents to where they meet.
+        """Return the path around an outside corner: an arc, or under G451 the tangents to their intersection.
 
-        A rapid takes the tangents too, of halves where they would meet far off.
+        A rapid also uses tangents; if their intersection is too far away, each half of the corner has its
+        own.
         """
         if not isinstance(element, Arc):
             return [element]
@@ -222,16 +228,16 @@ class _Contour(ContourStage):
         return self._way(_End("approach", block, at, to, first.start, self._elements))
 
     def _way_out(self, block: Block, begun: Point) -> Sequence[Element]:
-        """The way off the contour: that to it, run backwards."""
+        """Return the departure path, which is calculated like an approach and reversed."""
         last = self._elements[-1]
         at = self._centre((block.x, block.z))
         back = self._way(_End("departure", block, at, begun, last.end, self._elements[::-1]))
         return [element.reversed() for element in reversed(back)]
 
     def _way(self, end: _End) -> list[Element]:
-        """Straight; under KONT round the end of the contour where the straight way would cut it.
+        """Return a straight path, or with KONT a path around the end of the contour if necessary.
 
-        Raises ProgramError where it cuts the contour all the same.
+        Raises ProgramError if the path cuts the contour.
         """
         radius, way = self.radius, Line(end.at, end.to)
         if not radius or not cuts_in(way, end.contour, radius):
@@ -261,8 +267,8 @@ class _Contour(ContourStage):
         return [element for element in way_round if element.length > SAME_POINT]
 
     def _round(self, end: _End) -> Arc:
-        """The arc about the contour's end that the way touches, and that ends beside the contour."""
-        # To the contour with the centre of the arc on its right is clockwise, and off it run backwards not.
+        """Return the arc about the end of the contour that is tangent to the straight approach."""
+        # An approach with the arc center on its right is clockwise. A departure is calculated in reverse.
         clockwise = (self.left < 0.0) is (end.name == "departure")
         touch = touching(end.at, end.corner, self.radius, clockwise=clockwise)
         return Arc(touch, end.to, end.corner, clockwise=clockwise)

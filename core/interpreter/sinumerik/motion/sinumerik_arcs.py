@@ -1,4 +1,4 @@
-"""G2, G3, CIP and CT in the plane of X and Z: by centre, radius, angle, a point on the way, or a tangent."""
+"""Arcs with G2, G3, CIP and CT in the XZ plane: by center, radius, angle, intermediate point or tangent."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ from core.language.sinumerik.sinumerik_words import ARC, Form, Word
 from core.message import Message
 
 WRONG_END = 14040
-_TOLERANCE = 0.01  # mm by which the radii at both ends may differ
+_TOLERANCE = 0.01  # mm; permitted difference of the radii at both ends
 
 
 def arc(state: State, statement: Statement) -> Block:
-    """The arc of a block. Raises ProgramError where its words give none."""
+    """Return the block of an arc. Raises ProgramError if its words do not define an arc."""
     if state.plane != 18:
         text = "arcs in X and Z need G18."
         raise statement.refuse(statement.g.get("motion"), "arc-plane", text, "Write G18 before this block.")
@@ -50,7 +50,7 @@ _OF_CIP = frozenset({"I1", "K1"})
 
 
 def _check_words(state: State, statement: Statement) -> None:
-    """Words of another kind of arc."""
+    """Raise ProgramError for a word of another kind of arc."""
     own = {Motion.THROUGH: _OF_CIP, Motion.TANGENT: frozenset[str]()}.get(state.motion, ARC - _OF_CIP)
     for name in sorted((ARC - own) & statement.words.keys()):
         word = statement.words[name]
@@ -61,18 +61,18 @@ def _check_words(state: State, statement: Statement) -> None:
 
 
 def _found(state: State, statement: Statement, travel: AxisTravel) -> tuple[bool, tuple[Point, AxisTravel]]:
-    """Sense, centre and end of the arc."""
+    """Return the direction, center and travel of the arc."""
     if state.motion is Motion.THROUGH:
         return _through(state, statement, travel)
     if state.motion is Motion.TANGENT:
         return _tangent(state, statement, travel)
-    # G2 is clockwise as seen with X up and Z to the right: with X down, as blocks count, it is the other way.
+    # G2 is clockwise in the view with X up and Z to the right. Blocks use the view with X down.
     clockwise = (state.motion is Motion.COUNTER) is not travel.frame.mirrored
     return clockwise, _centre(state, statement, travel, clockwise)
 
 
 def _through(state: State, statement: Statement, travel: AxisTravel) -> tuple[bool, tuple[Point, AxisTravel]]:
-    """CIP: the circle through start, the point of I1 and K1, and end."""
+    """Return the arc of CIP through the start, the point of I1 and K1, and the end."""
     begun, words = travel.begun, statement.words
     if not _OF_CIP & words.keys():
         text = "CIP needs I1 and K1 to define a point on the arc."
@@ -98,12 +98,15 @@ def _through(state: State, statement: Statement, travel: AxisTravel) -> tuple[bo
 
 
 def _clockwise(across: float) -> bool:
-    """The sense of a turn, seen with X down, by the sign of x times z."""
+    """Return whether a turn is clockwise in the view with X down, by the sign of the cross product."""
     return across < 0.0
 
 
 def _circumcentre(a: Point, b: Point, c: Point) -> Point:
-    """The point as far from each of three; told from the first to keep its figures."""
+    """Return the center of the circle through three points.
+
+    It is calculated relative to the first point for precision.
+    """
     bx, bz, cx, cz = b[0] - a[0], b[1] - a[1], c[0] - a[0], c[1] - a[1]
     twice = 2.0 * (bx * cz - bz * cx)
     b2, c2 = bx * bx + bz * bz, cx * cx + cz * cz
@@ -111,7 +114,7 @@ def _circumcentre(a: Point, b: Point, c: Point) -> Point:
 
 
 def _tangent(state: State, statement: Statement, travel: AxisTravel) -> tuple[bool, tuple[Point, AxisTravel]]:
-    """CT: the arc that begins in the direction in which the path before it has ended."""
+    """Return the arc of CT, which begins in the end direction of the previous path."""
     word = statement.g.get("motion")
     if state.direction is None:
         text = "CT continues a path, but no move precedes it."
@@ -119,7 +122,7 @@ def _tangent(state: State, statement: Statement, travel: AxisTravel) -> tuple[bo
     _demand_ends(statement, word, travel.length)
     ux, uz = state.direction
     dx, dz = travel.x - travel.x0, travel.z - travel.z0
-    aside = ux * dz - uz * dx  # how far the end lies beside the direction, with its side
+    aside = ux * dz - uz * dx  # signed distance of the end from the tangent line
     if abs(aside) < NO_WAY:
         text = "the end point of CT is in line with the previous path, so no arc is possible."
         raise statement.refuse(word, "arc-radius", text, "Write G1, or change the end point.")
@@ -131,7 +134,7 @@ def _tangent(state: State, statement: Statement, travel: AxisTravel) -> tuple[bo
 def _centre(
     state: State, statement: Statement, travel: AxisTravel, clockwise: bool
 ) -> tuple[Point, AxisTravel]:
-    """Machine coordinates of the centre, and the travel with its end where the words did not give one."""
+    """Return the center in machine coordinates, and the travel with an end point if it was not programmed."""
     words, by_centre = statement.words, {"I", "K"} & statement.words.keys()
     if "CR" in words and ("AR" in words or by_centre):
         text = "the arc has CR and another definition of its center."
@@ -152,7 +155,7 @@ def _centre(
 
 
 def _by_words(state: State, statement: Statement, travel: AxisTravel) -> Point:
-    """I and K: distances from the start, or coordinates with AC( )."""
+    """Return the center from I and K: distances from the start, or coordinates with AC( )."""
     begun = travel.begun
     i, k = _component(state, statement, "I", begun[0]), _component(state, statement, "K", begun[1])
     x, z = travel.frame.turned(i, k)
@@ -165,12 +168,12 @@ def _component(state: State, statement: Statement, name: str, start: float) -> f
         return 0.0
     value = state.length(statement, word)
     if word.form is not Form.AC:
-        return value  # a radius, whatever DIAMON says
+        return value  # a radius, independent of DIAMON
     return value / (2.0 if name == "I" and state.modal.diameter else 1.0) - start
 
 
 def _by_radius(state: State, statement: Statement, travel: AxisTravel, clockwise: bool) -> Point:
-    """CR: over 0 for arcs of up to half a turn, under 0 for larger ones."""
+    """Return the center from CR: positive for arcs of up to half a circle, negative for larger arcs."""
     word = statement.words["CR"]
     radius, chord = state.length(statement, word) * travel.frame.factor, travel.length
     _demand_ends(statement, word, chord)
@@ -186,7 +189,7 @@ def _by_radius(state: State, statement: Statement, travel: AxisTravel, clockwise
 
 
 def _by_angle(state: State, statement: Statement, travel: AxisTravel, clockwise: bool) -> Point:
-    """AR and the end point: the centre lies on the bisector of the chord, r = chord / (2 sin(angle / 2))."""
+    """Return the center from AR and the end point; r = chord / (2 sin(angle / 2))."""
     word, chord = statement.words["AR"], travel.length
     _demand_ends(statement, word, chord)
     half = radians(_angle(state, statement, word)) / 2
@@ -194,7 +197,8 @@ def _by_angle(state: State, statement: Statement, travel: AxisTravel, clockwise:
         text = "the arc has AR, an end point and a center, but only two of them are allowed."
         hint = "Keep only two of the three: AR, the end point and the center."
         raise statement.refuse(word, "arc-both", text, hint)
-    # To the right of the chord for a clockwise arc; for more than half a turn the cotangent changes side.
+    # The center of a clockwise arc is to the right of the chord. Above half a circle, the cotangent changes
+    # the side.
     aside = (0.5 if clockwise else -0.5) / tan(half)
     dx, dz = travel.x - travel.x0, travel.z - travel.z0
     return (travel.x0 + travel.x) / 2 + aside * dz, (travel.z0 + travel.z) / 2 - aside * dx
@@ -203,7 +207,7 @@ def _by_angle(state: State, statement: Statement, travel: AxisTravel, clockwise:
 def _turned(
     state: State, statement: Statement, travel: AxisTravel, clockwise: bool
 ) -> tuple[Point, AxisTravel]:
-    """AR and the centre: the end is the start turned about it."""
+    """Return the center, and the travel whose end is the start rotated about it by AR."""
     word = statement.words["AR"]
     if not {"I", "K"} & statement.words.keys():
         text = "AR is programmed without an end point and without I and K."
@@ -214,7 +218,7 @@ def _turned(
         text = "the center of the arc is its start point."
         raise statement.refuse(word, "arc-radius", text, "Correct I and K.")
     angle = radians(_angle(state, statement, word))
-    turned = atan2(x, z) + (angle if clockwise else -angle)  # from Z+ towards X+ is clockwise with X down
+    turned = atan2(x, z) + (angle if clockwise else -angle)  # from Z+ toward X+ is clockwise with X down
     radius = hypot(x, z)
     end = centre[0] + radius * sin(turned), centre[1] + radius * cos(turned)
     return centre, travel._replace(x=end[0], z=end[1])

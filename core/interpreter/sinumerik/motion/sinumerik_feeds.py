@@ -1,4 +1,4 @@
-"""F, FB, OVR, and the one group of G94, G95, G96, G97 and their kin as far as it says what F means."""
+"""Feed words F, FB and OVR, and the G codes of the group G94 to G97 as far as they define F."""
 
 from __future__ import annotations
 
@@ -19,7 +19,10 @@ _OF_LEAD = frozenset({34, 35})
 
 
 def feed_words(state: State, statement: Statement) -> None:
-    """The kind of feed, F, OVR, FRCM and RNDM. Another kind forgets F. Raises ProgramError."""
+    """Execute the feed type, F, OVR, FRCM and RNDM of a block.
+
+    A change of the feed type deletes F. Raises ProgramError for an invalid value.
+    """
     per_rev = _BY_REVOLUTION.get(statement.code(FEED_AND_SPEED) or 0, state.modal.per_rev)
     if per_rev != state.modal.per_rev:
         state.adopt(state.modal._replace(per_rev=per_rev, feed=None))
@@ -42,20 +45,20 @@ def feed_words(state: State, statement: Statement) -> None:
 
 
 def feed_of(state: State, statement: Statement, word: Word) -> float:
-    """A feed in mm (degrees) a second or a revolution. Raises ProgramError."""
+    """Return a feed in mm (degrees) per second or revolution. Raises ProgramError if it is not above 0."""
     value = positive(statement, word, state.number(statement, word), "the feed")
     value *= MM_PER_INCH if state.feed_in_inches else 1.0
-    # mm/min and degrees/min, or mm and degrees a revolution: the kind of block tells which.
+    # The unit is mm/min and degrees/min, or mm and degrees per revolution, depending on the kind of block.
     return value if state.modal.per_rev else value / 60.0
 
 
 def check_feed(
     state: State, statement: Statement, x0: float, x1: float, *, in_degrees: bool = False
 ) -> float:
-    """The feed of a block from radius ``x0`` to ``x1``, mm (degrees) a second or a revolution of the spindle.
+    """Return the feed of a block from radius ``x0`` to ``x1``, in mm (degrees) per second or revolution.
 
-    A feed by the live tool's revolutions is one by time: its speed is as even as the program says.
-    Raises ProgramError: alarm 10860 where there is none; ours where G95 has no speed to go by.
+    A feed per revolution of the live tool is converted to a feed per second, because its speed is constant.
+    Raises ProgramError with alarm 10860 without a feed, and with a TurnDesk code if G95 has no spindle speed.
     """
     modal = state.modal
     word = statement.words.get("FB")
@@ -81,5 +84,5 @@ def check_feed(
 
 
 def _mover(statement: Statement) -> Word | None:
-    """The word that wants to move."""
+    """Return the first axis word of the block, or None."""
     return next((statement.words[name] for name in statement.axes), None)

@@ -1,8 +1,7 @@
-"""Where a word sends the axis C, and which way round: signed travel from the actual position. Degrees.
+"""Travel and direction of the C axis to a target from its present position, in degrees.
 
-The table is that of the modulo axis 0..<360 and of the axis that does not wrap, -360..+360 or a slide between
-its ends in mm; nothing here knows of words,
-offsets or machines, so that it can be tried with any numbers.
+The rules cover a modulo axis (0 to below 360), a rotary axis without modulo (-360 to +360), and a linear axis
+in mm. This module is independent of words, offsets and machines.
 """
 
 from __future__ import annotations
@@ -26,7 +25,7 @@ NO_ROTARY = {Form.DC: 16800, Form.ACP: 16810, Form.ACN: 16820}
 
 
 class TargetError(CodedError):
-    """No such target; ``number`` of the alarm, ``str()`` says why."""
+    """The target is not possible; ``number`` is the alarm, and ``str()`` is the message."""
 
     def __init__(self, number: int, text: str) -> None:
         super().__init__(text, str(number))
@@ -34,15 +33,16 @@ class TargetError(CodedError):
 
 
 def wrapped(angle: float) -> float:
-    """The angle as a modulo axis shows it, 0..<360; what is a turn but for noise is 0."""
+    """Return the angle from 0 to below 360; an angle within rounding of 360 is 0."""
     rest = angle % TURN
     return 0.0 if TURN - rest <= ROUNDING else rest
 
 
 def modulo_travel(form: Form, value: float, position: float) -> float:
-    """Signed travel of a modulo axis from ``position`` (any number of turns) to ``value``, or by it (IC).
+    """Return the signed travel of a modulo axis to ``value``, or by ``value`` (IC), in degrees.
 
-    Raises TargetError for a target outside 0..<360.
+    ``position`` may include any number of revolutions. Raises TargetError for a target that is not from 0 to
+    below 360.
     """
     if form is Form.IC:
         return value
@@ -69,9 +69,9 @@ def modulo_travel(form: Form, value: float, position: float) -> float:
 
 
 def linear_travel(form: Form, value: float, position: float) -> float:
-    """Signed travel of an axis that does not wrap, from ``position`` to ``value``, or by it (IC).
+    """Return the signed travel of an axis without modulo to ``value``, or by ``value`` (IC).
 
-    Raises TargetError for DC, ACP and ACN, which only a modulo rotary axis has.
+    Raises TargetError for DC, ACP and ACN, which need a modulo rotary axis.
     """
     if form in NO_ROTARY:
         raise TargetError(NO_ROTARY[form], Message("{form} needs a modulo rotary axis", form=form))
@@ -79,7 +79,7 @@ def linear_travel(form: Form, value: float, position: float) -> float:
 
 
 def check_reach(end: float, ends: tuple[float, float] | None = TURNS) -> None:
-    """Raises TargetError where an axis would stand beyond its ends in the machine's own count."""
+    """Raise TargetError if the end is outside the range of the axis in machine coordinates."""
     low, high = ends or (-inf, inf)
     if not low - ROUNDING <= end <= high + ROUNDING:
         text = Message(

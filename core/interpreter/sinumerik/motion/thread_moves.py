@@ -1,7 +1,7 @@
-"""G33, G34, G35: threads of constant and of changing lead, alone or in a chain, and what leads out in step.
+"""Threads with G33, G34 and G35 with constant or variable lead, alone or in a chain, and their pull-out.
 
-The executor cuts a whole chain in one pass by the measured spindle. SF begins so much of a turn later: the
-tool goes back by that share of the lead, whence the same index of the spindle cuts the thread turned by SF.
+The executor cuts a whole chain in one pass by the measured spindle angle. For SF, the tool first moves back
+by that fraction of the lead, so that the same spindle index cuts the thread rotated by SF.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ from core.language.sinumerik.sinumerik_words import Word
 from core.language.sinumerik.word_table import FEED_AND_SPEED, MOTION
 
 _ROUNDING = 1 + 1e-9
-_STEEP = 0.5  # of X to Z: what leads out of a thread, and does not go on cutting it
+_STEEP = 0.5  # ratio of X to Z; a steeper move is a pull-out instead of a continuation
 _SAME = 1e-9  # mm
 _LEAST_LEAD = 0.01  # mm
 
 
 def thread(state: State, statement: Statement) -> Iterator[Block]:
-    """The block of G33, G34 or G35, behind the way back that SF asks for. Raises ProgramError."""
+    """Yield the block of G33, G34 or G35, after the move back for SF. Raises ProgramError."""
     for name in ("CR", "AR", "I1", "K1"):
         if word := statement.words.get(name):
             text = "{word} cannot be used with G{motion}."
@@ -52,7 +52,7 @@ def thread(state: State, statement: Statement) -> Iterator[Block]:
 
 
 def _growth(state: State, statement: Statement) -> float:
-    """By what the lead grows, mm a revolution each revolution: F of G34, less than 0 with G35."""
+    """Return the lead change per revolution in mm/rev: F of G34, negative with G35, 0 with G33."""
     if state.motion is Motion.THREAD:
         return 0.0
     if word := statement.words.get("F"):
@@ -69,7 +69,7 @@ def _growth(state: State, statement: Statement) -> float:
 
 
 def _mean_lead(statement: Statement, travel: AxisTravel, lead: float, growth: float) -> tuple[float, float]:
-    """The mean lead of the way along Z, and that at its end. Raises ProgramError where none is left."""
+    """Return the mean lead and the lead at the end, in mm/rev. Raises ProgramError if the lead reaches 0."""
     way = abs(travel.z - travel.z0)
     if not growth:
         return lead, lead
@@ -92,7 +92,7 @@ def _mean_lead(statement: Statement, travel: AxisTravel, lead: float, growth: fl
 def _start_angle(
     state: State, statement: Statement, travel: AxisTravel, lead: float, growth: float
 ) -> Block | None:
-    """SF: the way back along the thread after which it begins so much of a turn later; None without one."""
+    """Return the move back for SF, which delays the start by a fraction of a revolution, or None."""
     word = statement.words.get("SF")
     angle = 0.0 if word is None else state.number(statement, word) % 360.0
     if word is None or not angle:
@@ -110,7 +110,11 @@ def _start_angle(
 
 
 def _lead(state: State, statement: Statement, travel: AxisTravel) -> float:
-    """mm a revolution along Z at the start; that at the end of the thread before where none is written."""
+    """Return the lead along Z at the start, in mm/rev.
+
+    Without K and I, it is the lead at the end of the previous thread. Raises ProgramError for an invalid
+    lead.
+    """
     along, across = statement.words.get("K"), statement.words.get("I")
     if along is None and across is None:
         if state.threads:
@@ -135,7 +139,7 @@ def _lead(state: State, statement: Statement, travel: AxisTravel) -> float:
 
 
 def check_spindle(state: State, statement: Statement, lead: float) -> None:
-    """Raises ProgramError where the spindle stands, changes its speed, or is too fast for this lead, mm."""
+    """Raise ProgramError if the spindle is stopped, under G96, or too fast for this lead in mm."""
     modal = state.modal
     if not modal.spindle or not state.rpm:
         text = "a thread needs the spindle running, but the spindle is stopped."
@@ -159,9 +163,9 @@ def check_spindle(state: State, statement: Statement, lead: float) -> None:
 
 
 def _continues(state: State, statement: Statement, travel: AxisTravel, lead: float) -> bool:
-    """Whether the block goes on with the thread before it, and does not lead out of it.
+    """Return whether the block continues the previous thread instead of leading out of it.
 
-    Raises ProgramError where it turns back along Z, or goes on behind the block that has led out.
+    Raises ProgramError if it reverses along Z, or follows a block that led out of the thread.
     """
     if not state.threads:
         return False

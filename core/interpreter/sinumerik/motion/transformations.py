@@ -1,4 +1,4 @@
-"""TRANSMIT, TRACYL and TRAFOOF: when the plane of the face or the side is on, and where it cannot be."""
+"""Switching of TRANSMIT, TRACYL and TRAFOOF, and the conditions under which they are allowed."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _SAME = 1e-9
 
 
 def transform(state: State, log: Log, statement: Statement) -> Iterator[Block]:
-    """TRANSMIT, TRACYL or TRAFOOF. Raises ProgramError where it cannot be."""
+    """Yield the blocks of TRANSMIT, TRACYL or TRAFOOF. Raises ProgramError if it is not allowed."""
     word = statement.g[TRANSFORMATION]
     if (PLACES & statement.words.keys()) or statement.sets or statement.m:
         text: str = Message("{word} must be in a separate block.", word=word.text)
@@ -51,7 +51,10 @@ def transform(state: State, log: Log, statement: Statement) -> Iterator[Block]:
 
 
 def _leave(state: State) -> None:
-    """What the program has shifted and turned ends with the transformation, and with its beginning."""
+    """Turn the transformation off and reset the programmed frame.
+
+    This also applies before a new transformation.
+    """
     state.transformation = None
     state.programmed = NO_FRAME
     state.pole, state.polar, state.direction = (0.0, 0.0), None, None
@@ -94,7 +97,7 @@ def _check_machine(state: State, statement: Statement, word: Word) -> None:
 
 
 def _frame(state: State, statement: Statement, word: Word) -> Face | Side:
-    """The frame that the word asks for, where the tool stands: on which side of the axis."""
+    """Return the frame of the word for the present side of the tool, relative to the spindle axis."""
     refuse = partial(statement.refuse, word)
     values = [0.0 if each.formula is None else state.worth(each.formula, refuse) for each in word.arguments]
     sets = values[1:] if word.name == "TRACYL" else values

@@ -1,8 +1,8 @@
-"""TRANSMIT and TRACYL: the face and the side of the part milled with X, Y and Z, which X, Z and C carry out.
+"""Milling on the face (TRANSMIT) and on the side (TRACYL) with X, Y and Z, executed by X, Z and C.
 
-The program's words are those of a plane: abscissa and ordinate in it, and the depth square to it. Lines and
-arcs, corners and radius compensation are worked out in the plane as X and Z are on the lathe; what comes out
-is a way of the virtual mill (``core.geometry.virtual_mill``), as plane switching has it.
+The words of the program have a plane (abscissa and ordinate) and a depth perpendicular to it. Lines, arcs,
+corners and compensation are calculated in the plane like X and Z on the lathe. The output are moves of the
+virtual mill (``core.geometry.virtual_mill``), as in plane switching.
 """
 
 from __future__ import annotations
@@ -49,11 +49,11 @@ class _Zero(TypedDict):
 
 
 class _Names(NamedTuple):
-    """What the letters of the plane are: for the lathe's own code Z is the abscissa and X the ordinate."""
+    """Mapping of the letters to the lathe's code, in which Z is the abscissa and X the ordinate."""
 
     word: str
     plane: int
-    places: Mapping[str, str]  # X, Z or C, the depth
+    places: Mapping[str, str]  # X, Z, or C for the depth
     centres: Mapping[str, str]
 
 
@@ -62,9 +62,9 @@ _SIDE = _Names("TRACYL", 19, {"Y": "Z", "Z": "X", "X": "C"}, {"J": "K", "K": "I"
 
 
 class Transformation:
-    """One that is on: the plane's own state, corners and compensation, and where the mill stands.
+    """An active transformation: state, corners and compensation of its plane, and the position of the mill.
 
-    The plane counts in mm: on the face X, Y and lathe Z, on the side Y, lathe Z and X, a radius.
+    The plane is in mm: X, Y and lathe Z on the face; Y, lathe Z and X as a radius on the side.
     """
 
     def __init__(self, state: State, log: Log, frame: Face | Side) -> None:
@@ -85,31 +85,31 @@ class Transformation:
 
     @property
     def name(self) -> str:
-        """The word that has begun it."""
+        """Word that started the transformation."""
         return self._names.word
 
     @property
     def along_z(self) -> bool:
-        """Whether the depth is Z, along which drilling cycles drill."""
+        """Whether the depth is along Z, so that drilling cycles are allowed."""
         return isinstance(self._frame, Face)
 
     @property
     def plane(self) -> int:
-        """G17 or G19, in which its arcs and its compensation lie."""
+        """Plane of its arcs and compensation: 17 or 19, for G17 or G19."""
         return self._names.plane
 
     @property
     def holds(self) -> bool:
-        """Whether a corner or a contour is under way in it."""
+        """Whether a corner or a contour is unfinished."""
         return self._corners.holds or self._compensation.holds
 
     @property
     def depth(self) -> float:
-        """Where the tool stands square to the plane, as the program counts: mm."""
+        """Position of the tool perpendicular to the plane in the program frame, in mm."""
         return self._depth - self._plane.programmed.c
 
     def stand(self) -> None:
-        """Take up where the slides stand: at the beginning, and with another tool or zero."""
+        """Set the position of the mill from the axes, at the start and after a change of tool or zero."""
         state, modal = self._state, self._state.modal
         self._offset = modal.base_x, modal.base_z
         x, z, c = state.x - modal.base_x, state.z - modal.base_z, state.c - modal.offset_c
@@ -121,9 +121,9 @@ class Transformation:
     # --- words
 
     def taken(self, statement: Statement) -> Statement:
-        """The statement with the plane's words in those of the lathe's plane Z X, as numbers.
+        """Return the statement with its words converted to the ZX plane of the lathe, as numbers.
 
-        Raises ProgramError for what cannot be done in a plane.
+        Raises ProgramError for a word that is not allowed in the plane.
         """
         names, words = self._names, {}
         for name, word in statement.words.items():
@@ -147,7 +147,7 @@ class Transformation:
         return replace(statement, words=words)
 
     def _resolved(self, statement: Statement, word: Word) -> Word:
-        """The number of a place, X as a radius."""
+        """Return the word with its value as a number, with X as a radius."""
         modal, value = self._state.modal, self._state.number(statement, word)
         relative = word.form is Form.IC or (word.form is Form.PLAIN and modal.absolute is False)
         centre = word.name == "I"
@@ -163,7 +163,7 @@ class Transformation:
         return word._replace(value=value, formula=None)
 
     def _follow_state(self) -> None:
-        """What the lathe's own words have changed counts in the plane, too."""
+        """Copy changes of the lathe's state to the state of the plane."""
         state, plane = self._state, self._plane
         for name in _FOLLOWED:
             setattr(plane, name, getattr(state, name))
@@ -186,11 +186,11 @@ class Transformation:
     # --- frames and moves
 
     def frame(self, statement: Statement) -> None:
-        """TRANS, ROT, SCALE and MIRROR of the plane. Raises ProgramError."""
+        """Execute TRANS, ROT, SCALE and MIRROR in the plane. Raises ProgramError."""
         self._follow_state()
         if key := statement.frame_key:
             turned = {name: word for name, word in statement.words.items() if name in AXES}
-            if key.name.removeprefix("A") == "TRANS":  # of which no axis is a diameter
+            if key.name.removeprefix("A") == "TRANS":  # TRANS does not have diameters
                 modal = self._state.modal
                 self._state.modal = modal._replace(diameter=False)
                 taken = self.taken(replace(statement, words=turned))
@@ -204,7 +204,7 @@ class Transformation:
             self._derive()
 
     def moves(self, statement: Statement) -> Iterator[Block]:
-        """The move of a statement in the plane, before its corners. Raises ProgramError."""
+        """Yield the move of a statement in the plane, before its corners. Raises ProgramError."""
         self._check(statement)
         if word := statement.words.get("OFFN"):
             self._allow(statement, word)
@@ -234,7 +234,7 @@ class Transformation:
         yield made
 
     def down_to(self, statement: Statement, depth: float, feed: float | None, text: str) -> Block:
-        """A move square to the plane to a depth as the program counts it, in mm; feed None is a rapid."""
+        """Return a move to a depth in the program frame, in mm; without a feed, it is a rapid."""
         self._follow_state()
         state, goal = self._plane, depth + self._plane.programmed.c
         kind = Kind.RAPID if feed is None else Kind.FEED
@@ -245,7 +245,7 @@ class Transformation:
         return made
 
     def over(self, statement: Statement, x: float, y: float, text: str) -> Block:
-        """A rapid to a place of the plane, as a pattern of holes names it: mm."""
+        """Return a rapid to a point of the plane, in mm, for a hole pattern."""
         self._follow_state()
         state = self._plane
         z, ordinate = (y, x) if not self.along_z else (x, y)
@@ -257,7 +257,7 @@ class Transformation:
         return made
 
     def _allow(self, statement: Statement, word: Word) -> None:
-        """OFFN: what is left beside the contour, while no contour is under way."""
+        """Set OFFN, the allowance of the contour. Raises ProgramError while a contour is active."""
         value = self._state.length(statement, word)
         if self._compensation.holds or (value and not self.along_z):
             text = Message("{word} cannot change a contour that is not finished yet.", word=word.text)
@@ -272,7 +272,7 @@ class Transformation:
         self.offn = value
 
     def _check(self, statement: Statement) -> None:
-        """Raises ProgramError for what has no meaning in a plane."""
+        """Raise ProgramError for a statement that is not allowed in the plane."""
         state, names = self._state, self._names
         if self.holds and self._offset != (state.modal.base_x, state.modal.base_z):
             text = "the tool or the zero point changes between two moves of a corner or a contour."
@@ -303,7 +303,7 @@ class Transformation:
             raise statement.refuse(word, "arc-plane", text, hint, word=names.word, plane=names.plane)
 
     def _depth_of(self, taken: Statement) -> float:
-        """Where the depth of a statement leads, mm of the frame's zero."""
+        """Return the target depth of a statement, in mm from the zero of the frame."""
         word = taken.words.get("C")
         if word is None:
             return self._depth
@@ -312,7 +312,7 @@ class Transformation:
         return value + (self._depth if relative else self._plane.programmed.c)
 
     def _plunge(self, taken: Statement) -> Block:
-        """A move square to the plane alone."""
+        """Return a move only in depth."""
         state = self._plane
         if state.motion is Motion.RAPID:
             return block_of(state, taken, self._still(), Kind.RAPID, 0.0)
@@ -326,7 +326,7 @@ class Transformation:
         )  # fmt: skip
 
     def _stand_at_end(self, made: Block) -> None:
-        """The lathe's own state stands where the program has led, before any compensation."""
+        """Set the lathe's state to the programmed end point, before compensation."""
         state, frame = self._state, self._frame
         end = _spot(frame, made.x + made.offset_x, made.z + made.offset_z, made.c)
         if isinstance(frame, Face):
@@ -336,39 +336,39 @@ class Transformation:
             lathe = (end[2] if frame.far else -end[2]), -end[0]
         state.x, state.z = lathe[0] + self._offset[0], lathe[1] + self._offset[1]
 
-    # --- what comes out
+    # --- output
 
     def corner(self, block: Block) -> Corner | None:
-        """The corner that the statement of this block asks for. Raises ProgramError."""
+        """Return the corner of the statement of this block, or None. Raises ProgramError."""
         if self._statement is None or not block.moves:
             return None
         return corner_of(self._plane, self._statement, block)
 
     def take(self, block: Block, corner: Corner | None) -> Iterator[Block]:
-        """What no later block can change, as blocks of the lathe. Raises ProgramError."""
+        """Accept a block, and yield the lathe blocks that no later block can change. Raises ProgramError."""
         for cut in self._corners.take(block, corner):
             for beside in self._compensation.take(cut):
                 yield from self._out(beside)
 
     def settle(self) -> Iterator[Block]:
-        """What waits for a move that would make its corner; none follows. Raises ProgramError."""
+        """Yield the buffered blocks, because no move follows for their corner. Raises ProgramError."""
         for cut in self._corners.end():
             for beside in self._compensation.take(cut):
                 yield from self._out(beside)
 
     def end(self) -> Iterator[Block]:
-        """No block comes in it any more. Raises ProgramError where a corner or a contour is open."""
+        """Yield the last blocks. Raises ProgramError if a corner or a contour is unfinished."""
         yield from self.settle()
         for beside in self._compensation.end():
             yield from self._out(beside)
 
     def drop(self) -> None:
-        """Forget what is held, after an error."""
+        """Discard buffered blocks after an error."""
         self._corners.drop()
         self._compensation.drop()
 
     def _out(self, block: Block) -> Iterator[Block]:
-        """The blocks of the lathe for one of the plane."""
+        """Yield the lathe blocks of one block of the plane."""
         if not block.moves:
             x, z, c = self._lathe(self._at)
             yield replace(block, x0=x, z0=z, c0=c, x=x, z=z, c=c, **self._zero(block))
@@ -387,7 +387,7 @@ class Transformation:
             yield self._made(block, part)
 
     def _turned(self, block: Block, part: PlaneMove) -> Iterator[Block]:
-        """Standing on the axis C turns until the way leads out along X."""
+        """Yield a turn of C if the tool is on the axis, until the path leads out along X."""
         state, turn = self._state, replace(part, theta=self._theta).turn_at_start()
         if not turns_at_axis(self._log, block.line, turn):
             return
@@ -421,7 +421,7 @@ class Transformation:
         return made
 
     def _lathe(self, at: Spot) -> Spot:
-        """Lathe X, Z and C of a place of the mill, without offsets, C counted on."""
+        """Return lathe X, Z and continuous C of a point of the mill, without offsets."""
         frame = self._frame
         c = frame.c0 - degrees(self._theta)
         if isinstance(frame, Face):
@@ -430,7 +430,10 @@ class Transformation:
         return (at[2] if frame.far else -at[2]), -at[0], c
 
     def _zero(self, block: Block) -> _Zero:
-        """Offsets and state of the lathe for a block of the plane; the program's end leaves it."""
+        """Return offsets and modal state of the lathe for a block.
+
+        The end of the program ends the transformation.
+        """
         own = self._state.modal
         ends = isinstance(block.action, ProgramEnd)
         modal = block.modal._replace(
@@ -442,10 +445,10 @@ class Transformation:
 
 
 def _spot(frame: Face | Side, ordinate: float, abscissa: float, depth: float) -> Spot:
-    """A place of the plane in the mill's frame."""
+    """Return a point of the plane in the frame of the mill."""
     return (abscissa, ordinate, depth) if isinstance(frame, Face) else (-ordinate, abscissa, depth)
 
 
 def _of_plane(frame: Face | Side, at: Spot) -> Spot:
-    """Abscissa, ordinate and depth of a place in the mill's frame."""
+    """Return abscissa, ordinate and depth of a point in the frame of the mill."""
     return (at[0], at[1], at[2]) if isinstance(frame, Face) else (at[1], -at[0], at[2])

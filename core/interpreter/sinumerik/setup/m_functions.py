@@ -1,4 +1,4 @@
-"""M functions beside spindle and end: coolant, tool change, gear steps, and those of the machine file."""
+"""M functions other than spindle and program end: coolant, tool change, gears and machine outputs."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ from core.language.sinumerik.sinumerik_words import Word
 from core.language.sinumerik.word_table import IDLE, M_FUNCTIONS
 from core.message import Message
 
-COLLET = "collet"  # the output of the chuck, whatever codes the builder has given it
-_OF_ISO = frozenset({98, 99})  # which call and end subprograms in the other language of this control
+COLLET = "collet"  # the output of the chuck for any M code of the builder
+_OF_ISO = frozenset({98, 99})  # M98 and M99 of the ISO dialect, which call and end subprograms
 
 
 def check_m(state: State, statement: Statement, lacking: list[Need]) -> None:
-    """What the M functions of the block mean; into ``lacking`` goes the builder's that nothing here answers.
+    """Check the M functions of a block, and add builder functions that this machine lacks to ``lacking``.
 
-    The control of the maker hands a code that it does not know to the builder's PLC and raises no alarm.
-    Raises ProgramError for one that the machine file does not switch on.
+    The original control passes an unknown code to the builder's PLC without an alarm. Raises ProgramError for
+    a code that the machine file does not enable.
     """
     limits = state.setup.limits
     for code, word in statement.m.items():
@@ -47,7 +47,7 @@ def check_m(state: State, statement: Statement, lacking: list[Need]) -> None:
 
 
 def _check_chuck(state: State, statement: Statement, word: Word, name: str, on: bool) -> None:
-    """A code that opens the chuck is kept to the interlock that M13 of the other language has."""
+    """Raise ProgramError if a code opens the chuck while the spindle turns, as for M13 in OmniTurn."""
     turns = state.modal.spindle and 5 not in statement.m
     if name == COLLET and not on and turns and not state.setup.limits.unclamp_while_turning:
         text = Message("{word} cannot open the chuck while the spindle turns.", word=word.text)
@@ -71,7 +71,7 @@ def _refused(state: State, statement: Statement, code: int, word: Word) -> Progr
 
 
 def _tell_unanswered(state: State, statement: Statement, code: int, word: Word) -> None:
-    """Say once that a function is the builder's, and that the machine will not start with it."""
+    """Warn once that this machine lacks a builder function, so that it does not start."""
     if f"M{code}" in state.told:
         return
     state.told.add(f"M{code}")
@@ -82,13 +82,13 @@ def _tell_unanswered(state: State, statement: Statement, code: int, word: Word) 
 
 
 def functions_before(state: State, statement: Statement) -> Iterator[Block]:
-    """What is switched on, before the motion of the block: coolant, and outputs of the machine file."""
+    """Yield the blocks that switch coolant and outputs on, before the motion."""
     yield from _outputs(state, statement, on=True)
     yield from _coolant(state, statement, {7, 8})
 
 
 def functions_after(state: State, statement: Statement) -> Iterator[Block]:
-    """What is switched off, behind the motion."""
+    """Yield the blocks that switch coolant and outputs off, after the motion."""
     yield from _coolant(state, statement, {9})
     yield from _outputs(state, statement, on=False)
 

@@ -1,4 +1,4 @@
-"""G functions that stay in force: motion, plane, units, G90 and G91, and where the program's zero lies."""
+"""Modal G functions: motion, plane, units, G90 and G91, and the offsets of program zero."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from core.language.sinumerik.sinumerik_words import Form, Word
 from core.message import Message
 
 _NAMED_MOTION = {"CIP": Motion.THROUGH, "CT": Motion.TANGENT}
-_FIFTH = {505: 58, 506: 59}  # of the six that are kept
+_FIFTH = {505: 58, 506: 59}  # the settable offsets that these codes select
 
 
 def settable_offset(state: State, statement: Statement) -> None:
-    """Take up the settable offset that G54 to G59, G505 and G506 name; none under G500."""
+    """Activate the settable offset of G54 to G59, G505 or G506; G500 turns it off."""
     code = statement.code(table.SETTABLE)
     if code is None:
         return
@@ -27,9 +27,9 @@ def settable_offset(state: State, statement: Statement) -> None:
 
 
 def programmed_frame(state: State, statement: Statement) -> None:
-    """TRANS, ROT, SCALE and MIRROR replace the frame, those with A add to it; alone they clear it.
+    """Execute TRANS, ROT, SCALE and MIRROR, which replace the frame, or their A forms, which add to it.
 
-    Raises ProgramError.
+    Without axes, they reset the frame. Raises ProgramError for invalid words.
     """
     key = statement.frame_key
     if key is None:
@@ -64,9 +64,9 @@ def programmed_frame(state: State, statement: Statement) -> None:
 
 
 def leave_offsets(state: State) -> None:
-    """The end of a program takes its offsets away: what comes next, in whatever language, counts without.
+    """Reset the offsets at the end of a program, so that later programs in any language do not use them.
 
-    G71 and DIAMON are in force again, as the next line of MDI counts.
+    G71 and DIAMON become active, as the next line of MDI expects.
     """
     state.settable, state.programmed = NO_OFFSET, NO_FRAME
     state.adopt(state.modal._replace(settable=0, metric=True, diameter=True))
@@ -74,7 +74,7 @@ def leave_offsets(state: State) -> None:
 
 
 def check_c(state: State, statement: Statement) -> None:
-    """Raises ProgramError for a C word on a machine that has no C."""
+    """Raise ProgramError for a C word if the machine has no third axis."""
     word = statement.words.get("C")
     if word is not None and not state.setup.limits.c_enabled:
         text = "unknown axis: this machine has no third axis."
@@ -84,7 +84,7 @@ def check_c(state: State, statement: Statement) -> None:
 
 
 def check_y(state: State, statement: Statement) -> None:
-    """Raises ProgramError for a word of Y, which TRANSMIT and TRACYL alone make of X and C."""
+    """Raise ProgramError for a Y word outside TRANSMIT and TRACYL."""
     word = statement.words.get("Y") or statement.words.get("J")
     if word is None or state.transformation is not None:
         return
@@ -107,7 +107,7 @@ def _refuse_axes(statement: Statement, key: Word) -> None:
 
 
 def _shift(state: State, statement: Statement, name: str) -> float:
-    """One axis of TRANS or ATRANS: mm, or degrees of C. X is a radius, whatever DIAMON says."""
+    """Return one axis of TRANS or ATRANS, in mm or degrees; X is a radius, independent of DIAMON."""
     word = _plain(statement, name)
     if word is None:
         return 0.0
@@ -136,7 +136,7 @@ def _plain(statement: Statement, name: str) -> Word | None:
 
 
 def modes(state: State, statement: Statement) -> None:
-    """Take up the functions of a block that stay in force. Raises ProgramError."""
+    """Set the modal functions of a block. Raises ProgramError."""
     modal = state.modal
     _motion_and_plane(state, statement)
     metric, absolute = statement.code(table.UNIT), statement.code(table.ABSOLUTE)
@@ -172,7 +172,7 @@ def _motion_and_plane(state: State, statement: Statement) -> None:
 
 
 def _path_modes(state: State, statement: Statement) -> None:
-    """Exact stops, outside corners, approach, and the working area."""
+    """Set the modes of exact stop, outside corners, approach and working area."""
     exact, corner = statement.code(table.EXACT), statement.code(table.CORNER)
     if exact is not None:
         state.exact = exact == 60
@@ -197,7 +197,7 @@ def _path_modes(state: State, statement: Statement) -> None:
 
 
 def tell_idle_words(state: State, statement: Statement) -> None:
-    """Say once what makes no difference here."""
+    """Note once each word without effect."""
     for word in statement.g.values():
         name = word.name if word.value is None else f"G{int(word.value)}"
         tell_idle(state, statement, word, name, table.IDLE.get(name, ""))
@@ -206,7 +206,7 @@ def tell_idle_words(state: State, statement: Statement) -> None:
 
 
 def tell_idle(state: State, statement: Statement, word: Word, name: str, why: str) -> None:
-    """Say once that a function is taken and changes nothing."""
+    """Note once that a function has no effect, with the reason ``why``."""
     if why and name not in state.told:
         state.told.add(name)
         found = statement.warning(
@@ -216,7 +216,7 @@ def tell_idle(state: State, statement: Statement, word: Word, name: str, why: st
 
 
 def frame_block(state: State, statement: Statement) -> bool:
-    """G110 to G112, G25 and G26: whether the block was one of them. Raises ProgramError."""
+    """Execute G110 to G112, G25 and G26; return whether the block is one of them. Raises ProgramError."""
     word = statement.g.get(table.BLOCKWISE)
     code = statement.code(table.BLOCKWISE)
     if word is None or code not in {110, 111, 112, 25, 26}:
@@ -249,14 +249,14 @@ def _place(state: State, statement: Statement, name: str) -> float:
 
 
 def _limits(state: State, statement: Statement, *, upper: bool) -> None:
-    """The working area; the spindle's speeds are the spindle's."""
+    """Set the working area; the spindle speeds of G25 and G26 are set with the spindle words."""
     for name in ("X", "Z"):
         if name in statement.words:
             state.area[name, upper] = _place(state, statement, name)
 
 
 def check_area(state: State, statement: Statement, x: float, z: float) -> None:
-    """Raises ProgramError where the tip would leave the working area of G25 and G26; machine mm."""
+    """Raise ProgramError if the tip leaves the working area of G25 and G26; ``x z`` are machine mm."""
     if not state.area_on or not state.area:
         return
     modal = state.modal

@@ -1,4 +1,4 @@
-"""TRANS, ROT, SCALE and MIRROR of SINUMERIK: the programmed frame of the plane Z X, and the shift of C."""
+"""Programmed frame of TRANS, ROT, SCALE and MIRROR in the ZX plane, and the shift of C."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from typing import NamedTuple
 
 
 class ProgrammedFrame(NamedTuple):
-    """A point ``p`` of the program lies at M p + (x, z): mm, X a radius; ``c`` is the shift of C, degrees.
+    """Frame that maps a program point ``p`` to M p + (x, z), in mm with X as a radius.
 
-    M has the rows ``xx xz`` and ``zx zz``; the zero itself is shifted only, so that no turn and no factor
-    touches what offsets say.
+    M has the rows ``xx xz`` and ``zx zz``. ``c`` shifts C in degrees. Rotation and scaling do not affect
+    other offsets.
     """
 
     x: float = 0.0
@@ -23,47 +23,47 @@ class ProgrammedFrame(NamedTuple):
 
     @property
     def plain(self) -> bool:
-        """Whether it only shifts."""
+        """Whether the frame only shifts."""
         return (self.xx, self.xz, self.zx, self.zz) == (1.0, 0.0, 0.0, 1.0)
 
     @property
     def mirrored(self) -> bool:
-        """Whether clockwise has become counter-clockwise in it."""
+        """Whether the frame reverses the direction of arcs."""
         return self.xx * self.zz - self.xz * self.zx < 0.0
 
     @property
     def uniform(self) -> bool:
-        """Whether circles stay circles: both axes have one factor."""
+        """Whether both axes have the same factor, so that circles remain circles."""
         across = self.xx * self.xx + self.zx * self.zx
         along = self.xz * self.xz + self.zz * self.zz
         return abs(across - along) < 1e-9 * along
 
     def turned(self, x: float, z: float) -> tuple[float, float]:
-        """A distance of the program as one of the machine."""
+        """Return a distance of the program as a machine distance."""
         return self.xx * x + self.xz * z, self.zx * x + self.zz * z
 
     def unturned(self, x: float, z: float) -> tuple[float, float]:
-        """A distance of the machine as one of the program."""
+        """Return a machine distance as a distance of the program."""
         whole = self.xx * self.zz - self.xz * self.zx
         return (self.zz * x - self.xz * z) / whole, (self.xx * z - self.zx * x) / whole
 
     @property
     def factor(self) -> float:
-        """By what lengths grow where circles stay circles."""
+        """Scale factor of lengths in a uniform frame."""
         return sqrt(abs(self.xx * self.zz - self.xz * self.zx))
 
     def shifted(self, x: float, z: float, c: float) -> ProgrammedFrame:
-        """The same with its zero moved by a distance of the program."""
+        """Return the frame with its zero shifted by a distance of the program."""
         dx, dz = self.turned(x, z)
         return self._replace(x=self.x + dx, z=self.z + dz, c=self.c + c)
 
     def rotated(self, degrees: float) -> ProgrammedFrame:
-        """Turned further, from Z towards X."""
+        """Return the frame rotated further, from Z toward X."""
         a = radians(degrees)
         return self._by(cos(a), sin(a), -sin(a), cos(a))
 
     def scaled(self, x: float, z: float) -> ProgrammedFrame:
-        """With these factors besides; under 0 they mirror."""
+        """Return the frame with further factors; negative factors mirror."""
         return self._by(x, 0.0, 0.0, z)
 
     def _by(self, xx: float, xz: float, zx: float, zz: float) -> ProgrammedFrame:

@@ -1,4 +1,4 @@
-"""S, LIMS, G25, G26, G96, G97, M3, M4, M5, M19, M70, SPOS, SETMS, the live tool as spindle 2, and dwells."""
+"""Spindle words (S, LIMS, G25, G26, G96, G97, M3 to M5, M19, M70, SPOS, SETMS), the live tool, and dwells."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ from core.language.sinumerik.sinumerik_words import Form, Word
 from core.language.sinumerik.word_table import BLOCKWISE, DWELL, FEED_AND_SPEED
 from core.message import Message
 
-_FASTEST_SURFACE = 100_000.0  # mm/s; ten times what any tool stands
+_FASTEST_SURFACE = 100_000.0  # mm/s; ten times the limit of any tool
 _LONGEST_DWELL = 3600.0  # s
 _AXIS_MODE = 70  # M70
 _TURN = 360.0
 _SURFACE = frozenset({96, 961, 962})
-_FEET = 12.0 * MM_PER_INCH / 60.0  # mm/s of a foot a minute
+_FEET = 12.0 * MM_PER_INCH / 60.0  # mm/s per ft/min
 
 
 def turns_spindle(statement: Statement) -> bool:
-    """Whether a block holds anything for the spindle."""
+    """Return whether a block has words for the spindle."""
     return bool(statement.m or _WORDS & statement.words.keys() or FEED_AND_SPEED in statement.g)
 
 
@@ -34,7 +34,7 @@ _WORDS = frozenset({"S", "LIMS", "SPOS", "SPOSA", "SETMS"})
 
 
 def spindle_words(state: State, statement: Statement) -> Iterator[Block]:
-    """The spindle's part of a block, which acts before its motion. Raises ProgramError."""
+    """Yield the spindle blocks of a block, which precede its motion. Raises ProgramError."""
     before = (state.modal.spindle, state.rpm, state.css)
     _modes(state, statement)
     _limit(state, statement)
@@ -75,7 +75,7 @@ def _positions(statement: Statement) -> Word | None:
 
 
 def _position(state: State, statement: Statement, word: Word) -> Iterator[Block]:
-    """The spindle stops, and its drive brings it to its angle, or holds it as C. Raises ProgramError."""
+    """Yield the blocks that stop the spindle and orient it, by its drive or as C. Raises ProgramError."""
 
     def refuse(text: str, hint: str) -> ProgramError:
         return statement.refuse(
@@ -106,19 +106,19 @@ def _position(state: State, statement: Statement, word: Word) -> Iterator[Block]
 
 
 def oriented_by_drive(state: State) -> bool:
-    """Whether the spindle's drive brings it to an angle, and not C, which it is not."""
+    """Return whether the spindle drive orients the spindle, because the spindle is not the C axis."""
     limits = state.setup.limits
     return limits.spindle_oriented and not (limits.c_enabled and limits.spindle_is_c)
 
 
 def demand_position(state: State, refuse: Callable[[str, str], ProgramError]) -> None:
-    """Raises what ``refuse`` makes of text and hint where nothing brings the spindle to an angle."""
+    """Raise the error of ``refuse`` (text and hint) if the spindle cannot be positioned at an angle."""
     if not oriented_by_drive(state):
         demand_spindle_as_c(state, refuse)
 
 
 def demand_spindle_as_c(state: State, refuse: Callable[[str, str], ProgramError]) -> None:
-    """The same where the spindle cannot be turned as C."""
+    """Raise the error of ``refuse`` (text and hint) if the spindle is not the C axis."""
     limits = state.setup.limits
     if limits.c_enabled and limits.spindle_is_c:
         return
@@ -146,7 +146,7 @@ def demand_spindle_as_c(state: State, refuse: Callable[[str, str], ProgramError]
 
 
 def _orient(state: State, statement: Statement, word: Word) -> SpindleOrient:
-    """Angle and sense of M19 and SPOS. The spindle counts 0 to under 360, however C counts."""
+    """Return angle and direction of M19 and SPOS; the angle is from 0 to below 360 degrees."""
     if word.name == "M":
         return SpindleOrient(0.0)
     form, at = word.form, state.modal.oriented
@@ -166,13 +166,13 @@ def _orient(state: State, statement: Statement, word: Word) -> SpindleOrient:
     hint = "Enter an angle from 0 to less than 360 degrees."
     statement.check(0.0 <= value < _TURN, word, WRONG_MODULO, text, hint, word=word.text, value=value)
     sense = {Form.ACP: 1, Form.ACN: -1}.get(form, 0)
-    if form is Form.AC and at is not None:  # never across 0
+    if form is Form.AC and at is not None:  # AC never crosses 0
         sense = int(copysign(1, value - at)) if value != at else 0
     return SpindleOrient(value, sense)
 
 
 def shortest_turn(state: State, angle: float) -> float:
-    """Signed travel of C to an angle of the program, the short way: degrees."""
+    """Return the signed travel of C to an angle of the program by the shorter distance, in degrees."""
     at = state.c - state.modal.offset_c
     if not state.setup.limits.c_modulo:
         return angle - at
@@ -180,7 +180,7 @@ def shortest_turn(state: State, angle: float) -> float:
 
 
 def _spindle_turn(state: State, statement: Statement, word: Word) -> float:
-    """Signed travel; without a form a spindle goes the short way."""
+    """Return the signed travel of C; without a form, by the shorter distance."""
     if word.name == "M":
         word = word._replace(value=0.0, formula=None)
     at = state.c - state.modal.offset_c
@@ -198,7 +198,7 @@ def _modes(state: State, statement: Statement) -> None:
         _demand_controlled(state, statement, word)
         state.adopt(state.modal._replace(css=True))
     elif code is not None and state.modal.css:
-        # G97 keeps the speed that there is; G94 and G95 go back to the S of before.
+        # G97 retains the present speed. G94 and G95 restore the earlier S.
         rpm = abs(state.rpm) if state.modal.spindle else state.modal.rpm
         rpm = state.modal.rpm or rpm if code in {94, 95} else rpm
         state.adopt(state.modal._replace(css=False, rpm=rpm))
@@ -233,7 +233,7 @@ def _limit(state: State, statement: Statement) -> None:
 
 
 def _speed(state: State, statement: Statement) -> None:
-    """S: rpm under G97, m/min under G96."""
+    """Set S: rpm under G97, m/min under G96."""
     word = statement.words.get("S")
     if word is None or statement.code("dwell") is not None:
         return
@@ -264,7 +264,7 @@ def _demand_controlled(state: State, statement: Statement, word: Word | None) ->
 def _check_start(state: State, statement: Statement, word: Word) -> None:
     limits = state.setup.limits
     if not limits.spindle_controlled:
-        state.adopt(state.modal._replace(rpm=limits.max_rpm))  # it has one speed
+        state.adopt(state.modal._replace(rpm=limits.max_rpm))  # the spindle has only one speed
     if not (state.modal.surface_speed if state.modal.css else state.modal.rpm):
         text = "{word} starts the spindle, but S is 0 or not programmed."
         raise statement.refuse(word, "speed-missing", text, "Write S in the block.", word=word.text)
@@ -274,7 +274,10 @@ def _check_start(state: State, statement: Statement, word: Word) -> None:
 
 
 def dwell(state: State, statement: Statement) -> Block:
-    """G4 F in seconds, G4 S in revolutions of the spindle; the F and S in force stay. Raises ProgramError."""
+    """Return the block of G4 with F in seconds or S in revolutions; the active F and S do not change.
+
+    Raises ProgramError for an invalid time or a stopped spindle.
+    """
     word = statement.words.get("F") or statement.words["S"]
     value = state.number(statement, word)
     text = "{word}: a dwell cannot be negative."
@@ -294,7 +297,7 @@ def dwell(state: State, statement: Statement) -> Block:
 
 
 def _turning(state: State, statement: Statement, word: Word) -> float:
-    """The speed by which revolutions become seconds, rpm."""
+    """Return the spindle speed in rpm for a dwell in revolutions. Raises ProgramError if it is stopped."""
     _demand_controlled(state, statement, word)
     rpm = abs(state.rpm)
     text = "G4 {word} waits for spindle revolutions, but the spindle is stopped."
@@ -308,7 +311,7 @@ _TURNS = frozenset({3, 4, 5})
 
 
 def live_words(state: State, statement: Statement) -> None:
-    """Take out of the block what is meant for the live tool. Raises ProgramError where there is none."""
+    """Move the words of the live tool to ``statement.live``. Raises ProgramError without a live tool."""
     for word in statement.live:
         _demand(state, statement, word)
     masters = [
@@ -332,7 +335,7 @@ def _demand(state: State, statement: Statement, word: Word) -> None:
 
 
 def live_tool(state: State, statement: Statement) -> Iterator[Block]:
-    """Speed and start or stop of the live tool. Raises ProgramError."""
+    """Yield the blocks that set the speed and start or stop the live tool. Raises ProgramError."""
     for word in statement.live:
         if word.name == "S":
             _live_speed(state, statement, word)

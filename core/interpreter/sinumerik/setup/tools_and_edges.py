@@ -1,4 +1,4 @@
-"""T and D: the tool by number or name, and its cutting edge, whose length is in every position from there."""
+"""Tools (T) by number or name, and their cutting edges (D), whose offsets apply to all later positions."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ WRONG_EDGE = 17180
 
 
 def tool_words(state: State, statement: Statement, use: ToolUse) -> Iterator[Block]:
-    """T takes the tool and its D1, D another edge, D0 no offset. Raises ProgramError."""
+    """Yield the blocks of T and D: T selects the tool with D1, and D0 has no offset. Raises ProgramError."""
     tool, edge = statement.words.get("T"), statement.words.get("D")
     if tool is None and edge is None:
         return
@@ -68,7 +68,7 @@ def _edge(state: State, statement: Statement, word: Word) -> int:
 
 
 def _take(state: State, statement: Statement, number: int, edge: int, use: ToolUse) -> None:
-    """The edge of this number is in force; 0 with D0 and T0."""
+    """Activate the edge with this number; 0 for D0 and T0."""
     key = edge_key(number, edge or edge_of(state.modal.tool) if number == tool_of(state.modal.tool) else edge)
     offset = ToolOffset() if not number else _offset(state, statement, key, use)
     moved = state.edge if state.modal.edge else ToolOffset()
@@ -82,7 +82,7 @@ def _take(state: State, statement: Statement, number: int, edge: int, use: ToolU
 
 
 def _offset(state: State, statement: Statement, key: int, use: ToolUse) -> ToolOffset:
-    """The row of the table. Raises ProgramError for an edge that a tool of the table does not have."""
+    """Return the offset of an edge. Raises ProgramError if the tool has no such edge."""
     tools = state.setup.tools
     if key not in tools and tool_of(key) in tools:
         name, word = edge_name(key), statement.words.get("D")
@@ -103,7 +103,7 @@ def _offset(state: State, statement: Statement, key: int, use: ToolUse) -> ToolO
 
 
 def _hint(word: Word | None) -> str:
-    """What to do where a tool has no offset; T0101 is how other controls write tool 1 and its offset."""
+    """Return the remedy for a tool without an offset; T0101 is tool 1 with its offset on other controls."""
     if word is not None and word.string:
         return "Enter this name as the remark of a tool (F8)."
     if word is not None and (iso := _TOOL_AND_OFFSET.fullmatch(word.text)):
