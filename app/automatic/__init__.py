@@ -1,1 +1,1 @@
-"""The Automatic page; its model is the desk itself."""
+"""The Automatic page. Its model is ``Desk``."""

@@ -1,4 +1,4 @@
-"""The Automatic page: program window, comment, path view, and the question for a file."""
+"""The Automatic page: program window, comment, path view, and the prompt for a file."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _NO_LINES: tuple[str, ...] = ()
 
 
 class AutomaticPage(Page):
-    """Each part redraws only what changed. The readouts above it are large (see ``Frame``)."""
+    """The Automatic page. Each part redraws only after a change. ``Frame`` shows the large readouts above."""
 
     NAME = page_table.AUTOMATIC
     LABELS = (
@@ -56,11 +56,11 @@ class AutomaticPage(Page):
         self.comment = CommentLine(look, self)
         self.path = PathView(look, self, player=player_of(desk))
         self.path.stock = self._stock
-        self.space = WorkingPlaneView(look, self)  # takes the path's place where the machine is a mill
+        self.space = WorkingPlaneView(look, self)  # Replaces the path view on a mill.
         self.files = FilePrompt(look, desk.programs.folders, desk.programs.choose, self._files_closed, self)
 
     def dress(self) -> None:
-        """Everything in the colours that are in force now."""
+        """Redraw all parts in the present colors."""
         self.files.dress()
         self.path.restart()
 
@@ -68,25 +68,25 @@ class AutomaticPage(Page):
         self.window().setFocus()
 
     def leave(self) -> bool:
-        """The question for a file goes with the page."""
+        """Close the prompt for a file, and let the page close."""
         self.files.dismiss()
         return True
 
     def prompt(self) -> str:
-        """The keys of the question for a file or of measuring; while something moves, what stops it."""
+        """Return the prompt for choosing a file or measuring. Empty while the machine moves."""
         if self.files.isVisible() and not self._moving:
             return self.files.prompt()
         return measuring_words() if self.path.ruler is not None and not self._moving else ""
 
     def escape(self) -> bool:
-        """Ends measuring; while something moves it holds the feed instead, as everywhere."""
+        """End measuring. While the machine moves, leave Esc to feed hold and return False."""
         measuring = self.path.ruler is not None and not self._moving
         if measuring:
             self.path.measure(on=False)
         return measuring
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """Everything again, in the new unit."""
+        """Lay out all parts in the new unit."""
         listing, comment, path = work_parts(Rect(0, 0, self.width(), self.height()), self.look.u)
         for part, rect in (
             (self.listing, listing),
@@ -99,9 +99,9 @@ class AutomaticPage(Page):
             part.update()
 
     def refresh(self, snapshot: Snapshot, view: MachineStatus, loaded: Loaded) -> None:
-        """The program, where it is, and what it says."""
+        """Show the program, its current line, its comment and its path."""
         if self.files.isVisible() and snapshot.state in {State.RUN, State.WAIT}:
-            self.files.dismiss()  # a cycle was started at the station: the keys belong to it
+            self.files.dismiss()  # A cycle was started at the station, so the keys belong to the cycle.
         self._moving = snapshot.state in MOVING
         if self.path.player is not None:
             self.path.player.bound = snapshot.state in UNDER_WAY
@@ -134,15 +134,15 @@ class AutomaticPage(Page):
 
     @property
     def _looked_at(self) -> PathView | WorkingPlaneView:
-        """Which of the two the keys of looking around are for."""
+        """The view that the zoom and pan keys control."""
         return self.path if self.space.scene is None else self.space
 
     def lively(self) -> bool:
-        """The part is being played."""
+        """Return whether the animation of the part is playing."""
         return self.path.player is not None and self.path.player.playing
 
     def barred(self) -> frozenset[str]:
-        """Return the keys of another program, of the editor and of SEARCHTO while they would be refused."""
+        """Return the disabled keys for choosing a program, the editor and SEARCHTO."""
         snapshot, loaded = self.desk.snapshot(), self.desk.session.now
         asking = self.files.isVisible()
         named = bool(self.files.wanted) if asking else loaded.path is not None
@@ -154,7 +154,7 @@ class AutomaticPage(Page):
         return frozenset(key for key, why in found.items() if why)
 
     def key_actions(self) -> KeyActions:
-        """What the page itself does, by key."""
+        """Return the key actions of this page."""
         looked_at = self._looked_at
         return {
             "F2": self.ask_file,
@@ -181,18 +181,18 @@ class AutomaticPage(Page):
         }
 
     def _part_keys(self) -> KeyActions:
-        """Keys of the time line; they mean something while the part is looked at."""
+        """Return the keys of the playback, which work while the part is shown."""
         if self.path.player is None or not self.path.shows_part:
             return {}
         return {**self.path.play_keys(), "To line": self._part_to_line}
 
     def _part_to_line(self) -> None:
-        """The part as the first line that the program window shows leaves it."""
+        """Show the part as it is before the first visible line of the program window."""
         if self.path.player is not None:
             self.path.player.to_line(self.listing.top + 1)
 
     def _stock(self) -> None:
-        """What the part that is looked at is proved on."""
+        """Open the stock settings of the displayed part."""
         from app.part.part_sheet import PartSheet
 
         sheet = self.desk.pages.find(PartSheet)
@@ -200,7 +200,7 @@ class AutomaticPage(Page):
             sheet.show_stock()
 
     def _edit(self) -> None:
-        """The program on the desk, or whatever name stands in the question for a file."""
+        """Open the editor for the loaded program, or for the name in the file prompt."""
         from app.editor.editor import Editor
 
         wanted = self.files.wanted if self.files.isVisible() else ""
@@ -211,7 +211,7 @@ class AutomaticPage(Page):
             self.host.go(page_table.EDITOR)
 
     def ask_file(self) -> None:
-        """``FILE TO BE PROCESSED``, unless a program is under way; asked already, the list of programs."""
+        """Show the prompt ``FILE TO BE PROCESSED``, or open the program list if it is already shown."""
         if self.files.isVisible():
             self.host.go(page_table.PROGRAMS)
         elif self.desk.programs.can_choose():

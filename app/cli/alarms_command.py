@@ -1,4 +1,4 @@
-"""``turndesk alarms``: every alarm, hold and stop with its number, likely causes and what to do."""
+"""The command ``turndesk alarms``: every alarm, hold and stop with number, likely causes and remedy."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def add_parser(subparsers: SubParsers) -> None:
-    """Declare the command."""
+    """Add the parser of the command."""
     parser = subparsers.add_parser("alarms")
     parser.add_argument(
         "number", nargs="*", type=int, metavar="NUMBER", help="numbers of the alarms to list (default: all)"
@@ -25,7 +25,7 @@ def add_parser(subparsers: SubParsers) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Write the catalogue, or the entries of some numbers."""
+    """Print the alarm catalog, or the entries with the given numbers."""
     from core.alarms import CATALOGUE
 
     chosen = sorted(CATALOGUE.items(), key=lambda each: each[1].number)

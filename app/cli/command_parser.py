@@ -1,7 +1,7 @@
-"""The argument parser of ``turndesk``: no option is ignored, none is taken twice, none is guessed.
+"""Argument parser of ``turndesk``, in which every option is exact, unique and used.
 
-Options of the screen may stand before a command, as ``turndesk --machine FILE prove …``: they act as if they
-stood behind it, or are refused where the command has no such option.
+Options of the screen may be written before a command, as in ``turndesk --machine FILE prove …``. They then
+have the same effect as after the command, or are rejected if the command does not have the option.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _INSTEAD: Mapping[str, str] = {
 
 
 class _Once(argparse.Action):
-    """An option's value; the same option a second time is an error, for one of the two would be ignored."""
+    """Action that stores an option's value and rejects a second use of the option."""
 
     def __call__(
         self,
@@ -49,28 +49,28 @@ class _Once(argparse.Action):
 
 
 class Subcommands(argparse._SubParsersAction):  # type: ignore[type-arg]
-    """Subparsers whose help is in ``help_texts``, by name, where it is not given."""
+    """Subparsers that take missing help texts from ``help_texts``, by name."""
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)
         self.help_texts: dict[str, str] = {}
 
     def add_parser(self, name: str, **kwargs: Any) -> Any:
-        """Return a new subparser."""
+        """Return a new subparser for the command ``name``."""
         if name in self.help_texts:
             kwargs.setdefault("help", self.help_texts[name])
         return super().add_parser(name, **kwargs)
 
 
 class Help(argparse.HelpFormatter):
-    """As wide as the terminal, without loading the modules of archives for that."""
+    """Help formatter with the width of the terminal that does not load the archive modules."""
 
     def __init__(self, prog: str, *args: Any, **kwargs: Any) -> None:
         super().__init__(prog, *args, **{"width": _columns() - 2, **kwargs})
 
 
 def _columns() -> int:
-    """Return the width of the terminal as ``shutil.get_terminal_size`` does."""
+    """Return the width of the terminal, determined like ``shutil.get_terminal_size``."""
     words = os.environ.get("COLUMNS", "")
     columns = int(words) if words.isdecimal() else 0
     if columns <= 0 and sys.__stdout__ is not None:
@@ -80,7 +80,7 @@ def _columns() -> int:
 
 
 class Parser(argparse.ArgumentParser):
-    """Says what is wrong in one line, takes each option in full and once."""
+    """Argument parser with one-line errors that accepts each option once and only in full."""
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         super().__init__(*args, **{"allow_abbrev": False, "formatter_class": Help, **kwargs})
@@ -88,7 +88,7 @@ class Parser(argparse.ArgumentParser):
         self.register("action", "store", _Once)
 
     def _check_value(self, action: argparse.Action, value: Any) -> None:
-        """A command, an action or a choice that is none is told with the nearest that is."""
+        """Report an invalid command, action or choice with the most similar valid one."""
         if action.choices is not None and value not in action.choices:
             if isinstance(action, argparse._SubParsersAction) and os.path.isfile(str(value)):
                 self.error(
@@ -111,7 +111,7 @@ class Parser(argparse.ArgumentParser):
         super()._check_value(action, value)
 
     def parse_args(self, args: Any = None, namespace: Any = None) -> Any:
-        """As argparse does it; an option that nobody knows is told with the nearest that is one."""
+        """Parse the arguments like argparse, but report an unknown option with the most similar option."""
         self._check_first_options(sys.argv[1:] if args is None else args)
         found, rest = self.parse_known_args(args, namespace)
         if rest:
@@ -120,7 +120,10 @@ class Parser(argparse.ArgumentParser):
         return found
 
     def _check_first_options(self, args: Sequence[str]) -> None:
-        """Before the command: what stands behind an unknown option would be told as a wrong command."""
+        """Check the options before the command.
+
+        Otherwise the word after an unknown option would be reported as an invalid command.
+        """
         known, words = self._option_string_actions, iter(args)
         for word in words:
             name, _, value = word.partition("=")
@@ -136,7 +139,7 @@ class Parser(argparse.ArgumentParser):
                 next(words, "")
 
     def _unknown(self, words: str, name: str, elsewhere: str) -> NoReturn:
-        """Report arguments that are not known here; ``elsewhere`` if another parser has this option."""
+        """Report unknown arguments; ``elsewhere`` is the message if another parser has the option."""
         options = self._all_options()
         if name in options:
             self.error(elsewhere)
@@ -150,13 +153,13 @@ class Parser(argparse.ArgumentParser):
         )
 
     def print_help(self, file: Any = None) -> None:
-        """Write the help, or raise the OSError that argparse would drop: it cannot be written."""
+        """Print the help. An OSError is raised, which argparse would suppress."""
         out = file or sys.stdout
         out.write(self.format_help())
         out.flush()
 
     def _all_options(self) -> list[str]:
-        """Those of this parser and of every command and action below it."""
+        """Return the options of this parser and of all its commands and actions."""
         found = [option for each in self._actions for option in each.option_strings]
         for each in self._actions:
             if isinstance(each, argparse._SubParsersAction):
@@ -165,12 +168,12 @@ class Parser(argparse.ArgumentParser):
         return found
 
     def error(self, message: str) -> NoReturn:
-        """Ends with status 2."""
+        """Print the error and exit with status 2."""
         self.exit(EXIT_USAGE, f"turndesk: {message}; see '{self.prog} --help'\n")
 
 
 def add_screen_options(parser: argparse.ArgumentParser) -> None:
-    """Those of the screen, which may also stand before a command."""
+    """Add the options of the screen, which may also be written before a command."""
     parser.add_argument("--version", action="store_true", help="print the version")
     parser.add_argument(
         "--demo",
@@ -187,12 +190,12 @@ def add_screen_options(parser: argparse.ArgumentParser) -> None:
         "offsets": "offsets file to use instead of the stored offsets",
     }
     for name in BEFORE:
-        # A command has its own of the same name, which would else write over this one.
+        # A command has its own option of the same name, which would otherwise overwrite this value.
         parser.add_argument(f"--{name}", metavar="FILE", dest=f"before_{name}", help=texts[name])
 
 
 def is_for_screen(argv: Sequence[str]) -> bool:
-    """Whether the arguments are options of the screen alone, and so hold no command and no mistake in one."""
+    """Return whether the arguments are only valid options of the screen, without a command."""
     words = iter(argv)
     for word in words:
         name, _, value = word.partition("=")
@@ -205,7 +208,7 @@ def is_for_screen(argv: Sequence[str]) -> bool:
 
 
 def settled(args: argparse.Namespace) -> argparse.Namespace:
-    """The arguments with the options before a command where they belong. Raises CommandError."""
+    """Return the arguments with the options before the command assigned to it. Raises CommandError."""
     command = args.command
     if args.version and (
         command or args.demo or args.kiosk or any(getattr(args, f"before_{name}") for name in BEFORE)

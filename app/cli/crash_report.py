@@ -1,6 +1,7 @@
-"""What happens when TurnDesk itself is at fault: one line for the person, the traceback into a crash file.
+"""Reports of internal errors: one line on the terminal, and the traceback in a crash file.
 
-And Ctrl+C where Python drops it: raised in a finalizer it is printed, and the command goes on to its end.
+The module also restores a Ctrl+C that Python drops: an interrupt raised in a finalizer is only printed, and
+the command would continue.
 """
 
 from __future__ import annotations
@@ -19,24 +20,24 @@ if TYPE_CHECKING:
     from sys import UnraisableHookArgs
 
 _dropped: list[type[BaseException]] = []
-_NAMES = 100  # tried before giving up: so many crashes in one second
+_NAMES = 100  # file names tried, the largest number of crashes in one second
 
 
 def report_crash(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
-    """An excepthook: nobody at a machine can act on a traceback, but whoever mends it needs it."""
+    """Report an uncaught exception as an excepthook: one line, with the traceback in a crash file."""
     where = keep_crash(kind, error, trace)
     what = str(error).splitlines()[0] if str(error) else kind.__name__
     sys.stderr.write(f"turndesk: a fault in TurnDesk itself ({what}); please report it with {where}\n")
 
 
 def report_thread(found: threading.ExceptHookArgs) -> None:
-    """The same for a thread that ends by a mistake; the others go on."""
+    """Report an exception that ended a thread. The other threads continue."""
     if found.exc_value is not None and not isinstance(found.exc_value, SystemExit):
         report_crash(found.exc_type, found.exc_value, found.exc_traceback)
 
 
 def keep_crash(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> str:
-    """A crash file of its own in the log folder, else in the system's folder for such; where it lies."""
+    """Write a crash file to the log folder, or to the system's temporary folder; return its path."""
     import tempfile
     import traceback
     from pathlib import Path
@@ -53,7 +54,7 @@ def keep_crash(kind: type[BaseException], error: BaseException, trace: Traceback
 
 
 def _logs() -> Path | None:
-    """Where the log lies; it may be the folder itself that has failed."""
+    """Return the log folder; None if the data folder cannot be used."""
     try:
         from app.desk.data_folder import DataFolderError, data_folder
     except (OSError, ImportError):
@@ -65,7 +66,7 @@ def _logs() -> Path | None:
 
 
 def _written(folder: Path, text: str) -> Path | None:
-    """The file, never one that is already there; None where it cannot be written."""
+    """Write a new file and return its path; None if it cannot be written."""
     stem = f"crash-{time.strftime('%Y%m%d-%H%M%S')}"
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -85,7 +86,7 @@ def _written(folder: Path, text: str) -> Path | None:
 
 @contextmanager
 def keep_interrupts() -> Iterator[None]:
-    """Whatever is dropped in here is raised by the next ``raise_interrupt``."""
+    """Save interrupts that Python drops inside the block, for the next ``raise_interrupt``."""
     before = sys.unraisablehook
 
     def keep(told: UnraisableHookArgs) -> None:
@@ -103,7 +104,7 @@ def keep_interrupts() -> Iterator[None]:
 
 
 def raise_interrupt() -> None:
-    """Raise the KeyboardInterrupt that was dropped, once."""
+    """Raise KeyboardInterrupt once if an interrupt was dropped."""
     if _dropped:
         _dropped.clear()
         raise KeyboardInterrupt

@@ -1,4 +1,4 @@
-"""``turndesk expand FILE``: the elementary blocks that the control would execute."""
+"""The command ``turndesk expand FILE``: the elementary blocks that the control would execute."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def add_parser(subparsers: SubParsers) -> None:
-    """Declare the command."""
+    """Add the parser of the command."""
     parser = subparsers.add_parser("expand")
     parser.add_argument("file", metavar="FILE")
     add_program_options(parser)
@@ -30,7 +30,10 @@ def add_parser(subparsers: SubParsers) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Write the blocks in the order of execution; diagnostics go to stderr, 1 when there are errors."""
+    """Print the blocks in the order of execution; return 1 if there are errors.
+
+    Diagnostics are printed on stderr.
+    """
     from core.proving.program_timeline import Timeline
 
     path = Path(args.file)
@@ -50,7 +53,7 @@ def run(args: argparse.Namespace) -> int:
 def _texts(
     timeline: Timeline, source: Source, figures: ModuleType, *, json_wanted: bool
 ) -> Iterator[tuple[int, str]]:
-    """What is written, and the number of its last block; many moves at once where the program has such."""
+    """Yield the text of each block, or of a series of moves, with the number of its last block."""
     from core.interpreter.shared.elementary_blocks import TimedSeries
     from core.proving.program_timeline import timed_series
 
@@ -65,7 +68,7 @@ def _texts(
 
 
 def report_diagnostics(path: Path, timeline: Timeline) -> int:
-    """Write the findings to stderr, a line each; the exit status they make."""
+    """Print the findings on stderr, one per line; return the exit status."""
     findings = timeline.diagnostics
     sys.stderr.write("".join(f"{d.in_one_line(str(path))}\n" for d in findings))
     return EXIT_ERRORS if any(d.severity == "error" for d in findings) else EXIT_OK

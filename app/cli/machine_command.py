@@ -1,4 +1,4 @@
-"""``turndesk machine``: is a machine file good, does everything in it answer, which HAL file does it need?"""
+"""The command ``turndesk machine``: check a machine file and its devices, write its HAL file, accept it."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 
 def add_hal_parser(actions: SubParsers) -> None:
-    """``hal`` among the actions of ``machine``."""
+    """Add the parser of the action ``hal``."""
     parser = actions.add_parser(
         "hal",
         help="write the HAL file for LinuxCNC and list the required wiring",
@@ -54,7 +54,7 @@ def add_hal_parser(actions: SubParsers) -> None:
 
 
 def write_hal(args: argparse.Namespace) -> int:
-    """Writes it: 0 done, 2 a machine file or an output that cannot be used. Raises CommandError."""
+    """Write the HAL file; return 2 if the machine file is invalid. Raises CommandError."""
     from app.compose.backends.hal_file import written_hal
     from app.compose.machine.machine_setup import read_machine
     from core.table_schema import MachineFileError
@@ -100,7 +100,7 @@ def _report_file(source: str, out: str | None, hal: WrittenHal) -> None:
 
 
 def _save_hal(out: Path, text: str, beside: Mapping[str, str]) -> None:
-    """New files only: all of them, or none."""
+    """Write all files, which must not exist yet. Raises CommandError."""
     files = {out: text, **{out.parent / name: more for name, more in beside.items()}}
     for path in files:
         if path.exists():
@@ -120,7 +120,7 @@ def _save_hal(out: Path, text: str, beside: Mapping[str, str]) -> None:
 
 
 def add_parser(subparsers: SubParsers) -> None:
-    """The subcommand with its actions."""
+    """Add the parser of the command and its actions."""
     parser = subparsers.add_parser("machine")
     actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
     check = actions.add_parser(
@@ -147,7 +147,7 @@ def add_parser(subparsers: SubParsers) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Checks the file and what it connects to: 0 all is well, 1 something does not answer, 2 bad file."""
+    """Run an action; return 0 if successful, 1 for faults, and 2 for an invalid machine file."""
     if args.action == "check":
         return check(args.file, json_wanted=args.json)
     if args.action == "hal":
@@ -160,14 +160,14 @@ def run(args: argparse.Namespace) -> int:
     return status
 
 
-# --- check -----------------------------------------------------------------------------------------------
+# =
 
 WIDTH = 80
-Rows = Sequence[tuple[str, str, str, str]]  # name, where it hangs, state, detail
+Rows = Sequence[tuple[str, str, str, str]]  # name, address, state, details
 
 
 def check(file: str | None, *, json_wanted: bool) -> int:
-    """Validates, connects and reports; answers the exit status."""
+    """Check the machine file, connect to the machine and print a report; return the exit status."""
     from app.compose.backends.backend_entry import NOT_CHECKED
     from app.compose.backends.machine_answers import check_ports
     from app.compose.machine.machine_files import named_machine
@@ -216,7 +216,7 @@ def check(file: str | None, *, json_wanted: bool) -> int:
 
 
 def _changed(machine: Machine) -> Sequence[Change]:
-    """What differs from the accepted file; nothing where no store can be read."""
+    """Return the differences from the accepted file; () if the store cannot be read."""
     try:
         return changed(machine)
     except CommandError as error:
@@ -225,7 +225,7 @@ def _changed(machine: Machine) -> Sequence[Change]:
 
 
 def table(rows: Rows) -> Iterator[str]:
-    """Lines of at most 80 characters; a detail that is longer goes on below itself."""
+    """Yield the lines of the table, at most 80 characters long; long details continue on the next line."""
     widths = [max((len(row[column]) for row in rows), default=0) for column in range(3)]
     start = " " * (2 + sum(width + 2 for width in widths))
     for *cells, detail in rows:
@@ -236,7 +236,7 @@ def table(rows: Rows) -> Iterator[str]:
 
 
 def summary(names: Sequence[str]) -> str:
-    """Return the names in one line; several inputs or outputs are only counted."""
+    """Return the names on one line; several inputs or outputs are only counted."""
     parts = [name for name in names if not name.startswith(("input ", "output "))]
     for kind in ("input", "output"):
         terminals = [name for name in names if name.startswith(f"{kind} ")]
@@ -249,13 +249,13 @@ def _report(json_wanted: bool, report: dict[str, object]) -> None:
         sys.stdout.write(json.dumps(report) + "\n")
 
 
-# --- accept: a real machine does not run before a file that has changed is accepted ----------------------
+# --- accept: a real machine does not run until a changed file is accepted --------------------------------
 
-MOST = 5  # changes that a run tells; a check tells all
+MOST = 5  # changes that a run prints; a check prints all
 
 
 def changed(machine: Machine) -> tuple[Change, ...]:
-    """What differs from the file that was accepted last; nothing for one that never was. CommandError."""
+    """Return the differences from the file that was accepted last; () if none was. Raises CommandError."""
     from app.cli.store_command import opened_store
     from app.compose.machine.accepted_machine import differences
 
@@ -264,7 +264,10 @@ def changed(machine: Machine) -> tuple[Change, ...]:
 
 
 def demand_accepted(machine: Machine) -> None:
-    """A run tells what has changed; on a machine that is not simulated it does not begin. CommandError."""
+    """Print the changes of the machine file before a run.
+
+    Raises CommandError if the file of a real machine has changed since it was accepted.
+    """
     from app.compose.backends.connection import real_time
 
     try:
@@ -272,7 +275,7 @@ def demand_accepted(machine: Machine) -> None:
     except CommandError:
         if real_time(machine):
             raise
-        return  # a simulation needs no store
+        return  # a simulated machine does not need a store
     if not told:
         return
     lines = [str(change) for change in told[:MOST]]
@@ -302,7 +305,7 @@ def demand_accepted(machine: Machine) -> None:
 
 
 def accept(file: str, args: argparse.Namespace) -> int:
-    """Shows what has changed, and takes the file as it is now. Raises CommandError."""
+    """Print the changes of the machine file and accept it. Raises CommandError."""
     from app.cli.store_command import opened_store
     from app.compose.machine.accepted_machine import differences, key_of, record_of
     from app.compose.machine.machine_setup import read_machine
@@ -335,11 +338,11 @@ def _counted(changes: int) -> str:
     return "1 change" if changes == 1 else f"{changes} changes"
 
 
-# --- peer: the other end of a bus that has no hardware on it ---------------------------------------------
+# --- peer: simulated devices for a bus without hardware --------------------------------------------------
 
 
 def play(file: str) -> int:
-    """Answers on the bus of ``file`` until Ctrl-C or SIGTERM. Raises CommandError."""
+    """Simulate the devices of the machine file until Ctrl-C or SIGTERM. Raises CommandError."""
     from app.compose.backends.backend_entry import backend_of, playable
     from app.compose.machine.machine_setup import read_machine
     from core.ports import DriverError
@@ -369,7 +372,7 @@ def play(file: str) -> int:
 
 
 def _typed() -> Callable[[], Iterable[str]]:
-    """Lines of the standard input, where there is one."""
+    """Return a function that reads lines of the standard input, if there is one."""
     from app.compose.backends.played_machine import Typed
 
     try:

@@ -1,4 +1,7 @@
-"""The ``turndesk`` command: finds the subcommand, imports only what it needs, turns errors into one line."""
+"""The ``turndesk`` command: select the subcommand and load only its modules.
+
+Errors are reported in one line.
+"""
 
 from __future__ import annotations
 
@@ -50,7 +53,7 @@ WITHOUT = "prove, expand, trace and run --headless do not need a screen"
 
 
 def all_commands() -> Sequence[str]:
-    """Return every subcommand in the order of the help, with those of the optional features."""
+    """Return all subcommands in the order of the help, including those of optional features."""
     added = [(name, each.follows) for name, each in _added().items()]
     return insert_after(COMMANDS, str, added)
 
@@ -71,9 +74,9 @@ def _module_of(command: str) -> ModuleType:
 
 
 def build_parser(commands: Sequence[str] | None = None, *, bare: bool = False) -> argparse.ArgumentParser:
-    """Return the parser with these subcommands; None: with all of them.
+    """Return the parser with these subcommands, or with all subcommands for None.
 
-    ``bare``: the subcommands have no options, so that no module is imported.
+    ``bare`` adds subcommands without options, so that no module is imported.
     """
     parser = Parser(
         prog="turndesk",
@@ -95,7 +98,7 @@ def build_parser(commands: Sequence[str] | None = None, *, bare: bool = False) -
 
 
 def _commands_for(argv: Sequence[str]) -> Sequence[str]:
-    """Only the command that is asked for is imported; mistakes see all of them."""
+    """Return only the requested command, to import one module, or all commands if it is invalid."""
     if argv and argv[0] in COMMANDS:
         return (argv[0],)
     commands = all_commands()
@@ -103,9 +106,12 @@ def _commands_for(argv: Sequence[str]) -> Sequence[str]:
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run the command line; the exit status of docs/json.md: 0 done, 1 errors in the program, 2 usage."""
+    """Run the command line and return the exit status of docs/json.md.
+
+    The status is 0 if successful, 1 if the program has errors, and 2 for a usage error.
+    """
     argv = sys.argv[1:] if argv is None else argv
-    gc.set_threshold(200_000)  # importing alone would collect a hundred times and find nothing
+    gc.set_threshold(200_000)  # imports alone would cause a hundred useless collections
     try:
         nothing_taken()
         bare = is_for_screen(argv)
@@ -117,7 +123,7 @@ def main(argv: Sequence[str] | None = None) -> int:
             status = _flushed(_dispatch(settled(args)))
             raise_interrupt()
             return status
-    except SystemExit:  # after the help, which needs none of what follows
+    except SystemExit:  # raised after the help, which needs no error handling
         raise
     except _refusals() as error:
         return command_errors.report_refusal(error)
@@ -131,11 +137,12 @@ def main(argv: Sequence[str] | None = None) -> int:
         _forget_interrupt()
         return EXIT_INTERRUPTED
     except BrokenPipeError:
-        # The reader of our output has gone, as `| head` does; closing quietly is what it expects.
+        # The reader of the output has closed the pipe, as `| head` does, and expects a quiet end.
         _write_no_more()
         return EXIT_OK
     except OSError as error:
-        if error.errno not in _FULL or error.filename is not None:  # of a file: whoever writes it tells it
+        # errors of a file are reported where it is written
+        if error.errno not in _FULL or error.filename is not None:
             raise
         sys.stderr.write(f"turndesk: stdout cannot be written: {error.strerror}\n")
         _write_no_more()
@@ -150,26 +157,26 @@ def _refusals() -> tuple[type[CodedError], ...]:
 
 
 def _library_missing(error: ImportError) -> bool:
-    """Whether it is one of the system's, such as Qt needs: a file with ``.so`` in its name."""
+    """Return whether a system library is missing, such as one that Qt needs; its name contains ``.so``."""
     return ".so" in str(error) and "cannot open shared object file" in str(error)
 
 
 def _flushed(status: int) -> int:
-    """The status, once stdout has taken all: behind this a full disk could not be told any more."""
+    """Return the status after flushing stdout, because a full disk could not be reported later."""
     sys.stdout.flush()
     return status
 
 
 def _write_no_more() -> None:
-    """What is still to be written when Python ends goes nowhere."""
+    """Discard the output that Python would write when it ends."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _forget_interrupt() -> None:
-    """Lets the exit status stand.
+    """Clear the interpreter's mark of an interrupt, so that the exit status is used.
 
-    Ctrl+C while a module makes a dataclass (``exec`` of a text) marks the interpreter as one that dies of the
-    signal, although the exception is caught; the next text that is executed takes the mark back.
+    Ctrl+C during the creation of a dataclass (``exec`` of a text) marks the interpreter as ended by the
+    signal, although the exception is caught. Executing another text clears the mark.
     """
     exec("")
 
@@ -212,9 +219,9 @@ def _screen(args: argparse.Namespace) -> int:
 
 
 def _streams_for_any_text() -> None:
-    """A sign that a terminal or a pipe has not, such as an arrow in Windows' 8-bit code, is a question mark.
+    """Make the output streams replace characters that they cannot encode by question marks.
 
-    Whoever starts us may have closed one of them: what nobody reads then goes nowhere.
+    Streams that the parent process has closed are replaced by the null device.
     """
     if sys.stdout is None:
         sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115  for as long as the process lives
@@ -226,16 +233,17 @@ def _streams_for_any_text() -> None:
 
 
 def console() -> int:
-    """The installed ``turndesk``: the command line, and no traceback in front of an operator."""
+    """Run the installed ``turndesk`` command, with crash reports instead of tracebacks."""
     _streams_for_any_text()
     sys.excepthook = report_crash
     threading.excepthook = report_thread
-    # numpy starts a pool of threads for algebra that nobody here does: a fifth of a short command.
+    # numpy would start a thread pool for linear algebra that is not used here, which takes a fifth of a short
+    # command's time.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     try:
         return main()
     finally:
-        gc.freeze()  # Python would look for garbage in all that goes now anyway: a sixth of a short command
+        gc.freeze()  # the final garbage collection would take a sixth of a short command's time
 
 
 if __name__ == "__main__":

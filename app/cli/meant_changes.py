@@ -1,6 +1,6 @@
-"""Suspicious changes of offsets on the command line: refused beyond the travel, else they need consent.
+"""Suspicious offset changes on the command line: rejected beyond the travel, otherwise confirmed.
 
-Consent is --yes, or Y at a terminal. The rule itself is the same as at the screen.
+A change is confirmed by --yes, or by Y on a terminal. The rules are the same as on the screen.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ Changes = Mapping[Kind, Mapping[int, Mapping[str, Value]]]
 
 
 def add_consent_options(parser: argparse.ArgumentParser) -> None:
-    """Add ``--yes`` and ``--machine``."""
+    """Add the options ``--yes`` and ``--machine``."""
     parser.add_argument(
         "--yes", action="store_true", help="make suspicious offset changes without asking for confirmation"
     )
@@ -45,9 +45,9 @@ def add_consent_options(parser: argparse.ArgumentParser) -> None:
 
 
 def demand_meant(store: Store, args: argparse.Namespace, changes: Changes) -> None:
-    """Raise CommandError for a value beyond the travel, or for a suspicious change without consent.
+    """Raise CommandError if a value exceeds the travel, or if a suspicious change is not confirmed.
 
-    The store refuses values out of their range itself.
+    The store itself rejects values out of range.
     """
     travel = _machine_travel(store, args)
     tables = {kind: store.offsets.table(kind).read_rows() for kind in changes}
@@ -78,14 +78,14 @@ def _only_travel(found: tuple[Suspicion, ...]) -> tuple[Suspicion, ...]:
 
 
 def _machine_travel(store: Store, args: argparse.Namespace) -> Travel:
-    """Return the travel of the machine of this command, mm. Raises CommandError for a bad machine file."""
+    """Return the travel of the command's machine in mm. Raises CommandError if its file is invalid."""
     from app.compose.machine.machine_setup import machine_in_use, read_machine
 
     return travel_of(read_machine(args.machine) if args.machine else machine_in_use(store.settings))
 
 
 def _described(found: Mapping[Kind, tuple[Suspicion, ...]], tools: Iterable[int]) -> str:
-    """Return one text for all suspicions; ``tools`` are those that may follow a master."""
+    """Return one text for all suspicious changes; ``tools`` are the tools that may follow a master tool."""
     texts = (
         described(each, partial(_named, kind), partial(_reason, tools))
         for kind, each in found.items()
@@ -106,7 +106,7 @@ def _reason(tools: Iterable[int], each: Suspicion) -> str:
 
 
 def _named(kind: Kind, each: Suspicion) -> str:
-    """T1 x +1.20000 → -15.00000 in"""
+    """Return a change as text, such as T1 x +1.20000 → -15.00000 in."""
     letter = {Kind.TOOL: edge_name(each.number), Kind.SECONDARY: f"D{each.number}"}
     name = letter.get(kind, f"TOOL{each.number}")
     field = FIELDS[kind][each.name]

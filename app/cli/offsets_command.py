@@ -1,4 +1,4 @@
-"""``turndesk offsets``: the store's tool and secondary offsets and tool shapes, in inches."""
+"""The command ``turndesk offsets``: offsets and tool shapes of the store, in inches."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def add_parser(subparsers: SubParsers) -> None:
-    """The subcommand with its actions."""
+    """Add the parser of the command and its actions."""
     parser = subparsers.add_parser("offsets")
     actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
     show = actions.add_parser("show", help="show all offsets that are set")
@@ -59,7 +59,7 @@ def add_parser(subparsers: SubParsers) -> None:
 
 
 def _add_table(parser: argparse.ArgumentParser) -> None:
-    """Which table's history it is about."""
+    """Add the argument that selects the table."""
     parser.add_argument(
         "table",
         nargs="?",
@@ -69,7 +69,7 @@ def _add_table(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Does what ``args`` asks; raises CommandError with one sentence."""
+    """Run the action. Raises CommandError."""
     from app.cli.actions.offset_actions import ACTIONS
 
     return ACTIONS[args.action](args)

@@ -1,4 +1,4 @@
-"""What the options say about the part of a proof: its stock, and the shapes of the tools."""
+"""Options for the part of a proof: its stock and the tool shapes."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _LONGEST = 1016.0  # mm
 
 
 def add_part_options(parser: argparse.ArgumentParser) -> None:
-    """What the part is made of, by which tools, and how it is held."""
+    """Add the options for stock, tools and clamping."""
     parser.add_argument(
         "--tools", metavar="FILE", help="file with tool shapes to use instead of the stored shapes"
     )
@@ -52,7 +52,7 @@ def add_part_options(parser: argparse.ArgumentParser) -> None:
 
 
 def part_setting(args: argparse.Namespace, around: Circumstances) -> PartSetting:
-    """Stock and tools as the options have them. Raises CommandError with what is wrong in them."""
+    """Return the part data from the options. Raises CommandError if an option is invalid."""
     from app.compose.known_part import known_part
 
     stick_out = _stick_out(args, around.machine)
@@ -67,7 +67,10 @@ def part_setting(args: argparse.Namespace, around: Circumstances) -> PartSetting
 
 
 def with_kept_stock(setting: PartSetting, program: str, args: argparse.Namespace) -> PartSetting:
-    """Without --stock that of the store; with --keep-stock the store remembers it. Raises CommandError."""
+    """Return the part data with the stored stock, unless --stock specifies one.
+
+    With --keep-stock, the stock is also saved. Raises CommandError.
+    """
     from app.compose.known_part import keep_stock, kept_with
 
     if args.keep_stock:
@@ -88,7 +91,7 @@ def with_kept_stock(setting: PartSetting, program: str, args: argparse.Namespace
 
 
 def with_kept(setting: PartSetting, program: str, kept: KeptPart, args: argparse.Namespace) -> PartSetting:
-    """With what the store keeps of this program, as far as no option says it. Raises CommandError."""
+    """Return the part data with the stored values that no option specifies. Raises CommandError."""
     from app.compose.known_part import with_kept_clamping
 
     around = circumstances(args)
@@ -127,7 +130,7 @@ def _said(
 
 
 def _shapes(args: argparse.Namespace) -> Mapping[int, ToolShape]:
-    """Return the shapes of --tools; else those of the store, with what the offsets file describes."""
+    """Return the shapes of --tools, or those of the store and of the offsets file."""
     from app.compose.stored_offsets import stored_shapes
     from app.offsets.offsets_file import read_tool_shapes
 
@@ -138,7 +141,7 @@ def _shapes(args: argparse.Namespace) -> Mapping[int, ToolShape]:
 
 
 def _stick_out(args: argparse.Namespace, machine: Machine) -> float | None:
-    """mm, as the job says it. Raises CommandError."""
+    """Return the stick-out of the job in mm, or None. Raises CommandError if it is invalid."""
     if args.stick_out is None:
         return None
     stick_out = float(args.stick_out) * MM_PER_INCH

@@ -1,4 +1,4 @@
-"""The options that every command about a program shares, and what they make of it."""
+"""Options shared by all commands that use a program, and their evaluation."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ if TYPE_CHECKING:
     SubParsers = argparse._SubParsersAction[argparse.ArgumentParser]
 
 
-STDIN = "stdin"  # how a program that comes from there is called
+STDIN = "stdin"  # name of a program that is read from stdin
 
 
 def add_program_options(parser: argparse.ArgumentParser) -> None:
-    """Machine, dialect, offsets, inputs and switches."""
+    """Add the options for machine, language, offsets, inputs and switches."""
     parser.add_argument(
         "--machine", metavar="FILE", help="machine file (default: the shipped simulated lathe)"
     )
@@ -45,7 +45,7 @@ def add_program_options(parser: argparse.ArgumentParser) -> None:
 
 
 def add_ideal_option(parser: argparse.ArgumentParser) -> None:
-    """Times by feeds and limits of speed alone."""
+    """Add the option --ideal, for times from feeds and speed limits only."""
     parser.add_argument(
         "--ideal", action="store_true", help="calculate times without allowing for acceleration or waiting"
     )
@@ -53,14 +53,14 @@ def add_ideal_option(parser: argparse.ArgumentParser) -> None:
 
 @dataclass(frozen=True, slots=True)
 class Circumstances:
-    """Machine and setup of one command call."""
+    """Machine and program context of one command."""
 
     machine: Machine
     setup: Setup
 
 
 def circumstances(args: argparse.Namespace) -> Circumstances:
-    """Read machine, offsets and inputs that the options name; raises CommandError with one sentence."""
+    """Return the machine and context that the options specify. Raises CommandError."""
     from app.compose.machine.machine_setup import read_machine
     from app.compose.stored_offsets import chosen_offsets, setup_with
 
@@ -77,14 +77,17 @@ def circumstances(args: argparse.Namespace) -> Circumstances:
 
 
 def input_states(path: str | None, known: Collection[str] = ()) -> dict[str, bool]:
-    """The inputs file of the options, empty without one; with ``known`` no others. Raises CommandError."""
+    """Return the input states of the file ``path``, or {} for None; ``known`` limits the names.
+
+    Raises CommandError.
+    """
     if path is None:
         return {}
     return read_inputs(Path(path), known)
 
 
 def read_source(path: Path, args: argparse.Namespace) -> Source:
-    """The program text; ``-`` is what comes in at stdin. Raises CommandError when it cannot be read."""
+    """Return the program text; ``-`` reads it from stdin. Raises CommandError if it cannot be read."""
     from core.language.source import SourceError, load_source, source_of
 
     dialect = Dialect(args.dialect) if args.dialect else dialect_of(path.name)
@@ -111,7 +114,8 @@ def read_source(path: Path, args: argparse.Namespace) -> Source:
             else load_source(path, dialect)
         )
     except SourceError as error:
-        # The screen calls a program by its name; a script that proves many needs the folder too.
+        # The screen shows only the name of a program. A script that proves many programs also needs the
+        # folder.
         raise CommandError(str(error).replace(path.name, str(path), 1), error_code(error)) from error
     from core.language.called_files import with_called_files
 
@@ -119,16 +123,16 @@ def read_source(path: Path, args: argparse.Namespace) -> Source:
 
 
 def out_file(text: str) -> str | None:
-    """Where to: ``-`` is stdout, as it is where nothing is said."""
+    """Return the output file; None means stdout, also for ``-``."""
     return None if text == DASH else text
 
 
 def read_inputs(path: Path, known: Collection[str] = ()) -> dict[str, bool]:
-    """Input states by name. With ``known`` only these names are taken.
+    """Return input states by name. With ``known``, other names are errors.
 
-    The file has [inputs] with ``10 = true`` for PLC input 10, ``"TB2-5" = false`` for a terminal. M95
-    asks what the control calls input 7: terminal TB2-9. ``7`` stands for it too where the file does not name
-    TB2-9.     Raises CommandError naming every mistake.
+    The file has a table [inputs] with ``10 = true`` for PLC input 10 and ``"TB2-5" = false`` for a terminal.
+    M95 reads the input that the control calls 7, which is terminal TB2-9. ``7`` is also used for TB2-9 if the
+    file does not contain TB2-9. Raises CommandError with every error.
     """
     from app.desk.toml_file import read_toml, refuse, unknown_key
 

@@ -1,4 +1,4 @@
-"""A progress bar on anything over two seconds; on a terminal only, and never on stdout."""
+"""Progress bar for work of more than two seconds, on stderr and only on a terminal."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from types import TracebackType
 
 from core.message import Message
 
-SHOW_AFTER = 2.0  # seconds: what takes less needs no bar
+SHOW_AFTER = 2.0  # s, shorter work has no progress bar
 REDRAW_EVERY = 0.2
 WIDTH = 30
 
 
 class Progress:
-    """Counts towards ``total`` (0: unknown) and draws itself on stderr once the work takes long.
+    """A progress bar toward ``total``, or a counter if ``total`` is 0.
 
-    What goes beyond its total, such as blocks beyond the lines of a program with loops, is counted alone.
+    A value beyond the total, such as blocks of a program with loops, is also shown as a counter.
     """
 
     def __init__(self, what: str, total: float = 0.0) -> None:
@@ -37,7 +37,7 @@ class Progress:
             sys.stderr.flush()
 
     def reach(self, done: float) -> None:
-        """Say how far the work has come; costs a clock reading unless it is time to draw."""
+        """Report the progress. The call is cheap unless the bar must be drawn."""
         if not self._terminal or time.monotonic() < self._next:
             return
         self._next = time.monotonic() + REDRAW_EVERY
@@ -46,7 +46,7 @@ class Progress:
         sys.stderr.flush()
 
     def text(self, done: float) -> str:
-        """The bar as it stands after ``done``."""
+        """Return the text of the bar for this progress."""
         if not 0 < done <= self.total:
             return f"{self.what}: {done:,.0f}"
         share = done / self.total

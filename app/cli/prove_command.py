@@ -1,4 +1,4 @@
-"""``turndesk prove FILE…``: proves programs without moving anything."""
+"""The command ``turndesk prove FILE…``: prove programs without moving the machine."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 
 def add_parser(subparsers: SubParsers) -> None:
-    """Declare the command."""
+    """Add the parser of the command."""
     parser = subparsers.add_parser("prove")
     parser.add_argument(
         "files", nargs="+", metavar="FILE", help="programs, or folders with programs (including subfolders)"
@@ -59,7 +59,7 @@ def add_parser(subparsers: SubParsers) -> None:
 
 
 def add_folder_options(parser: argparse.ArgumentParser) -> None:
-    """How many programs are proved."""
+    """Add the options for proving many programs."""
     parser.add_argument(
         "--jobs", metavar="N", type=_count, help="number of worker processes (default: one per core)"
     )
@@ -76,7 +76,7 @@ def add_folder_options(parser: argparse.ArgumentParser) -> None:
 
 
 def _count(word: str) -> int:
-    """A number of workers; argparse tells the sentence of what is none."""
+    """Return the number of workers. Raises ArgumentTypeError if it is invalid."""
     if not word.isdecimal() or not 1 <= int(word) <= MOST_JOBS:
         raise argparse.ArgumentTypeError(
             Message(
@@ -89,12 +89,12 @@ def _count(word: str) -> int:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Prove each file; 1 when any has errors, 2 when one cannot be read."""
+    """Prove each file; return 1 if a program has errors, or 2 if one cannot be read."""
     many = _for_workers(args)
     from app.cli.proofs.proof_job import FittingJobs
 
     jobs = FittingJobs(args, _job)
-    jobs.of("")  # what is wrong with the options is told before anything is proved
+    jobs.of("")  # reports errors in the options before anything is proved
     if many:
         from app.cli.proofs.folder_proofs import prove_many
 
@@ -106,7 +106,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _for_workers(args: argparse.Namespace) -> bool:
-    """Whether workers are to prove and a table is to tell: for a folder, or because an option says so."""
+    """Return whether workers prove the programs and a table is printed: for folders and some options."""
     given = args.jobs is not None or args.scheduler is not None
     many = given or any(Path(name).is_dir() for name in args.files)
     if "-" in args.files and (many or len(args.files) > 1):
@@ -134,7 +134,7 @@ def _for_workers(args: argparse.Namespace) -> bool:
 
 
 def _job(args: argparse.Namespace) -> ProofJob:
-    """What the options say about all programs. Raises CommandError."""
+    """Return the common job from the options. Raises CommandError."""
     from app.cli.part_options import part_setting
     from app.cli.proofs.proof_job import ProofJob
 
@@ -149,7 +149,7 @@ def _job(args: argparse.Namespace) -> ProofJob:
 
 
 def _other(args: argparse.Namespace, setup: Setup) -> OtherOffsets | None:
-    """The offsets of --compare. Raises CommandError naming every mistake in them."""
+    """Return the offsets of --compare, or None. Raises CommandError with every error."""
     if args.compare is None:
         return None
     from app.cli.proofs.proof_job import OtherOffsets
@@ -160,7 +160,7 @@ def _other(args: argparse.Namespace, setup: Setup) -> OtherOffsets | None:
 
 
 def _status(path: Path, jobs: FittingJobs, args: argparse.Namespace, report: ReportFile | None) -> int:
-    """Prove one file; one that cannot be read does not keep the others from their proof."""
+    """Prove one file and return its exit status. A file that cannot be read does not stop the others."""
     from app.cli.part_options import with_kept_stock
     from app.cli.proofs.proof_job import on_machine
     from app.cli.proofs.proof_work import Proof
@@ -206,13 +206,13 @@ def _prove(path: Path, source: Source, job: ProofJob, args: argparse.Namespace) 
 
 
 def _silenced(report: Report) -> str:
-    """How many findings are notes only, and of which checks."""
+    """Return the number of silenced findings and the names of their checks as text."""
     found = [each.check for each in report.diagnostics if each.silenced]
     return f"  silenced {len(found)} findings of {', '.join(sorted(set(found)))}\n" if found else ""
 
 
 def _reached(report: Report, length: Callable[[float], float], unit: str) -> str:
-    """What the program reaches: of a lathe X and Z of the program, of a mill all axes of the machine."""
+    """Return the limits as text: X and Z of the program on a lathe, all axes on a mill."""
     if report.mill is not None:
         from app.cli.figures.klartext_figures import machine_reach
 
@@ -222,14 +222,14 @@ def _reached(report: Report, length: Callable[[float], float], unit: str) -> str
 
 
 def _eased(report: Report, length: Callable[[float], float], unit: str) -> str:
-    """How far from its words the tip may pass, where the machine file allows that."""
+    """Return the corner tolerance as text, if the machine file specifies one."""
     if not report.corner_tolerance:
         return ""
     return f"  joints of short chords within {length(report.corner_tolerance):.5f} {unit} of their words\n"
 
 
 def _ways(report: Report) -> str:
-    """What else the program may do: by its inputs, and by block delete."""
+    """Return the number and times of the paths that depend on inputs and block delete, as text."""
     ways = report.ways
     if ways.proved + ways.unproved <= 1:
         return ""
@@ -239,7 +239,7 @@ def _ways(report: Report) -> str:
 
 
 def _sheet(path: Path, report: Report, part: PartReport | None) -> str:
-    """The proof as a person reads it."""
+    """Return the proof as text."""
     from app.cli.figures.proof_json import stock_lines
     from app.cli.figures.units import MM_PER_INCH, inches, millimetres, per_minute
     from core.language.source import Dialect

@@ -1,4 +1,7 @@
-"""``turndesk run FILE --headless``: runs a program through the real executor and drivers without a screen."""
+"""The command ``turndesk run FILE --headless``: run a program without a screen.
+
+The run uses the real executor and drivers.
+"""
 
 from __future__ import annotations
 
@@ -29,12 +32,12 @@ if TYPE_CHECKING:
     from core.proving.proof_report import Report
 
 
-_AROUND = 30.0  # s of the scope's record besides the program's own
+_AROUND = 30.0  # s of the scope record in addition to the duration of the program
 _OF_ALARMS = ("number", "code", "text", "cause", "remedy", "line")
 
 
 def add_parser(subparsers: SubParsers) -> None:
-    """Declare the command."""
+    """Add the parser of the command."""
     parser = subparsers.add_parser("run")
     parser.add_argument("file", metavar="FILE")
     parser.add_argument(
@@ -53,7 +56,7 @@ def add_parser(subparsers: SubParsers) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Prove, then run one cycle; 1 when the program or the run has errors."""
+    """Prove the program and run one cycle; return 1 if the program or the run has errors."""
     from core.executor.job import make_job
 
     path = Path(args.file)
@@ -102,7 +105,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _proved(args: argparse.Namespace, around: Circumstances, job: Job) -> Report:
-    """The proof with that of the part."""
+    """Return the proof of the program and its part."""
     from app.cli.part_options import part_setting, with_kept_stock
     from core.proving.part_proof import prove_with_part
 
@@ -181,7 +184,10 @@ def _shown_place(final: dict[str, float], *, mill: bool) -> str:
 
 
 def _place(report: Report, outcome: Outcome | None) -> dict[str, float]:
-    """Where the tip stands in the frame of the last move; X as a radius, inches or mm by the language."""
+    """Return the position of the tip in the frame of the last move.
+
+    X is a radius. Lengths are inches or mm, depending on the language.
+    """
     from app.cli.figures.units import degrees, length_of
     from core.language.source import Dialect
 

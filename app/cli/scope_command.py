@@ -1,4 +1,4 @@
-"""``turndesk scope FILE``: what a record of the scope holds, and its samples as CSV, without a screen."""
+"""The command ``turndesk scope FILE``: contents of a scope record, and its samples as CSV."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _STDOUT = "-"
 
 
 def add_parser(subparsers: SubParsers) -> None:
-    """Declare the command."""
+    """Add the parser of the command."""
     parser = subparsers.add_parser("scope")
     parser.add_argument(
         "file",
@@ -37,7 +37,7 @@ def add_parser(subparsers: SubParsers) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Tell what is in the record; write its samples where ``--csv`` says."""
+    """Print the contents of the record; write its samples if ``--csv`` is used."""
     from core.records.record import RecordError
     from core.records.record_file import open_record, save_csv, write_csv
 
@@ -82,7 +82,7 @@ def _channel(record: Record, channel: Channel) -> dict[str, object]:
 
 
 def _bounds(record: Record, channel: Channel) -> tuple[float, float] | tuple[None, None]:
-    """Of what is known; None where nothing is."""
+    """Return the smallest and largest known value; None for both if no value is known."""
     column = record.columns[channel.name]
     known = column[~np.isnan(column)]
     return (float(known.min()), float(known.max())) if len(known) else (None, None)

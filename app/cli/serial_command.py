@@ -1,4 +1,4 @@
-"""``turndesk serial ports|send|receive``: programs over RS-232."""
+"""The command ``turndesk serial ports|send|receive``: transfer of programs over RS-232."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ Both sides have to be set alike. Receive first, then send from the other side.
 
 
 def add_parser(subparsers: SubParsers) -> None:
-    """The subcommand with its actions."""
+    """Add the parser of the command and its actions."""
     raw = argparse.RawDescriptionHelpFormatter
     parser = subparsers.add_parser("serial", description=_ABOUT, formatter_class=raw)
     actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
@@ -67,7 +67,7 @@ def add_parser(subparsers: SubParsers) -> None:
 
 
 def _add_line(parser: argparse.ArgumentParser) -> None:
-    """What both directions have; not said, it is that of the machine file's [dnc]."""
+    """Add the options of both directions; missing values come from [dnc] of the machine file."""
     parser.add_argument("--machine", metavar="FILE", help="machine file with the settings in [dnc]")
     parser.add_argument(
         "--port",
@@ -102,7 +102,7 @@ def _add_line(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_sending(parser: argparse.ArgumentParser) -> None:
-    """What concerns only what is sent."""
+    """Add the options that are only for sending."""
     parser.add_argument("--eol", choices=tuple(_EOL), help="line ending to use for sent data")
     parser.add_argument(
         "--wait",
@@ -119,7 +119,7 @@ def _add_sending(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """0 done; 1 not transferred, or stored with errors; 2 usage."""
+    """Run the action; return 1 if nothing was transferred or the received program has errors."""
     if args.action == "ports":
         return _ports()
     from app.compose.machine.machine_setup import read_machine
@@ -182,7 +182,7 @@ def _send(args: argparse.Namespace, settings: DncModel) -> int:
 
 
 def _check_readable(path: Path) -> None:
-    """Before the line is opened, and with the status of a file that cannot be read. Raises CommandError."""
+    """Raise CommandError before the line is opened if the file cannot be read."""
     try:
         with open_input(path) as file:
             file.read(1)
@@ -198,12 +198,12 @@ def _receive(args: argparse.Namespace, machine: Machine, settings: DncModel) -> 
     from app.compose.workshop import workshop
     from core.language.source import Dialect, usual_ending
 
-    if args.out and Path(args.out).exists():  # before anything is waited for: it could not be stored
+    if args.out and Path(args.out).exists():  # checked before waiting, because the program could not be saved
         sys.stderr.write(
             f"turndesk: {args.out} already exists and is not overwritten; use a different name\n"
         )
         return EXIT_ERRORS
-    who = who_may(opened_store, args, Act.PROGRAMS)  # before anything is waited for
+    who = who_may(opened_store, args, Act.PROGRAMS)  # checked before waiting
     ending = usual_ending(Dialect(machine.language))
     lines = SerialLines(proving(workshop(machine, chosen_offsets(None), pictures=False)), ending)
     received = carry(lines.receive(settings), Message("receiving from {port}", port=settings.port))
@@ -245,14 +245,14 @@ def _found(received: Received) -> str:
     )
 
 
-# --- a transfer on the command line: progress on stderr, Ctrl-C gives it up -----------------------------
+# --- Transfer on the command line: progress on stderr, canceled by Ctrl-C -------------------------------
 
 T = TypeVar("T")
 _LOOK = 0.1  # s
 
 
 def _heard(reach: TransferProgress) -> str:
-    """Why what comes is not taken for a program."""
+    """Return the reason why the received data is not a program."""
     if reach.what == "noise":
         return Message(
             "the received data is not text ({received}); check --baud, --bits, --parity and the cable",
@@ -265,7 +265,7 @@ def _heard(reach: TransferProgress) -> str:
 
 
 def _tell(told: str, reach: TransferProgress) -> str:
-    """Say once of which kind it is; what has been said by now."""
+    """Report once what kind of data was received; return the kind that has been reported."""
     if not reach.heard or told == reach.what:
         return told
     sys.stderr.write(f"turndesk: {_heard(reach)}\n")
@@ -273,7 +273,7 @@ def _tell(told: str, reach: TransferProgress) -> str:
 
 
 def carry(transfer: Transfer[T], what: str) -> T | None:
-    """What it answers; None when it came to nothing, which has then been said in one sentence."""
+    """Run a transfer and return its result; None if it failed, after printing the error."""
     from concurrent.futures import ThreadPoolExecutor, wait
 
     from app.cli.progress_bar import Progress

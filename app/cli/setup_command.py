@@ -1,4 +1,4 @@
-"""``turndesk setup``: a machine's setup into one file and out of it; desktop entry, autostart, completion."""
+"""The command ``turndesk setup``: setup files, desktop entry, autostart and shell completion."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ SHELLS = ("bash", "zsh", "fish")
 
 
 def add_parser(subparsers: SubParsers) -> None:
-    """The subcommand with its actions."""
+    """Add the parser of the command and its actions."""
     parser = subparsers.add_parser("setup")
     actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
     save = actions.add_parser(
@@ -48,7 +48,7 @@ def add_parser(subparsers: SubParsers) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Does what ``args`` asks; raises CommandError with one sentence."""
+    """Run the action. Raises CommandError."""
     return ACTIONS[args.action](args)
 
 
@@ -110,14 +110,14 @@ def _completion(args: argparse.Namespace) -> int:
     _complete_files(parser, shtab.FILE)
     script = shtab.complete(parser, args.shell)
     if args.shell == "zsh":
-        # shtab's script takes effect only within eval, and completes only the first of several files.
+        # The script of shtab works only within eval, and completes only the first of several files.
         script = "eval " + shlex.quote(script.replace('"(*):', '"*:'))
     sys.stdout.write(script + "\n")
     return EXIT_OK
 
 
 def _complete_files(parser: argparse.ArgumentParser, files: object) -> None:
-    """Let every argument without choices offer ``files``, as most of these arguments are names of files."""
+    """Offer ``files`` for every argument without choices, because most of these are file names."""
     for action in parser._actions:
         if isinstance(action, argparse._SubParsersAction):
             for each in action.choices.values():

@@ -1,4 +1,4 @@
-"""``turndesk store``: backup, restore, export, import, upgrade and verify of the store."""
+"""The command ``turndesk store``: backup, restore, export, import, upgrade and verification of the store."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 def add_parser(subparsers: SubParsers) -> None:
-    """The subcommand with its actions."""
+    """Add the parser of the command and its actions."""
     parser = subparsers.add_parser("store")
     actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
     for name, what, text in (
@@ -54,16 +54,16 @@ def add_parser(subparsers: SubParsers) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Does what ``args`` asks; raises CommandError with one sentence."""
+    """Run the action. Raises CommandError."""
     return STORE_ACTIONS[args.action](args)
 
 
-# --- the store of this installation, opened for one command ----------------------------------------------
+# --- Store of this installation, opened for one command --------------------------------------------------
 
 
 @contextmanager
 def store_refusals() -> Iterator[None]:
-    """What the store refuses ends the command with its sentence."""
+    """Convert StoreError inside the block into CommandError."""
     from core.store.store_errors import StoreError
 
     with as_command_error(StoreError):
@@ -72,14 +72,14 @@ def store_refusals() -> Iterator[None]:
 
 @contextmanager
 def opened_store(*, read_only: bool = False) -> Iterator[Store]:
-    """The store, closed at the end. Raises CommandError for whatever the store refuses."""
+    """Open the store for the block and close it afterwards. Raises CommandError for every store error."""
     from core.store.store import Store
 
     with store_refusals(), Store.open(data_folder(), read_only=read_only) as store:
         yield store
 
 
-# --- the actions -----------------------------------------------------------------------------------------
+# --- Actions ---------------------------------------------------------------------------------------------
 
 
 def _backup(args: argparse.Namespace) -> int:
@@ -161,7 +161,7 @@ def _values_of(rows: Mapping[int, Row]) -> dict[int, Mapping[str, Value]]:
 
 
 def _upgrade(_args: argparse.Namespace) -> int:
-    """What opening it to be written does anyway: the older one is kept beside it."""
+    """Upgrade the store by opening it for writing; a copy of the old version is saved next to it."""
     from core.store.store_file import has_store
 
     there = has_store(data_folder())

@@ -1,4 +1,4 @@
-"""``turndesk trace FILE --out FILE.csv``: the time-stamped setpoints that the drives would get."""
+"""The command ``turndesk trace FILE --out FILE.csv``: the time-stamped setpoints for the drives."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 def _interval(text: str) -> float:
-    """A setpoint interval in seconds, .0001 to 1."""
+    """Return a setpoint interval in seconds, 0.0001 to 1."""
     try:
         dt = float(text)
     except ValueError:
@@ -41,7 +41,7 @@ def _interval(text: str) -> float:
 
 
 def add_parser(subparsers: SubParsers) -> None:
-    """Declare the command."""
+    """Add the parser of the command."""
     parser = subparsers.add_parser("trace")
     parser.add_argument("file", metavar="FILE")
     parser.add_argument(
@@ -52,9 +52,10 @@ def add_parser(subparsers: SubParsers) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Write the setpoints as CSV: slides under OmniTurn in inches (X a radius), otherwise in mm; degrees.
+    """Write the setpoints as CSV; return 1 if the program has errors.
 
-    1 when the program has errors.
+    Linear axes of OmniTurn programs are in inches (X as a radius), otherwise in mm. Rotary axes are in
+    degrees.
     """
     from core.proving.program_timeline import Timeline
 
@@ -78,7 +79,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _write_json(timeline: Timeline, args: argparse.Namespace, path: Path) -> None:
-    """What was written, in one object."""
+    """Print the result as one JSON object."""
     from app.cli.figures.proof_json import diagnostic_json
     from app.cli.figures.units import seconds
 
@@ -93,7 +94,7 @@ def _write_json(timeline: Timeline, args: argparse.Namespace, path: Path) -> Non
 
 
 class _Table:
-    """The columns of a machine: time, its axes in their order, the spindle, the line."""
+    """Columns of a machine's CSV file: time, axes in order, spindle angle and program line."""
 
     def __init__(self, machine: Machine, *, inch: bool) -> None:
         from app.cli.figures.units import MM_PER_INCH
@@ -105,13 +106,13 @@ class _Table:
         self._row = ",".join(("%.6f", *(f"%.{count}f" for count in places), "%.4f", "%d")) + "\n"
 
     def lines(self, rows: Rows) -> str:
-        """Setpoints, a line each."""
+        """Return setpoints as text, one per line."""
         columns = (rows.t, *(rows.at / self._scales).T, rows.turned, rows.line)
         return "".join([self._row % row for row in zip(*(c.tolist() for c in columns), strict=True)])
 
 
 def _write_file(timeline: Timeline, table: _Table, args: argparse.Namespace, source: Source) -> None:
-    """Whole or not at all: a program with errors leaves nothing behind, nor a full disk or Ctrl+C."""
+    """Write the file completely or not at all, also after errors of the program, a full disk or Ctrl+C."""
     out = Path(args.out)
     partial = out.with_name(out.name + ".part")
     try:
@@ -121,7 +122,7 @@ def _write_file(timeline: Timeline, table: _Table, args: argparse.Namespace, sou
             put_in_place(partial, out)
     except OSError as error:
         raise cannot_write(out, error) from error
-    finally:  # also by Ctrl+C
+    finally:  # also on Ctrl+C
         with contextlib.suppress(OSError):
             partial.unlink(missing_ok=True)
 
@@ -129,7 +130,7 @@ def _write_file(timeline: Timeline, table: _Table, args: argparse.Namespace, sou
 def _write(
     timeline: Timeline, table: _Table, dt: float, write: Callable[[str], object], source: Source
 ) -> None:
-    """Its progress is in lines: how long a program takes is known when it has been gone through."""
+    """Write the setpoints; progress is shown in lines, because the duration is not known in advance."""
     from core.proving.setpoint_trace import setpoints
 
     write(table.header)
@@ -137,5 +138,5 @@ def _write(
     with Progress(f"tracing {source.name}", len(source.lines)) as progress:
         for chunk in setpoints(timeline, dt):
             write(table.lines(chunk))
-            furthest = max(furthest, int(chunk.line.max(initial=0)))  # a loop goes back
+            furthest = max(furthest, int(chunk.line.max(initial=0)))  # a loop returns to earlier lines
             progress.reach(furthest)

@@ -1,7 +1,7 @@
-"""Who changes something on the command line: his name for the history, and whether his level is enough.
+"""The user who makes a change on the command line, and the check of the user's access level.
 
-Without levels nobody is asked. With them a name is worth what its PIN is: it is asked at the terminal, or
-read as a line of the standard input.
+Nothing is checked if access levels are off. Otherwise the user must enter the PIN at the terminal, or as a
+line of the standard input.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ if TYPE_CHECKING:
     from core.store.store import Store
     from core.store.store_errors import StoreError
 
-COMMAND_LINE = "command line"  # in the history, where there are no levels and nobody is named
+COMMAND_LINE = "command line"  # name in the history if there are no access levels and no user is specified
 
 
 def add_as_option(parser: argparse.ArgumentParser) -> None:
-    """``--as NAME``."""
+    """Add the option ``--as NAME``."""
     parser.add_argument(
         "--as",
         dest="as_name",
@@ -38,9 +38,9 @@ def add_as_option(parser: argparse.ArgumentParser) -> None:
 
 
 def who_changes(store: Store, args: argparse.Namespace, *acts: Act) -> str:
-    """The name for the history of what is changed.
+    """Return the name of the user for the history.
 
-    Raises CommandError where levels are on and his is too low for one of it, or the PIN wrong.
+    Raises CommandError if access levels are on and the user's level is too low or the PIN is wrong.
     """
     people, act = store.people.read_people(), max(acts, key=level_for)
     if not people.on:
@@ -81,7 +81,7 @@ def _needs(act: Act) -> str:
 
 
 def _remedy(people: People, needed: Level) -> str:
-    """Say who can make a change of this level, or how levels are turned off."""
+    """Return a text with the users whose level is sufficient, or how to turn access levels off."""
     able = [row.name for row in people.rows if row.level >= needed and row.has_pin]
     if not able:
         return (
@@ -92,7 +92,7 @@ def _remedy(people: People, needed: Level) -> str:
 
 
 def _demand_pin(store: Store, row: PersonRow) -> None:
-    """Raises CommandError for a wrong one, and where this TurnDesk cannot check PINs."""
+    """Ask for the PIN. Raises CommandError if it is wrong or this TurnDesk cannot check PINs."""
     from app.compose.extra import extras
 
     remedy = _remedy(store.people.read_people(), Level.SERVICE)
@@ -112,11 +112,11 @@ Opened = Callable[[], AbstractContextManager["Store"]]
 
 
 def who_may(opened: Opened, args: argparse.Namespace, *acts: Act) -> str:
-    """Who does what needs no store of its own; empty where there are no levels and nobody is named.
+    """Return the user of an action outside the store; empty without access levels and without a name.
 
-    Raises CommandError as ``who_changes`` does. It can be done beside a desk that runs where there are no
-    levels: only a PIN has to be written down. Nobody may do it where the store cannot be read, for its levels
-    are unknown; only a restore is allowed then, after a service reset at the machine's own keyboard.
+    Raises CommandError like ``who_changes``. Without access levels the function also works while TurnDesk is
+    running, because only a PIN check writes to the store. If the store cannot be read, its access levels are
+    unknown. Only a restore is then permitted, after a service reset at the machine's own keyboard.
     """
     from app.desk.data_folder import data_folder
     from core.store.store import Store
@@ -128,7 +128,7 @@ def who_may(opened: Opened, args: argparse.Namespace, *acts: Act) -> str:
     except StoreError as error:
         if error_code(error) != "older-version":
             return _by_service_reset(error, acts)
-        on = True  # opening it to write brings it up to date
+        on = True  # opening the store for writing upgrades it
     if not on and not args.as_name:
         return ""
     with opened() as store:
@@ -139,7 +139,7 @@ RESET = "RESET"
 
 
 def _by_service_reset(error: StoreError, acts: Collection[Act]) -> str:
-    """Return the name for the log. Raise CommandError unless a restore is confirmed at the machine."""
+    """Return the name for the log. Raises CommandError unless a restore is confirmed at the machine."""
     if Act.RESTORE not in acts:
         raise CommandError(
             Message("the access levels that apply to this change cannot be read: {error}", error=error),
@@ -157,7 +157,7 @@ def _by_service_reset(error: StoreError, acts: Collection[Act]) -> str:
 
 
 def demand_own_keyboard(question: str) -> None:
-    """Raise CommandError unless the user confirms the question at a terminal of this machine."""
+    """Raise CommandError unless the user confirms the question on a terminal of this machine."""
     if not sys.stdin.isatty() or os.environ.get("SSH_CONNECTION"):
         raise CommandError(
             "the service reset must be typed on the machine's own keyboard, in a terminal", "not-a-terminal"
@@ -169,7 +169,7 @@ def demand_own_keyboard(question: str) -> None:
 
 
 def note_change(opened: Opened, who: str, text: str) -> None:
-    """A line in the log of the store that is in place now, where it is known by whom."""
+    """Log a change in the present store if the user is known."""
     if who:
         with opened() as store:
             store.events.log_event("change", text, who=who).result()

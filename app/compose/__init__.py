@@ -1,1 +1,1 @@
-"""The one place where rooms and drivers are put together. Each module is imported only by who needs it."""
+"""Assembly of TurnDesk from its packages and drivers. Each module is loaded only when it is needed."""

@@ -1,4 +1,4 @@
-"""The demo: a store of its own beside the user's, with the offsets of the samples, to be changed and kept."""
+"""The demo: a separate store with the offsets of the sample programs, which the user can change."""
 
 from __future__ import annotations
 
@@ -23,15 +23,15 @@ from core.store.store_export import import_all
 from core.store.store_file import has_store
 from core.store.store_rows import Kind, Value
 
-FOLDER = "demo"  # within the data folder
+FOLDER = "demo"  # subfolder of the data folder
 _WHY = "offsets of the sample programs"
 
 
 def open_demo(machine_file: str | None) -> Path:
-    """From here on this process keeps everything in the demo's folder; the answer is that folder.
+    """Switch this process to the data folder of the demo and return the folder.
 
-    The first time it gets the offsets of the sample programs; what is changed later is kept.
-    Raises CommandError for a machine that is real, and where the store cannot be written.
+    The first time, the folder gets the offsets of the sample programs. Later changes remain. Raises
+    CommandError for a real machine, and if the store cannot be written.
     """
     machine = read_machine(machine_file)
     if not played(machine) or has_inverter(machine):
@@ -53,9 +53,9 @@ _PROGRAMS = {Dialect.OMNITURN: "bushing.nc", Dialect.SINUMERIK: "shaft.mpf", Dia
 
 
 def demo_program(machine_file: str | None) -> str:
-    """Return the program that the demo loads if none is named.
+    """Return the program that the demo loads if no program is specified.
 
-    It is the one that was loaded last, if the machine reads its language; otherwise a sample.
+    The result is the program that was loaded last, if the machine reads its language; otherwise a sample.
     """
     dialect = Dialect(read_machine(machine_file).language)
     last = _last_program()
@@ -65,7 +65,7 @@ def demo_program(machine_file: str | None) -> str:
 
 
 def _last_program() -> Path | None:
-    """Return the program that the demo loaded last, if its file exists. Its store is in the data folder."""
+    """Return the program that the demo loaded last if its file exists, or None."""
     with suppress(StoreError, OSError), Store.open(data_folder(), read_only=True) as store:
         stored = store.settings.read_setting(LAST_PROGRAM)
         if isinstance(stored, str) and Path(stored).is_file():
@@ -75,7 +75,7 @@ def _last_program() -> Path | None:
 
 def _seed(folder: Path) -> None:
     tools, secondary, zero = read_rows(samples() / "offsets.toml")
-    lengths = {n: row for n, row in tools.items() if row.x == 0.0 and row.z > 0.0}  # of the mills' tools
+    lengths = {n: row for n, row in tools.items() if row.x == 0.0 and row.z > 0.0}  # tools of the mills
     offsets: dict[Kind, dict[int, dict[str, Value]]] = {
         Kind.TOOL: {number: row._asdict() for number, row in tools.items()},
         Kind.SECONDARY: {number: row._asdict() for number, row in secondary.items()},

@@ -1,4 +1,4 @@
-"""The desk with all its pages, on a control in this process or in another one."""
+"""Assembly of the operator screen's model with all its pages, for a control in this or another process."""
 
 from __future__ import annotations
 
@@ -46,9 +46,9 @@ def desk_and_executor(
     journal: Journal | None = None,
     records: Path | None = None,
 ) -> tuple[Desk, Executor]:
-    """Both, with nobody ticking the executor yet; what happens goes to the journal, where there is one.
+    """Return the screen model and the executor, which nothing ticks yet; events go to ``journal``.
 
-    The scope's record goes to the folder ``records``; None: it is kept in memory alone.
+    Scope records go to the folder ``records``; None stores them only in memory.
     """
     machine = read_machine(machine_file)
     if journal is not None:
@@ -91,7 +91,7 @@ def desk_and_parts(
 def desk_of(
     machine: Machine, control: DeskControl, events: DeskEvents, offsets: Callable[[], Offsets]
 ) -> Desk:
-    """Return the desk with all its pages, and report what is wrong at its start."""
+    """Return the screen model with all its pages, and report the warnings of the start."""
     journal = events.journal
     desk = _desk(machine, control, events, offsets)
     events.desk = desk
@@ -116,21 +116,24 @@ def desk_of(
 
 
 def _came_late(desk: Desk, journal: Journal) -> None:
-    """By another thread: what was not known at the start because the store was away."""
+    """Report information that was unknown at the start because the store was unavailable.
+
+    Called in another thread.
+    """
     if journal.left is not None:
         desk.post(LeftInterrupted(journal.left))
     _tell_damage(desk, journal, lambda text: journal.hear(Event(desk.snapshot().t, "warning", text)))
 
 
 def _tell_damage(desk: Desk, journal: Journal, log: Callable[[str], None]) -> None:
-    """What was not as it was saved goes to the log and to the prompt line."""
+    """Report damaged data in the event log and on the prompt line."""
     for damage in journal.damage:
         log(damage)
         desk.say(tr(Message("CHECK: {what}", what=damage)))
 
 
 class DeskEvents:
-    """What happens is heard by the desk, once there is one, and by the journal, where there is one."""
+    """Distributor of events to the screen model and the journal, if they exist."""
 
     def __init__(
         self, clock: Clock, journal: Journal | None, record: Callable[[Event], Event] = lambda event: event
@@ -147,7 +150,7 @@ class DeskEvents:
             self.journal.hear(event)
 
     def say(self, kind: str, text: str) -> None:
-        """An event of this moment."""
+        """Report an event with the present time."""
         self.hear(Event(self._clock.now(), kind, text))
 
 
@@ -157,7 +160,7 @@ def _desk(
     events: DeskEvents,
     offsets: Callable[[], Offsets],
 ) -> Desk:
-    """The desk with all its pages."""
+    """Return the screen model with all its pages."""
     journal = events.journal
     keep = journal or Persistence()
 
@@ -195,7 +198,7 @@ def _desk(
 
 
 def _shown(machine: Machine) -> DeskMachine:
-    """The machine as the screen presents it."""
+    """Return the machine as the screen presents it."""
     return DeskMachine(
         name=Message("{machine} · {machine2}", machine=machine.name, machine2=_drives(machine)),
         model=machine,
@@ -206,7 +209,7 @@ def _shown(machine: Machine) -> DeskMachine:
 
 
 def _stops(journal: Journal) -> Sequence[EventRow]:
-    """Alarms and stops of the days before; without a store nobody knows of any."""
+    """Return the alarms and stops of earlier days; () without a store."""
     try:
         return journal.events("", KINDS, KEPT)
     except StoreError:
@@ -214,7 +217,7 @@ def _stops(journal: Journal) -> Sequence[EventRow]:
 
 
 def _kept_nowhere(_what: InterruptedJob | None) -> None:
-    """A desk without a store remembers nothing."""
+    """Discard the note of an interrupted job, for a screen without a store."""
 
 
 def _connected(machine: Machine, clock: Clock) -> Connected:
@@ -223,7 +226,7 @@ def _connected(machine: Machine, clock: Clock) -> Connected:
 
 
 def _drives(machine: Machine) -> str:
-    """What an operator must never be in doubt about: what of it is real."""
+    """Return which parts of the machine are real and which are simulated, for the operator."""
     if not played(machine):
         return machine.backend.upper()
     return "SIMULATED AXES · REAL SPINDLE" if has_inverter(machine) else "SIMULATED"

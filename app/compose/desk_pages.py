@@ -1,7 +1,7 @@
-"""The pages of a desk: the table of what registers each of them.
+"""Table of the functions that register the pages of the operator screen.
 
-Each function takes a ``PageSetup`` and registers one model, or a model that is made at its first use, with
-``desk.pages``.
+Each function takes a ``PageSetup`` and registers with ``desk.pages`` one model, or a model that is created on
+its first use.
 """
 
 from __future__ import annotations
@@ -50,17 +50,17 @@ if TYPE_CHECKING:
     from app.scope.scope_curves import LiveSamples
     from app.special.special_functions import SpecialFunctions
 
-_MODEST = 0.2  # of the manual rapid: legs within the part
+_MODEST = 0.2  # fraction of the manual rapid, for moves inside the part
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PageSetup:
-    """What the pages of a desk are made of.
+    """Objects from which the pages are made.
 
-    ``own`` is the operator's folder of programs. ``work`` reads and proves programs with the offsets of the
-    moment, and saves nothing; ``proving`` does so without pictures. ``kept`` returns what is stored of the
-    part of a program. ``thumbnail`` draws the part of a program. ``live`` are samples for the scope, None for
-    those of the control. Without a ``journal`` nothing is saved.
+    ``own`` is the folder of the operator's programs. ``work`` reads and proves programs with the present
+    offsets and saves nothing; ``proving`` does the same without pictures. ``thumbnail`` draws the part of a
+    program. ``live`` are samples for the scope, or None for those of the control. Nothing is saved if
+    ``journal`` is None.
     """
 
     desk: Desk
@@ -80,12 +80,12 @@ RegisterPage = Callable[[PageSetup], None]
 
 
 def register_pages(setup: PageSetup, pages: Iterable[RegisterPage]) -> None:
-    """Register these pages, in this order."""
+    """Register these pages in order."""
     for register in pages:
         register(setup)
 
 
-# --- programs ---------------------------------------------------------------------------------------------
+# --- Programs ---------------------------------------------------------------------------------------------
 
 
 def _register_effect(setup: PageSetup) -> None:
@@ -98,7 +98,7 @@ def _register_editor(setup: PageSetup) -> None:
 
 
 def _editor(setup: PageSetup) -> Editor:
-    """The editor proves what is being typed without keeping a version of every key."""
+    """Return the editor, which proves the edited text without saving a version for each key press."""
     from app.editor.editor import Editor
     from app.editor.versions import NoArchive
 
@@ -128,7 +128,7 @@ def _programs(setup: PageSetup) -> ProgramList:
 
 
 def _register_part(setup: PageSetup) -> None:
-    """Register the page of findings and stock."""
+    """Register the page with findings and stock."""
     from core.proving.checks.part_checks import CHECKS
 
     machine = setup.machine
@@ -138,11 +138,11 @@ def _register_part(setup: PageSetup) -> None:
     setup.desk.pages.attach(sheet)
 
 
-# --- operation --------------------------------------------------------------------------------------------
+# --- Operation --------------------------------------------------------------------------------------------
 
 
 def _register_lines(setup: PageSetup) -> None:
-    """Register MDI, and what the Jog page switches by the same lines."""
+    """Register MDI, and the functions of the Jog page that use MDI lines."""
     desk, machine = setup.desk, setup.machine
     prove_line = line_prover(machine, setup.offsets)
     if desk.first_move is not None:
@@ -161,7 +161,7 @@ def _register_mill_touch(setup: PageSetup) -> None:
 
 
 def _register_searchto(setup: PageSetup) -> None:
-    """Register SEARCHTO; its paths are at the manual rapid, slower within the part."""
+    """Register SEARCHTO, which moves at the manual rapid, and slower inside the part."""
     desk, rapid = setup.desk, setup.machine.limits.manual_rapid
     choices = Choices(rapid=rapid, modest=_MODEST * rapid)
 
@@ -178,18 +178,18 @@ def _register_searchto(setup: PageSetup) -> None:
     desk.pages.add_start(searchto)
 
 
-# --- production and special functions ---------------------------------------------------------------------
+# --- Production and special functions ---------------------------------------------------------------------
 
 
 def register_sounds(setup: PageSetup) -> None:
-    """Register the sounds of the screen; the special functions need them."""
+    """Register the sounds of the screen, which the special functions need."""
     sounds = DeskSounds(setup.desk, setup.persistence)
     setup.desk.pages.attach(sounds)
     setup.desk.pages.add_frame_watcher(sounds.see)
 
 
 def register_special_functions(setup: PageSetup) -> None:
-    """Register the special functions, F10."""
+    """Register the special functions (F10)."""
     make = partial(_special_functions, setup)
     setup.desk.pages.attach_later("app.special.special_functions.SpecialFunctions", make)
 
@@ -203,7 +203,7 @@ def _special_functions(setup: PageSetup) -> SpecialFunctions:
 
 
 def register_production(setup: PageSetup) -> None:
-    """Register what is counted and stored of production."""
+    """Register the models that count and store production data."""
     desk, tools = setup.desk, tools_of(setup.machine.kind)
     book = setup.journal.parts_book(tools) if setup.journal is not None else PartsBook(tools=tools)
     book.access = desk.access
@@ -227,7 +227,7 @@ def _register_busy_notice(setup: PageSetup) -> None:
 
 
 def register_scope_page(setup: PageSetup) -> None:
-    """Register the scope."""
+    """Register the SCOPE page."""
     register_scope(setup.desk, setup.live)
 
 

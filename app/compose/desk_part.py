@@ -1,6 +1,6 @@
-"""The proof of the part on the desk: what is known of it, and what each finding weighs there.
+"""Proof of the part of the loaded program: known data, and the weight of each finding.
 
-Beside the proof of the program, and after it: decision 0011 says what waits for it.
+It runs after the proof of the program. Decision 0011 states which functions wait for it.
 """
 
 from __future__ import annotations
@@ -40,13 +40,13 @@ NOT_MADE, NO_STOCK = "part-not-made", "stock-unusable"
 
 
 def nothing_kept(_program: str) -> KeptPart:
-    """Of no program is anything kept."""
+    """Return the empty data of a part, for callers without a store."""
     return NOTHING_KEPT
 
 
 @dataclass(frozen=True, slots=True)
 class PartDesk:
-    """What the desk knows of parts on this machine. ``read`` reads a program that leaves another's stock."""
+    """Proof of parts on this machine. ``read`` reads the program whose finished part is used as stock."""
 
     machine: Machine
     shapes: Shapes
@@ -54,7 +54,7 @@ class PartDesk:
     read: Callable[[Path], Source]
 
     def setting(self, job: Job, watch: Watch) -> tuple[PartSetting, Diagnostic | None]:
-        """What has been said of stock, tools and clamping, and what of it cannot be used."""
+        """Return the specified stock, tools and clamping, and a finding if the stock cannot be used."""
         from app.compose.known_part import known_part, with_kept_clamping
         from app.compose.said_stock import ProgramBefore, said_stock
 
@@ -69,11 +69,14 @@ class PartDesk:
         try:
             around = ProgramBefore(self.read, job.setup, self.machine, setting, watch, self.kept)
             return replace(setting, stock=said_stock(kept.stock, around)), None
-        except ValueError as error:  # of the words, or of a program that cannot be read
+        except ValueError as error:  # invalid text, or a program that cannot be read
             return setting, _unusable(str(error))
 
     def compared(self, before: Job, after: Job, watch: Watch) -> OtherPart | None:
-        """What other offsets of a job make of its part; None: it has none."""
+        """Return the part of a job with other offsets, compared with its present part.
+
+        The result is None if the job has no part.
+        """
         from core.proving.other_offsets import FINE, ThisPart, other_part
         from core.proving.part_proof import prove_with_part
 
@@ -86,7 +89,7 @@ class PartDesk:
         return other_part(before.reading, this, after.setup, self.machine, watch)
 
     def proved(self, moves: PartMoves, trouble: Diagnostic | None, watch: Watch) -> PartProved:
-        """The part, as far as the setting of the moves says it. A proof that fails is told as a warning."""
+        """Return the proof of the part. An exception of the proof becomes a warning."""
         from core.proving.part_proof import PartProof
 
         try:
@@ -119,21 +122,21 @@ def _unusable(why: str) -> Diagnostic:
 
 
 def _weighed(found: Iterable[Diagnostic], report: PartReport | None) -> PartProved:
-    """With the weight that each finding has on the desk, and what of them is announced before a start."""
+    """Return the findings with those that are announced before a start."""
     found = tuple(found)
     warned = [each for each in found if _is_announced(each)]
     return PartProved(found, tuple(_in_short(each) for each in warned), report)
 
 
 def _is_announced(found: Diagnostic) -> bool:
-    """Whether a start says it: an error but for what is assumed, and a part that could not be made."""
+    """Return whether a start announces the finding: a serious warning, or a part that was not proved."""
     if found.code in {NOT_MADE, NO_STOCK}:
         return True
     return is_serious(found) and found.severity is not Severity.ERROR
 
 
 def _in_short(found: Diagnostic) -> str:
-    """What is announced; the sentence with its remedy stands in the list of findings."""
+    """Return the short text of an announced finding; the list of findings has the full text and remedy."""
     if not found.line:
         return "PART NOT PROVED WITH THE SPECIFIED STOCK AND TOOLS"
     return Message("LINE {line}: {check}", line=found.line, check=found.check.upper())

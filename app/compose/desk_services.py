@@ -1,4 +1,4 @@
-"""What runs next to a desk: supervised threads, the status file, the daily backup and the shop floor."""
+"""Services of the operator screen: supervised threads, status file, daily backup and shop network."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from core.message import Message
 from core.store.backup import problems as backup_problems
 from core.store.store_rows import utc_now
 
-# Threads beside the executor, and what an operator misses when they end.
+# Threads other than the executor, with the function that is lost when they end.
 SUPERVISED = {
     "store-writer": "STORAGE OF OFFSETS AND COUNTS",
     "daily-backup": "DAILY BACKUP",
@@ -38,17 +38,17 @@ SUPERVISED = {
 
 
 def report_ended_thread(desk: Desk, journal: Journal, name: str) -> None:
-    """On the watchdog's thread: the machine goes on, but what that thread did is not done any more."""
+    """Report that a supervised thread has ended. Called in the watchdog's thread; the machine continues."""
     text = tr(Message("{what} STOPPED. SAVE THE LOG, THEN RESTART TURNDESK", what=tr(SUPERVISED[name])))
     desk.say(text)
     journal.hear(Event(desk.snapshot().t, "warning", text))
 
 
 def start_services(desk: Desk, journal: Journal) -> list[Callable[[], None]]:
-    """Start the status file, the daily backup, and what reports to the shop floor or to other desks.
+    """Start the status file, the daily backup, and the services of optional features; return close functions.
 
-    What prevents it goes to the prompt line and to the log. A folder that another TurnDesk has, as its store
-    tells, has that one's status. Returns what closes them.
+    Errors are reported on the prompt line and in the event log. No status file is written if another TurnDesk
+    uses the data folder.
     """
 
     def tell(why: str) -> None:
@@ -66,7 +66,7 @@ def start_services(desk: Desk, journal: Journal) -> list[Callable[[], None]]:
 
 
 def _keep_status(machine: Machine, snapshot: Callable[[], Snapshot], folder: Path) -> Callable[[], None]:
-    """Begin to keep the status file in this folder; returns how to end it."""
+    """Start updating the status file in this folder; return the function that ends it."""
     reader = FloorReader(machine, time.monotonic)
     keeper = StatusKeeper(
         StatusFile(folder / NAME, utc_now),
@@ -78,7 +78,7 @@ def _keep_status(machine: Machine, snapshot: Callable[[], Snapshot], folder: Pat
 
 
 def _daily_backup(desk: Desk, machine: Machine, journal: Journal) -> Callable[[], None]:
-    """Begin to look once in a while whether one is due; what is in the way is said and logged."""
+    """Start checking regularly whether a backup is due; errors are shown and logged."""
 
     def tell(why: str) -> None:
         text = tr(Message("NO DAILY BACKUP: {why}", why=why))

@@ -1,4 +1,4 @@
-"""The generated part of ``docs/dialects.md``: languages, their code books and the shipped machines.
+"""Generated part of ``docs/dialects.md``: languages, their codes and the shipped machines.
 
 ``python -m app.compose.dialects_page docs/dialects.md`` writes it between its two marks.
 """
@@ -27,19 +27,19 @@ _MACHINES = Path(__file__).parents[2] / "resources" / "machines"
 
 
 def machines() -> dict[str, Machine]:
-    """Every shipped machine by the name that ``--machine`` takes."""
+    """Return every shipped machine by its name for ``--machine``."""
     names = sorted(path.stem for path in _MACHINES.glob("*.toml"))
     return {name: shipped_machine(name) for name in names}
 
 
 def generated() -> str:
-    """The text between the marks, with them."""
+    """Return the generated text including both marks."""
     found = machines()
     return "\n".join([BEGIN, *_languages(found), "", *_shipped(found), END])
 
 
 def with_generated(text: str) -> str:
-    """Return the page with its generated part written again. Raises ValueError where it has no marks."""
+    """Return the page with its generated part updated. Raises ValueError if the marks are missing."""
     before, mark, rest = text.partition(BEGIN)
     _, last, after = rest.partition(END)
     if not (mark and last):

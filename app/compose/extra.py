@@ -1,8 +1,9 @@
-"""Optional features: the table in which they are registered, and what a feature can add to TurnDesk.
+"""Optional features: the table in which they are registered, and the interface of a feature.
 
 The code of a feature is in ``core/extras/NAME`` (without Qt), ``app/extras/NAME`` and ``tests/extras/NAME``.
-``app.extras.NAME.extra`` contains ``EXTRA``, a subclass of ``Extra`` that overrides what the feature adds.
-No module outside a feature imports it. If its folders are deleted, TurnDesk works without the feature.
+``app.extras.NAME.extra`` contains ``EXTRA``, a subclass of ``Extra`` that overrides the parts that the
+feature adds. No module outside a feature imports it. If its folders are deleted, TurnDesk works without the
+feature.
 """
 
 from __future__ import annotations
@@ -41,27 +42,25 @@ T = TypeVar("T")
 
 
 class Subcommand(NamedTuple):
-    """A subcommand of ``turndesk``: the one that it follows in the help, and its line there."""
+    """A subcommand of ``turndesk``: the subcommand that it follows in the help, and its help line."""
 
     follows: str
     help: str
 
 
 class Extra:
-    """What an optional feature adds. A feature overrides only the parts that it has.
+    """Base class of an optional feature. A feature overrides only the parts that it adds.
 
-    ``commands`` are its subcommands. The module of one is ``app.extras.NAME.SUBCOMMAND_command``.
-    ``threads`` maps each supervised thread to what an operator misses when the thread ends.
-    ``own_functions`` names the special functions that a page of the feature shows, so that F10 does not.
-    ``needs`` names the features without which this feature is left out. ``proof_workers`` is the dotted name
-    of a class of workers on other computers, which prove programs.
-    ``drawings`` are the endings of drawings from which this feature makes programs: the list of programs
-    shows them. ``editor_panel`` is the dotted name of a subclass of ``EditorPanel`` that writes lines in
-    the place of the editor's text.
-
-    ``machine_actions`` lists the actions of ``turndesk machine``, each with a module
-    ``app.extras.NAME.ACTION_command``. ``tables_follow`` is the table of the machine file that the tables of
-    this feature follow; empty: they are the last ones.
+    ``commands`` are its subcommands. The module of a subcommand is ``app.extras.NAME.SUBCOMMAND_command``.
+    ``threads`` maps each supervised thread to the function that is lost when the thread ends.
+    ``own_functions`` names the special functions that a page of the feature shows, so that F10 does not show
+    them. ``needs`` names the features that this feature requires. ``proof_workers`` is the dotted name of a
+    class of workers on other computers, which prove programs. ``drawings`` are the suffixes of drawings from
+    which this feature makes programs; the list of programs shows them. ``editor_panel`` is the dotted name of
+    a subclass of ``EditorPanel`` that replaces the editor's text area and writes lines. ``machine_actions``
+    lists the actions of ``turndesk machine``, each with a module ``app.extras.NAME.ACTION_command``.
+    ``tables_follow`` is the table of the machine file after which the tables of this feature are listed;
+    empty lists them last.
     """
 
     needs: Sequence[str] = ()
@@ -84,7 +83,7 @@ class Extra:
         return ()
 
     def wired(self, machine: Machine) -> Machine:
-        """Return the machine as its backend is wired: without the inputs that this feature provides."""
+        """Return the machine without the inputs that this feature provides, as its backend is wired."""
         return machine
 
     def connect(self, machine: Machine, connected: Connected) -> Connected:
@@ -92,50 +91,61 @@ class Extra:
         return connected
 
     def attach(self, desk: Desk, machine: Machine, journal: Journal | None, work: LoadingSteps) -> None:
-        """Attach the models of this feature to the desk; without a ``journal`` nothing is saved.
+        """Attach the models of this feature to the operator screen; without a ``journal`` nothing is saved.
 
-        ``work`` reads and proves programs with the offsets of this moment, and saves nothing.
+        ``work`` reads and proves programs with the present offsets, and saves nothing.
         """
 
     def special_functions(
         self, desk: Desk, machine: Machine, persistence: Persistence, worker: Latest
     ) -> Sequence[tuple[SpecialFunction, str]]:
-        """Return the special functions (F10) of this feature, each with the name of the one it follows."""
+        """Return the special functions (F10) of this feature.
+
+        Each function has the name of its predecessor in the list.
+        """
         return ()
 
     def extend(self, part: object, desk: Desk, machine: Machine) -> None:
-        """Add to ``part``, a model of a feature that this one needs, when that model is made."""
+        """Extend ``part``, a model of a required feature, when that model is created."""
 
     def start(self, desk: Desk, journal: Journal, tell: Tell) -> Close | None:
-        """Start the threads of this feature, and return a function that ends them.
+        """Start the threads of this feature; return the function that ends them, or None.
 
-        ``tell`` reports a reason why the feature cannot run to the prompt line and to the event log.
+        The callback reports on the prompt line and in the event log why the feature cannot run.
         """
 
     def start_headless(
         self, machine: Machine, snapshot: Callable[[], Snapshot], tell: Tell, *, paced: bool
     ) -> Close | None:
-        """Start what this feature does during a run without a screen, and return a function that ends it.
+        """Start the services of this feature for a run without a screen; return the function that ends them.
 
-        ``paced``: the run takes as long as on the machine. ``tell`` prints why the feature cannot run.
+        ``paced`` means that the run takes as long as on the machine. The callback prints the reason if the
+        feature cannot run.
         """
 
     def json_outputs(self) -> Mapping[str, Sequence[Output]]:
-        """Return the declared outputs of --json of this feature, by the output that they follow."""
+        """Return the declared outputs of --json of this feature.
+
+        The keys are the outputs that they follow in the reference.
+        """
         return {}
 
     def words(self) -> Sequence[str]:
-        """Return texts of the screen that look like names in the source, for the list of all texts."""
+        """Return screen texts that look like names in the source, for the list of all texts."""
         return ()
 
     def floor_outputs(self) -> Sequence[Output]:
-        """Return what this feature sends to the shop network; ``command`` is the title of its section."""
+        """Return the declared data that this feature sends to the shop network.
+
+        ``command`` is the title of the section in the reference.
+        """
         return ()
 
     def demand_pin(self, store: Store, row: PersonRow, remedy: str) -> bool:
-        """Ask for the PIN of this user on the command line; return False if this feature cannot do that.
+        """Ask for the PIN of this user on the command line.
 
-        ``remedy`` says what to do if the user has no PIN. Raises CommandError if the PIN is wrong.
+        The result is False if this feature does not support PINs. ``remedy`` is the instruction for a user
+        without a PIN. Raises CommandError if the PIN is wrong.
         """
         return False
 
@@ -156,7 +166,7 @@ def extras() -> Mapping[str, Extra]:
 
 
 def _is_installed(name: str) -> bool:
-    """Return whether the feature has its module; a folder in which only caches are left has none."""
+    """Return whether the feature has its module; a folder with only cache files has none."""
     return find_spec(f"app.extras.{name}") is not None and find_spec(f"app.extras.{name}.extra") is not None
 
 
@@ -179,20 +189,20 @@ def _modules(words_of: Callable[[Extra], Iterable[str]]) -> Mapping[str, str]:
 
 
 def proof_workers() -> str:
-    """Return the dotted name of the class of workers on other computers; empty if no feature has one."""
+    """Return the dotted name of the class of workers on other computers; empty without such a feature."""
     return next((extra.proof_workers for extra in extras().values() if extra.proof_workers), "")
 
 
 def drawing_endings() -> tuple[str, ...]:
-    """Return the endings of all drawings from which an optional feature makes programs."""
+    """Return the suffixes of all drawings from which an optional feature makes programs."""
     return tuple(ending for extra in extras().values() for ending in extra.drawings)
 
 
 def insert_after(items: Iterable[T], name_of: Callable[[T], str], added: Iterable[tuple[T, str]]) -> list[T]:
-    """Return ``items`` with each pair of ``added`` inserted after the item that the pair names.
+    """Return ``items`` with each item of ``added`` inserted after the item that its pair names.
 
-    That item may also be an addition. Additions that follow the same item keep their order. If there is no
-    item of that name, the addition becomes the last one.
+    That item may also be an addition. Additions that follow the same item retain their order. If no item has
+    that name, the addition is appended.
     """
     found, waiting = list(items), list(added)
     newest: dict[str, str] = {}

@@ -1,6 +1,6 @@
-"""What is known of a part before it is proved: tools, what holds the stock, the neighbours on the plate.
+"""Data of a part that is known before its proof: tools, clamping of the stock, and neighboring tools.
 
-The store remembers the stock with a program, by the program's name; it is never written into its text.
+The store has the stock for each program by name; the stock is never written into the program text.
 """
 
 from __future__ import annotations
@@ -33,7 +33,10 @@ def known_part(
     shapes: Mapping[int, ToolShape],
     stick_out: float | None = None,
 ) -> PartSetting:
-    """The setting without a stock; ``stick_out`` (mm) is the job's own, None: that of the machine file."""
+    """Return the part data without a stock.
+
+    ``stick_out`` in mm is that of the job, or None for that of the machine file.
+    """
     return PartSetting(
         shapes=shapes,
         nose_radii={number: tool.nose_radius for number, tool in tools.items()},
@@ -49,20 +52,26 @@ def known_part(
 def with_kept_clamping(
     setting: PartSetting, machine: Machine, kept: KeptPart, *, said: bool = False
 ) -> PartSetting:
-    """With what is kept of stick-out and silenced checks; a stick-out that is ``said`` stays."""
+    """Return the part data with the stored stick-out and silenced checks.
+
+    ``said`` retains the present stick-out, because it was specified explicitly.
+    """
     if kept.stick_out is not None and not said and machine.clamping.diameter:
         setting = replace(setting, clamping=_clamping(machine, kept.stick_out))
     return replace(setting, silenced={**setting.silenced, **kept.silenced})
 
 
 def _travel(machine: Machine) -> tuple[tuple[float, float], tuple[float, float]] | None:
-    """How far X and Z go; None where one of them is endless."""
+    """Return the travel of X and Z; None if one of them is unlimited."""
     x, z = machine.axes[0].travel, machine.axes[1].travel
     return (x, z) if x is not None and z is not None else None
 
 
 def _clamping(machine: Machine, stick_out: float | None) -> Clamping | None:
-    """Chuck or collet, and tailstock; without a stick-out only the highest speed of the chuck counts."""
+    """Return the clamping by chuck or collet, and the tailstock, or None.
+
+    Without a stick-out, only the speed limit of the chuck and the tailstock apply.
+    """
     held = machine.clamping
     out = held.stick_out if stick_out is None else stick_out
     if not out and not held.max_rpm and not held.quill_diameter:
@@ -80,15 +89,15 @@ def _clamping(machine: Machine, stick_out: float | None) -> Clamping | None:
 
 
 def kept_with(program: str) -> KeptPart:
-    """What was said last; nothing where there is no store.
-
-    Raises CommandError when the store cannot be trusted.
-    """
+    """Return the stored data of a program's part; empty without a store. Raises CommandError."""
     return kept_with_all([program]).get(program, NOTHING_KEPT)
 
 
 def kept_with_all(programs: Iterable[str]) -> dict[str, KeptPart]:
-    """Of those with which the store remembers something what is kept. Raises CommandError, as above."""
+    """Return the stored part data of all programs that have some, by name.
+
+    Raises CommandError if the store cannot be read.
+    """
     folder = data_folder()
     if not has_store(folder):
         return {}
@@ -100,7 +109,10 @@ def kept_with_all(programs: Iterable[str]) -> dict[str, KeptPart]:
 
 
 def keep_stock(program: str, text: str, stick_out: float | None) -> None:
-    """Remember it; ``stick_out`` mm, None: that of before. Raises CommandError when it cannot be kept."""
+    """Save the stock text of a program, and the stick-out in mm; None retains the stored stick-out.
+
+    Raises CommandError if the store cannot be written.
+    """
     from core.store.store import Store, StoreError
 
     with as_command_error(StoreError), Store.open(data_folder()) as store:

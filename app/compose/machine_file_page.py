@@ -1,6 +1,6 @@
-"""The reference of the machine file.
+"""Generator of the machine file reference.
 
-Write it with ``python -m app.compose.machine_file_page docs/integrator/machine-file.md``.
+Run ``python -m app.compose.machine_file_page docs/integrator/machine-file.md``.
 """
 
 from __future__ import annotations
@@ -46,13 +46,13 @@ values that contradict each other.
 
 """
 _WIDTH = 100
-_MOST_CHOICES = 20  # in a cell
+_MOST_CHOICES = 20  # choices shown in a cell
 _WITHOUT_BOUNDS = (Kind.FLAG, Kind.TEXT, Kind.WORDS)
 _AXES = "Positions are measured from home; X is a radius."
 
 
 def document() -> str:
-    """Return the whole page."""
+    """Return the complete page."""
     tables = tuple(references())
     head = _HEAD + contents(map(_title, tables)).rstrip("\n")
     return "\n".join([head, *(line for each in tables for line in _table(each))]) + "\n"
@@ -187,7 +187,7 @@ def _kinematics() -> Iterator[TableReference]:
 
 
 def _title(table: TableReference) -> str:
-    """Return the heading with each name of a table in brackets, as code."""
+    """Return the heading with each name of a table in brackets and formatted as code."""
     return re.sub(r"[\w\[\]]+(?:\.[\w…\]]+)+|^\w+", r"`[\g<0>]`", table.heading)
 
 
@@ -238,7 +238,7 @@ def _bounds(field: Field) -> str:
 
 
 def _in_units(unit: Unit, *values: float) -> str:
-    """Return values of the model as the file writes them: with lengths in both units."""
+    """Return values of the model as in the file, lengths in both units."""
     if unit not in LENGTHS:
         return " to ".join(number(to_file(value, unit, inch=False)) for value in values)
     if values == (0.0,):
@@ -262,7 +262,7 @@ def _default(field: Field) -> str:
 
 
 def _is_possible(field: Field) -> bool:
-    """Return whether the file could contain the default; a value outside the range means that none is set."""
+    """Return whether the file could contain the default; a default out of range means "none"."""
     value = field.default
     if isinstance(value, bool | str) or value is None:
         return True
@@ -271,24 +271,24 @@ def _is_possible(field: Field) -> bool:
 
 
 def _literal(value: str | bool) -> str:
-    """Return a value as TOML writes it."""
+    """Return a value in TOML syntax."""
     return f"`{json.dumps(value)}`" if isinstance(value, str) else json.dumps(value)
 
 
 def number(value: float) -> str:
-    """Return a number without an exponent, with six significant digits if it is not a whole number."""
+    """Return a number without an exponent, with six significant digits unless it is a whole number."""
     text = f"{value:.0f}" if value == int(value) else format(Decimal(f"{value:.6g}"), "f")
     return text.replace("-", "−")
 
 
 def _inches(value: float) -> str:
-    """Return a length in inches as shops write it: four significant digits, no zero before the point."""
+    """Return a length in inches with four significant digits and no zero before the point."""
     text = format(Decimal(f"{value:.4g}"), "f").replace("-", "−")
     return re.sub(r"^(−?)0\.", r"\1.", text)
 
 
 def main(argv: list[str]) -> int:
-    """Write the page to the named file."""
+    """Write the page to the file named in the arguments."""
     path = Path(argv[0])
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(document(), encoding="utf-8")

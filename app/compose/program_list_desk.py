@@ -1,4 +1,4 @@
-"""The list of programs of a desk, with its preview and what comes in and goes out: put together."""
+"""Assembly of the list of programs with its preview, import and export."""
 
 from __future__ import annotations
 
@@ -18,7 +18,10 @@ from core.message import Message
 def program_list(
     desk: Desk, persistence: Persistence, workshop: LoadingSteps, own: Path, thumbnail: DrawThumbnail | None
 ) -> ProgramList:
-    """Of the programs in the folder ``own``; what comes in is proved with the offsets of that moment."""
+    """Return the list of programs in the folder ``own``.
+
+    Imported programs are proved with the offsets at that time.
+    """
 
     def check(path: Path) -> str:
         job = workshop.make_job(workshop.read(path), False)

@@ -1,4 +1,4 @@
-"""Programs over the serial line of a machine file: out of a file, and in as a program that was looked at."""
+"""Program transfer over a serial line: sending files, and receiving programs that are checked."""
 
 from __future__ import annotations
 
@@ -20,32 +20,35 @@ from drivers.transfer.program_framing import Program, TransferSettings, outgoing
 from drivers.transfer.transfer_session import Reach, Receiving, Sending
 from drivers.waiting import RealClock
 
-# A line as most controls have it; the port is for the operator to choose.
+# Usual settings of a serial line; the operator chooses the port.
 PLAIN = DncModel("", 9600, 8, "N", 1, "xonxoff", "%", "\r\n")
 Check = Callable[[Source], tuple[tuple[str, ...], float]]  # errors, cycle time in s
 
 
 class SerialLines:
-    """``app.transfer.line_transfer.Lines``. ``check`` looks at what has come in; ``ending`` of its file."""
+    """Implementation of ``app.transfer.line_transfer.Lines``.
+
+    ``check`` proves received programs, and ``ending`` is the suffix of their files.
+    """
 
     def __init__(self, check: Check, ending: str = ".nc", clock: Clock | None = None) -> None:
         self._check, self._ending, self._clock = check, ending, clock or RealClock()
 
     def ports(self) -> Sequence[tuple[str, str]]:
-        """Those of this computer."""
+        """Return the serial ports of this computer."""
         return serial_ports()
 
     def send(self, settings: DncModel, path: Path) -> SendingFile:
-        """The program in a file."""
+        """Return the transfer that sends the program in a file."""
         return SendingFile(settings_of(settings), path, self._clock)
 
     def receive(self, settings: DncModel) -> ReceivingProgram:
-        """Whatever program comes."""
+        """Return the transfer that receives a program."""
         return ReceivingProgram(settings_of(settings), self._clock, self._check, self._ending)
 
 
 class _Carried:
-    """A transfer whose line is opened by the worker: until then there is only the wish to give it up."""
+    """A transfer whose serial line the worker opens; it can be canceled before that."""
 
     def __init__(self) -> None:
         self._inner: Sending | Receiving | None = None
@@ -53,11 +56,11 @@ class _Carried:
 
     @property
     def reach(self) -> Reach:
-        """How far it has come."""
+        """Progress of the transfer."""
         return self._inner.reach if self._inner is not None else Reach()
 
     def cancel(self) -> None:
-        """Give it up."""
+        """Cancel the transfer."""
         self._cancelled = True
         if self._inner is not None:
             self._inner.cancel()
@@ -69,14 +72,14 @@ class _Carried:
 
 
 class SendingFile(_Carried):
-    """``Carrying[int]``."""
+    """Transfer that sends a file; its result is the number returned by ``run``."""
 
     def __init__(self, settings: TransferSettings, path: Path, clock: Clock) -> None:
         super().__init__()
         self._settings, self._path, self._clock = settings, path, clock
 
     def run(self) -> int:
-        """Read, open, send. Raises FileError, DriverError."""
+        """Read the file, open the line and send. Raises FileError or DriverError."""
         try:
             text = input_bytes(self._path, LARGEST_FILE)
         except OSError as error:
@@ -91,14 +94,14 @@ class SendingFile(_Carried):
 
 
 class ReceivingProgram(_Carried):
-    """``Carrying[Received]``."""
+    """Transfer that receives a program."""
 
     def __init__(self, settings: TransferSettings, clock: Clock, check: Check, ending: str) -> None:
         super().__init__()
         self._settings, self._clock, self._check, self._ending = settings, clock, check, ending
 
     def run(self) -> Received:
-        """Open, receive, read as a program, prove. Raises FileError, DriverError; then nothing is kept."""
+        """Receive a program and prove it. Raises FileError or DriverError; nothing is then saved."""
         inner = Receiving(open_wire(self._settings.receiving, watch=True), self._clock, self._settings)
         self._begin(inner)
         return self._looked_at(inner.run())
@@ -121,13 +124,13 @@ class ReceivingProgram(_Carried):
 
 
 def settings_of(model: DncModel) -> TransferSettings:
-    """The line and the frame."""
+    """Return the settings of the serial line and the data frame."""
     line = LineSettings(model.port, model.baud, model.bits, model.parity, model.stop, model.flow)
     return TransferSettings(line, model.wrap, model.eol, model.dc_codes, model.wait, model.leader)
 
 
 def proving(workshop: LoadingSteps) -> Check:
-    """The check of the desk: its machine, its offsets of that moment."""
+    """Return a check that proves a program on this machine with the present offsets."""
 
     def check(source: Source) -> tuple[tuple[str, ...], float]:
         proved = workshop.prove(workshop.make_job(source, False), lambda _count: None)
@@ -137,7 +140,7 @@ def proving(workshop: LoadingSteps) -> Check:
 
 
 def _read(text: bytes, name: str) -> Source:
-    """As a file would be read, with all that a file is refused for."""
+    """Return the received text as a program file is read. Raises DriverError if the text is not a program."""
     with tempfile.TemporaryDirectory(prefix="turndesk-") as folder:
         path = Path(folder) / name
         path.write_bytes(text)

@@ -1,4 +1,4 @@
-"""The stock that somebody has said: a bar or tube, the profile of a file, or what another program leaves."""
+"""The specified stock: a bar or tube, a profile from a file, or the part that another program makes."""
 
 from __future__ import annotations
 
@@ -22,14 +22,15 @@ if TYPE_CHECKING:
     from core.proving.program_tools import PartSetting
     from core.proving.prove_program import Progress
 
-_LARGEST = 16 * MB  # of a profile
+_LARGEST = 16 * MB  # largest profile file
 
 
 class ProgramBefore(NamedTuple):
-    """What a program before is proved with: how it is read, and its circumstances.
+    """Context in which the preceding program is proved, whose part is the stock.
 
-    ``read`` may raise what its caller takes; ``go_on`` is told how far that proof has come. ``kept`` is what
-    the store has for it, by its name: stock and stick-out. ``behind`` are the programs that wait for it.
+    ``read`` reads the program and may raise any exception that the caller handles. ``go_on`` receives the
+    progress of the proof. The context also has a function that returns the stored stock and stick-out of a
+    program by name, and the names of the programs that depend on this one.
     """
 
     read: Callable[[Path], Source]
@@ -42,7 +43,7 @@ class ProgramBefore(NamedTuple):
 
 
 def said_stock(text: str, around: ProgramBefore) -> Stock | StockSpec:
-    """What the words mean. Raises StockError with what is wrong in them."""
+    """Return the stock that the text specifies. Raises StockError with the error in the text."""
     spec = stock_spec(text)
     if spec.after:
         return _left_by(Path(spec.after), around, spec)
@@ -67,12 +68,12 @@ def said_stock(text: str, around: ProgramBefore) -> Stock | StockSpec:
             ),
             "not-text",
         ) from error
-    profile_stock(spec.given, points, 1.0, spec.allowance)  # refuses what is wrong in it
+    profile_stock(spec.given, points, 1.0, spec.allowance)  # checks the profile
     return replace(spec, points=points)
 
 
 def _left_by(path: Path, around: ProgramBefore, spec: StockSpec) -> Stock:
-    """What the program before leaves: its last part."""
+    """Return the last part of the preceding program as stock."""
     from core.part.stock import Stock
     from core.proving.part_proof import prove_with_part
 
@@ -96,7 +97,7 @@ def _left_by(path: Path, around: ProgramBefore, spec: StockSpec) -> Stock:
 
 
 def _first_setting(name: str, spec: StockSpec, around: ProgramBefore) -> PartSetting:
-    """The setting of the program before, with the stock and the stick-out that the store has for it."""
+    """Return the context of the preceding program with its stored stock and stick-out."""
     kept = around.kept(name)
     setting = with_kept_clamping(around.setting, around.machine, kept)
     if not kept.stock:

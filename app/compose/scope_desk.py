@@ -1,4 +1,4 @@
-"""The page SCOPE of a desk."""
+"""Assembly of the SCOPE page."""
 
 from __future__ import annotations
 
@@ -19,34 +19,34 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class RecordedSamples:
-    """The recorder's ring, as the page reads it."""
+    """Adapter that lets the page read the recorder's ring."""
 
     recorder: Recordings
 
     @property
     def channels(self) -> tuple[Channel, ...]:
-        """What is recorded."""
+        """Recorded channels."""
         return self.recorder.ring.recorded.channels
 
     @property
     def last(self) -> float:
-        """Time of the newest sample."""
+        """Time of the newest sample, in seconds."""
         return self.recorder.ring.samples.last
 
     @property
     def lasts(self) -> float:
-        """Seconds that are kept."""
+        """Duration of the ring in seconds."""
         return self.recorder.ring.recorded.lasts
 
     def between(self, begin: float, end: float, names: Collection[str] | None = None) -> Record:
-        """The samples from ``begin`` up to and with ``end``."""
+        """Return the samples from ``begin`` to ``end`` inclusive."""
         return self.recorder.between(begin, end, names)
 
 
 def register_scope(desk: Desk, live: LiveSamples | None) -> None:
-    """Register the scope on ``live``, or on what the control records; with neither it shows files only.
+    """Register the scope with ``live`` samples, or with those of the control.
 
-    The scope is made when the operator first opens its page.
+    Without either, the scope shows only files. The scope is created when the operator first opens its page.
     """
     desk.pages.attach_later("app.scope.scope_model.Scope", partial(_scope, desk, live))
     desk.pages.set_record_opener(lambda name: _scope_of(desk).open_alarm(name))

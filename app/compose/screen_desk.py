@@ -1,4 +1,4 @@
-"""The desk of the operator screen, with its control on a thread or in a process of its own."""
+"""Assembly of the operator screen, with its control in a thread or in a separate process."""
 
 from __future__ import annotations
 
@@ -33,11 +33,12 @@ from drivers.waiting import RealClock
 if TYPE_CHECKING:
     from app.compose.control.control_begin import Begun
 
-CONTROL_CLOSES = 30.0  # s: as the executor and its drivers, and then the process is killed
-EXECUTOR_CLOSES = 12.0  # s: drives that come on are waited for, then the machine is halted
-STORE_CLOSES = 15.0  # s: a slow disk takes what waits in memory
-_OFTEN = (700, 10, 10)  # Python's usual: a collection stops every thread, so many short ones
-GIVE_WAY = 0.001  # seconds after which a worker that proves or draws lets the screen and the executor go on
+CONTROL_CLOSES = 30.0  # s for the executor and its drivers; then the process is killed
+EXECUTOR_CLOSES = 12.0  # s, for drives that are switching on; then the machine is halted
+STORE_CLOSES = 15.0  # s to write waiting entries to a slow disk
+# Python's usual thresholds: a collection stops every thread, so many short collections are better
+_OFTEN = (700, 10, 10)
+GIVE_WAY = 0.001  # s after which a worker that proves or draws yields to the screen and the executor
 
 
 def build_desk(
@@ -45,10 +46,10 @@ def build_desk(
     offsets: Callable[[], Offsets] = stored_offsets,
     begun: Begun | None = None,
 ) -> Desk:
-    """The desk on the machine that a file describes, its control running. Close it with ``Desk.close``.
+    """Return the operator screen's model for a machine file, with its control running.
 
-    ``begun`` is what ``begin_control`` has returned for this file; None: it begins now. Raises CommandError
-    for a bad machine file and for a machine that does not answer.
+    Close it with ``Desk.close``. ``begun`` is the result of ``begin_control`` for this file; None starts the
+    control now. Raises CommandError for an invalid machine file, and if the machine does not respond.
     """
     sys.setswitchinterval(GIVE_WAY)
     machine, control = begun or begin_control(machine_file)
@@ -77,20 +78,20 @@ def build_desk(
     ]
     desk.storage.follow_program(lambda: file.differs, file.hurry)
     desk.storage.follow_store(lambda: journal.trouble or log.trouble, lambda: journal.held)
-    gc.freeze()  # modules and the like: collections need not look at them again
+    gc.freeze()  # modules and other permanent objects need not be scanned again
     gc.set_threshold(*_OFTEN)
     file.start()
     return desk
 
 
 def _desk_on_thread(machine: Machine, offsets: Callable[[], Offsets], journal: Journal) -> Desk:
-    """The desk with its control on a thread of this process."""
+    """Return the screen model with its control in a thread of this process."""
     clock = RealClock()
     desk, executor, recorder = desk_and_parts(machine, offsets, clock, journal, data_folder() / RECORDS)
     thread = ExecutorThread(executor, clock)
     watchdog = Watchdog(thread, executor.halt, SUPERVISED, partial(report_ended_thread, desk, journal))
     desk.closing.stops += [
-        ClosingStep("watchdog", watchdog.end),  # what ends from now on ends in good order
+        ClosingStep("watchdog", watchdog.end),  # threads that end from now on end as intended
         ClosingStep("executor", thread.close, EXECUTOR_CLOSES),
     ]
     desk.closing.workers += [
@@ -110,7 +111,7 @@ def _desk_on_process(
     journal: Journal,
     control: ControlClient | StartedControl,
 ) -> Desk:
-    """The desk with its control in a process of its own."""
+    """Return the screen model with its control in a separate process."""
     left = None
     if isinstance(control, ControlClient):
         client = control
@@ -138,7 +139,7 @@ def _desk_on_process(
         events.say("rights", right.missing or words)
     threads = ThreadWatch(SUPERVISED, partial(report_ended_thread, desk, journal))
     desk.closing.stops += [
-        ClosingStep("threads", threads.end),  # what ends from now on ends in good order
+        ClosingStep("threads", threads.end),  # threads that end from now on end as intended
         ClosingStep("control", client.close, CONTROL_CLOSES),
     ]
     desk.pages.add_frame_watcher(client.see)
@@ -151,13 +152,14 @@ def _desk_on_process(
         )
     )
     if left is not None:
-        client.wait_for(lambda snapshot: snapshot.interrupted is not None)  # it is loaded then
+        # the interrupted job is loaded then
+        client.wait_for(lambda snapshot: snapshot.interrupted is not None)
     threads.start()
     return desk
 
 
 def _close_store(journal: Journal) -> None:
-    """Write what waits, and report what is lost."""
+    """Write waiting entries to the store, and report lost entries."""
     lost = journal.close()
     if lost:
         sys.stderr.write(f"turndesk: not kept, and lost by closing: {lost}; {journal.trouble}\n")

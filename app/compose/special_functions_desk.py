@@ -1,4 +1,4 @@
-"""The special functions, F10, of a desk: one line for each."""
+"""Assembly of the special functions (F10), one line for each."""
 
 from __future__ import annotations
 
@@ -51,12 +51,13 @@ def _setup_sheet(desk: Desk, machine: Machine, persistence: Persistence, worker:
 def _transfer(
     desk: Desk, machine: Machine, persistence: Persistence, workshop: LoadingSteps, own: Path
 ) -> SpecialFunction:
-    """RS-232, at first as [dnc] of the machine file says. What comes in is proved as an import is."""
+    """Return the RS-232 function, with the settings of [dnc] at first. Received programs are proved."""
     lines = SerialLines(proving(workshop), usual_ending(Dialect(machine.language)))
     return SerialTransfer(desk, persistence, lines, machine.hardware.table(DncModel) or PLAIN, own)
 
 
-# One line for each special function, in the order of the list; one whose hardware is not there has none.
+# One line for each special function, in the order of the list. Functions without their hardware are not
+# shown.
 ITEMS: tuple[MakeFunction, ...] = (
     lambda desk, machine, _keep, _worker: SpindleSpeedLimit(desk, machine.spindle),
     lambda desk, _machine, _keep, _worker: PartsCounterFunction(desk),
@@ -77,7 +78,10 @@ def special_functions(
     own: Path,
     sounds: DeskSounds,
 ) -> SpecialFunctions:
-    """All of them; ``workshop`` proves what comes in over RS-232, ``own`` is the operator's folder."""
+    """Return all special functions.
+
+    ``workshop`` proves programs received over RS-232, and ``own`` is the folder of the operator's programs.
+    """
     worker = Latest("editing-special")
     functions = [make(desk, machine, persistence, worker) for make in ITEMS]
     functions.append(_transfer(desk, machine, persistence, workshop, own))

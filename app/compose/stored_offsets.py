@@ -1,4 +1,4 @@
-"""Tool, secondary and zero offsets from the store or from an offsets file, for interpreter and desk."""
+"""Tool, secondary and zero offsets from the store or an offsets file, for interpreter and screen."""
 
 from __future__ import annotations
 
@@ -40,13 +40,13 @@ OF_A_FILE = (
 
 
 class Offsets(NamedTuple):
-    """All offsets by number, as the interpreter counts with them: mm, X a radius."""
+    """All offsets by number, in the interpreter's units: mm, X as a radius."""
 
     tools: Mapping[int, ToolOffset]
     secondary: Mapping[int, SecondaryOffset]
     zero: Mapping[int, ZeroOffset]
     mill: MillOffsets = MillOffsets()
-    r: Mapping[int, float] = MappingProxyType({})  # R parameters of SINUMERIK
+    r: Mapping[int, float] = MappingProxyType({})  # =
 
 
 NONE = Offsets({}, {}, {})
@@ -60,7 +60,7 @@ def setup_with(
     block_delete: bool = False,
     strict: bool = False,
 ) -> Setup:
-    """Circumstances of a pass after power-up with all offsets that this machine has."""
+    """Return the context of a program after power-up with these offsets."""
     return with_mill(
         setup_for(
             machine,
@@ -77,9 +77,9 @@ def setup_with(
 
 
 def stored_offsets() -> Offsets:
-    """Those of the store; none where there is no store yet.
+    """Return the offsets of the store; empty without a store.
 
-    Raises CommandError when the store cannot be trusted, an offset of it not either.
+    Raises CommandError if the store or one of its offsets is damaged.
     """
     folder = data_folder()
     if not has_store(folder):
@@ -95,9 +95,9 @@ def stored_offsets() -> Offsets:
 
 
 def stored_shapes() -> dict[int, ToolShape]:
-    """The shapes of tools in the store; none where there is no store yet.
+    """Return the tool shapes of the store; empty without a store.
 
-    Raises CommandError when the store cannot be trusted, or for shapes that cannot be.
+    Raises CommandError if the store is damaged or a shape is invalid.
     """
     folder = data_folder()
     if not has_store(folder):
@@ -119,7 +119,10 @@ def stored_shapes() -> dict[int, ToolShape]:
 
 
 def shapes_at_hand() -> dict[int, ToolShape]:
-    """The same for a picture: none where the store cannot be read, which is told elsewhere."""
+    """Return the tool shapes for a picture; empty if the store cannot be read.
+
+    The error is reported elsewhere.
+    """
     try:
         return stored_shapes()
     except CommandError:
@@ -127,7 +130,7 @@ def shapes_at_hand() -> dict[int, ToolShape]:
 
 
 def offsets_of(store: Store) -> Offsets:
-    """What an open store holds, by value."""
+    """Return the offsets of an open store."""
     tables = store.offsets
     found = _of_rows(tables.tools.read_rows(), tables.secondary.read_rows(), tables.zero.read_rows())
     presets = tables.presets.read_rows()
@@ -137,7 +140,7 @@ def offsets_of(store: Store) -> Offsets:
 
 
 def read_offsets(path: Path) -> Offsets:
-    """Those of an offsets file, by value. Raises CommandError naming every mistake."""
+    """Return the offsets of an offsets file. Raises CommandError with every error."""
     from app.offsets.offsets_file import read_rows
 
     tools, secondary, zero = read_rows(path)
@@ -145,14 +148,17 @@ def read_offsets(path: Path) -> Offsets:
 
 
 def chosen_offsets(path: str | None) -> Callable[[], Offsets]:
-    """The offsets of a file, or None: the store's, looked up each time they are asked for."""
+    """Return a function that reads the offsets of a file, or for None those of the store.
+
+    The store is read again at each call.
+    """
     return stored_offsets if path is None else partial(read_offsets, Path(path))
 
 
 def book_of(offsets: Callable[[], Offsets], journal: Journal | None) -> OffsetBook:
-    """For the screen: the offsets of the journal's store, or those of a file, which are not changed here.
+    """Return the offsets for the screen: those of the journal's store, or the read-only offsets of a file.
 
-    Raises CommandError when the file has mistakes.
+    Raises CommandError if the file has errors.
     """
     if journal is not None and offsets is stored_offsets:
         return journal.book()

@@ -1,7 +1,7 @@
-"""Thumbnails of programs: the finished part drawn small, made on a worker and kept by their contents.
+"""Thumbnails of finished parts, drawn in a worker thread and cached by their contents.
 
-Found again by a hash of all that the part depends on, and of the program text that makes it; a damaged file
-does not unpack and is made anew.
+The file name is a hash of everything on which the part depends, including TurnDesk's own code. A damaged file
+cannot be decompressed and is drawn again.
 """
 
 from __future__ import annotations
@@ -27,14 +27,14 @@ if TYPE_CHECKING:
     from core.proving.program_tools import PartSetting
 
 WIDE, HIGH = 168, 112  # pixels
-MOST = 400  # files; of more the oldest fifth goes
+MOST = 400  # files; beyond this number the oldest fifth is deleted
 _CORE = Path(__file__).parents[2] / "core"
 _AZIMUTH, _TILT = 32.0, 32.0
 
 
 @dataclass(frozen=True, slots=True)
 class Thumbnails:
-    """In ``folder``, for the programs of one machine."""
+    """Cache of thumbnails in ``folder`` for the programs of one machine."""
 
     folder: Path
     machine: Machine
@@ -43,7 +43,10 @@ class Thumbnails:
     high: int = HIGH
 
     def of(self, job: Job, watch: Watch) -> Thumbnail | None:
-        """The picture of the job's part, ``wide`` by ``high``; None: it makes none. ``watch`` may give up."""
+        """Return a picture of the job's part, ``wide`` by ``high`` pixels, or None without a part.
+
+        ``watch`` may raise an exception to cancel.
+        """
         if self.machine.kind != "lathe":
             return None
         setting = self.parts.setting(job, watch)[0]
@@ -77,7 +80,7 @@ class Thumbnails:
         return SolidPicture().draw(part.solid, view, self.wide, self.high)
 
     def _key(self, job: Job, setting: PartSetting) -> str:
-        """What the picture depends on, in a name."""
+        """Return the file name of the thumbnail: a hash of everything that affects the picture."""
         shapes, radii, gang = setting.shapes, setting.nose_radii, setting.gang
         tools = (sorted(shapes.items()), sorted(radii.items()), sorted(gang.items()))
         said = (job.source.name, job.digest, setting.stock, setting.clamping, tools, self.wide, self.high)
@@ -86,7 +89,7 @@ class Thumbnails:
 
 @lru_cache(maxsize=1)
 def _core_version() -> str:
-    """A hash of the program text that makes parts: another TurnDesk may make others."""
+    """Return a hash of the code that makes parts, because another version may make different parts."""
     total = sha256()
     for path in sorted(_CORE.rglob("*.py")):
         total.update(path.read_bytes())
@@ -96,14 +99,14 @@ def _core_version() -> str:
 def _found(path: Path, pixels_wanted: int) -> bytes | None:
     try:
         pixels = zlib.decompress(path.read_bytes())
-        os.utime(path)  # the oldest that nobody looks at go first
+        os.utime(path)  # marks the file as used, because the oldest files are deleted first
     except (OSError, zlib.error):
         return None
     return pixels if len(pixels) == 4 * pixels_wanted else None
 
 
 def _keep(path: Path, pixels: bytes) -> None:
-    """Written aside and renamed; a disk that takes nothing costs the time to draw it again, no more."""
+    """Write the file completely or not at all. After a disk error the picture is simply drawn again."""
     aside = path.with_name(f"{path.name}.{os.getpid()}.part")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -1,4 +1,4 @@
-"""How a desk proves on this machine: programs, MDI lines, a restart, and what other offsets do to a path."""
+"""Proving on this machine: programs, MDI lines, restarts, and the effect of other offsets on a path."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 
 def samples() -> Path:
-    """The folder of the sample programs and their tool offsets."""
+    """Return the folder with the sample programs and their tool offsets."""
     return Path(str(files("resources"))) / "programs"
 
 
@@ -50,9 +50,12 @@ def workshop(
     kept: KeptOfProgram = nothing_kept,
     pictures: bool = True,
 ) -> LoadingSteps:
-    """What loading needs; offsets, shapes of tools, and unit and rapid rate that the job before has ``left``,
-    are those of the moment of loading. ``kept`` is what is kept of the parts of programs. ``pictures``: what
-    is proved will be drawn, and its part proved."""
+    """Return the functions that load a program.
+
+    Offsets, tool shapes, and the unit and rapid rate that the previous job has ``left`` are read at the time
+    of loading, and so are the stored data of a program's part. ``pictures`` means that programs are drawn and
+    their parts proved.
+    """
 
     def new_job(source: Source, block_delete: bool) -> Job:
         if journal is not None:
@@ -74,13 +77,13 @@ def workshop(
 
 
 class _ProofAndPicture:
-    """One pass through a program proves it and draws it; the picture is kept until it is asked for."""
+    """Proof and picture of a program in one pass; the picture is stored until it is requested."""
 
     def __init__(self, machine: Machine, parts: PartDesk, *, pictures: bool) -> None:
         self._machine, self._parts = machine, parts
         self._pictures = pictures
-        self._drawn: tuple[Job, Picture] | None = None  # of the job that was proved last
-        self._trouble: Diagnostic | None = None  # what of its stock cannot be used
+        self._drawn: tuple[Job, Picture] | None = None  # picture of the job that was proved last
+        self._trouble: Diagnostic | None = None  # finding about its stock, or None
 
     def prove(self, job: Job, watch: Watch) -> Proved:
         from app.path.path_picture import PictureBuilder
@@ -108,7 +111,7 @@ class _ProofAndPicture:
         return Proved(proof_of(job, report), report.diagnostics, waits)
 
     def part(self, picture: Picture, watch: Watch) -> PartProved | None:
-        """The proof of its part, of the job that was drawn last; None: there is none."""
+        """Return the proof of the part of the job that was drawn last, or None without a part."""
         if picture.part is None:
             return PartProved(trouble=picture.no_part) if picture.no_part else None
         return self._parts.proved(picture.part, self._trouble, watch)
@@ -131,17 +134,17 @@ def _read(path: Path) -> Source:
 
 
 def _whole(source: Source, *folders: Path) -> Source:
-    """With the subprograms that it calls: from beside it, or from where programs are kept."""
+    """Return the program with the subprograms that it calls, from its folder or the program folders."""
     from core.language.called_files import with_called_files
 
     return with_called_files(source, [*folders, data_folder() / "programs", samples()])
 
 
-# --- From what proving reports to what the executor demands before it starts.
+# --- Conversion of the proof report to the proof that the executor requires before a start.
 
 
 def proof_of(job: Job, report: Report) -> Proof:
-    """The proof of this job; the report must be of this job's text and circumstances."""
+    """Return the proof of this job; the report must be of this job's text and context."""
     return Proof(
         digest=job.digest,
         errors=tuple(d.in_one_line(job.source.name) for d in report.errors),
@@ -153,24 +156,27 @@ def proof_of(job: Job, report: Report) -> Proof:
     )
 
 
-# --- Drawing a program in the frame of other offsets than its own: what a change of offsets does to its path.
+# --- Drawing a program with other offsets, to show the effect of an offset change on its path.
 
 
 def part_comparer(machine: Machine, shapes: Shapes = dict, kept: KeptOfProgram = nothing_kept) -> ComparePart:
-    """Compares the parts that two offsets make of a job on this machine."""
+    """Return a function that compares the parts of a job with two sets of offsets."""
     return PartDesk(machine, shapes, kept, _read).compared
 
 
 def thumbnails(
     machine: Machine, shapes: Shapes, kept: KeptOfProgram, size: tuple[int, int] = (WIDE, HIGH)
 ) -> DrawThumbnail:
-    """Draws the finished part of a job in a size in pixels, and keeps it in the data folder."""
+    """Return a function that draws the finished part of a job and stores it in the data folder.
+
+    ``size`` is in pixels.
+    """
     parts = PartDesk(machine, shapes, kept, _read)
     return Thumbnails(data_folder() / "thumbnails", machine, parts, *size).of
 
 
 def drawer(machine: Machine) -> Draw:
-    """Draws a job on this machine, each tool in the frame of the offset that is given for it."""
+    """Return a function that draws a job, each tool with the offset that is given for it."""
 
     def draw(job: Job, frame: Mapping[int, ToolOffset], watch: Watch) -> Picture:
         from app.path.path_picture import picture_of
@@ -183,7 +189,7 @@ def drawer(machine: Machine) -> Draw:
 
 
 def _seen(blocks: Iterator[Timed], frame: Mapping[int, ToolOffset]) -> Iterator[Timed]:
-    """The same blocks, with part zero where the offsets of ``frame`` have it."""
+    """Yield the blocks with part zero where the offsets of ``frame`` put it."""
     for block, start, end in blocks:
         modal = block.modal
         offset = frame.get(modal.tool, ToolOffset())
@@ -193,16 +199,16 @@ def _seen(blocks: Iterator[Timed], frame: Mapping[int, ToolOffset]) -> Iterator[
             yield replace(block, modal=modal._replace(tool_x=offset.x, tool_z=offset.z)), start, end
 
 
-# --- MDI of a desk: how its lines are proved on this machine.
+# --- MDI: proof of its lines on this machine.
 
 
 def point_of(snapshot: Snapshot) -> Checkpoint:
-    """What the next line inherits at the machine of this instant."""
+    """Return the modal state that the next line inherits from the machine now."""
     return Checkpoint(snapshot.modal, tool_line=-1 if snapshot.tool_open else 0, kept=snapshot.kept)
 
 
 def line_prover(machine: Machine, offsets: Callable[[], Offsets]) -> ProveLine:
-    """Proves a line as a program is proved, from where the slides stand."""
+    """Return a function that proves an MDI line like a program, from the present position of the axes."""
 
     def prove_line(text: str, snapshot: Snapshot, watch: Watch) -> tuple[Job, Proved]:
         from core.proving.prove_program import prove
@@ -219,11 +225,11 @@ def line_prover(machine: Machine, offsets: Callable[[], Offsets]) -> ProveLine:
     return prove_line
 
 
-# --- SEARCHTO of a desk on this machine.
+# --- SEARCHTO on this machine.
 
 
 def rebuilt(job: Job, watch: Watch) -> Search:
-    """What goes through the program of a job; the interpreter is loaded when it is first asked for."""
+    """Return the search through the program of a job; the interpreter is loaded when it is first used."""
     if job.source.dialect is not Dialect.OMNITURN:
         from core.interpreter.restart.program_search import ProgramSearch
 

@@ -1,7 +1,7 @@
-"""Who works at the desk, by name and level, and what he may change. No Qt, never waits.
+"""Signed-in user, access level and permissions of TurnDesk, without Qt and without waiting.
 
-Without people there are no levels: everybody may change everything, and nobody is asked. Signing in is an
-optional feature. Where people are stored and it is absent, the level stays OPERATOR.
+Without configured users, access levels are off and every change is allowed. Signing in is an optional
+feature. If users are stored but the feature is not installed, the level remains OPERATOR.
 """
 
 from __future__ import annotations
@@ -19,29 +19,33 @@ from core.message import Message, join_messages
 from core.store.people import People
 from core.store.store_errors import StoreError
 
-NOBODY = "operator"  # in the history, while nobody has signed in
-_AGAIN = 1.0  # s between two tries to read people that could not be read
+NOBODY = "operator"  # Name in the history while no user is signed in.
+_AGAIN = 1.0  # Seconds between two attempts to read the stored users after an error.
 
 
 class Session(Protocol):
-    """How people sign in. Nothing here waits."""
+    """Interface of the optional sign-in feature. Its methods never wait."""
 
     def used(self) -> None:
-        """A key or a finger: whoever signed in is there."""
+        """Note that the signed-in user pressed a key or touched the screen."""
 
     def look(self, snapshot: Snapshot) -> None:
-        """Once a frame: what was tried, and whether the level falls back."""
+        """Process sign-in attempts and sign out an inactive user; called once a frame."""
 
     def reload(self) -> None:
-        """Read what is stored for signing in. Raises StoreError."""
+        """Read the stored sign-in data again. Raises StoreError."""
 
     def close(self) -> None:
-        """The desk shuts."""
+        """Close the session when TurnDesk closes."""
 
 
 @dataclass(slots=True)
 class Access:
-    """``name`` has signed in, empty: nobody; ``used`` is told of every key and finger."""
+    """The signed-in user, the access level in force and the permissions that follow from them.
+
+    ``name`` is the name of the signed-in user, empty if no user is signed in. Call ``used`` for every key
+    press and touch.
+    """
 
     persistence: Persistence = field(default_factory=Persistence)
     say: Callable[[str], None] = lambda _text: None
@@ -49,10 +53,10 @@ class Access:
     people: People = field(default_factory=People)
     name: str = ""
     level: Level = Level.OPERATOR
-    session: Session | None = None  # None: nobody can sign in
-    pending: str = ""  # a service reset that is under way, for the header
-    _unread: float | None = None  # when people were tried last, where they could not be read
-    _lifted: bool = False  # whether a service reset has ended levels that cannot be read
+    session: Session | None = None  # None: the sign-in feature is not installed.
+    pending: str = ""  # Text for the header while a service reset is in progress.
+    _unread: float | None = None  # Time of the last failed attempt to read the users.
+    _lifted: bool = False  # True after a service reset removed levels that could not be read.
 
     def __post_init__(self) -> None:
         self.reload()
@@ -60,19 +64,19 @@ class Access:
 
     @property
     def is_unread(self) -> bool:
-        """Whether the people could not be read, so that nobody knows who they are."""
+        """Whether the stored users could not be read."""
         return self._unread is not None
 
     # --- who and what --------------------------------------------------------------------------------
 
     @property
     def who(self) -> str:
-        """By whom something is changed, for the history."""
+        """The user name that the history records for a change."""
         return self.name or NOBODY
 
     @property
     def words(self) -> str:
-        """Who is in force, for the header; empty without levels."""
+        """The user and level in force, for the header. Empty if access levels are off."""
         if not self.people.on:
             return ""
         if self.pending:
@@ -81,7 +85,7 @@ class Access:
         return join_messages(" · ", (data(self.name), level)) if self.name else level
 
     def refusal(self, act: Act) -> str:
-        """Why this is not changed now; empty when it may be."""
+        """Return why the level in force does not permit this act. Empty if the act is permitted."""
         needed = level_for(act)
         if not self.people.on or self.level >= needed:
             return ""
@@ -91,7 +95,7 @@ class Access:
         return tr(Message(text, what=tr(act.value), level=tr(needed.name), now=tr(self.level.name)))
 
     def sign_out(self, why: str = "") -> None:
-        """Nobody is signed in any more: the level is OPERATOR."""
+        """Sign out the user and set the level to OPERATOR. ``why`` is added to the log entry."""
         if self.name:
             self.note(Message("{name} has signed out{why}", name=self.name, why=why))
         self.name, self.level = "", Level.OPERATOR
@@ -99,21 +103,24 @@ class Access:
     # --- time ----------------------------------------------------------------------------------------
 
     def used(self) -> None:
-        """A key or a finger: whoever signed in is there."""
+        """Note that the signed-in user pressed a key or touched the screen."""
         if self.session is not None:
             self.session.used()
 
     def look(self, snapshot: Snapshot) -> None:
-        """Once a frame: people that could not be read, and what the session has to do."""
+        """Retry reading the users after an error, and update the session; called once a frame."""
         if self._unread is not None and self.clock() - self._unread >= _AGAIN:
-            self.reload()  # a store that was away at the start is there some time, and its levels with it
+            self.reload()  # A store that could not be opened at the start may become available later.
         if self.session is not None:
             self.session.look(snapshot)
 
     # --- people --------------------------------------------------------------------------------------
 
     def reload(self) -> None:
-        """Read who works here, after a change of it or a restore."""
+        """Read the stored users again, after a change or a restore.
+
+        A user who was removed or whose level was lowered is signed out.
+        """
         try:
             self.people = self.persistence.people()
             if self.session is not None:
@@ -121,23 +128,27 @@ class Access:
         except StoreError:
             self._unread = self.clock()
             if not self._lifted:
-                self.people = self.people._replace(damaged=True)  # unknown: the strictest level is in force
-            return  # the desk says by itself that nothing can be read
+                # Users are unknown, so the strictest level applies.
+                self.people = self.people._replace(damaged=True)
+            return  # TurnDesk shows the storage error elsewhere.
         self._unread = None
         row = self.people.named(self.name)
         if self.name and (row is None or row.level < self.level):
             self.sign_out()
 
     def lift(self) -> None:
-        """End the levels after a service reset; also levels that cannot be read, until TurnDesk ends."""
+        """Remove the access levels after a service reset.
+
+        Levels that cannot be read are ignored until TurnDesk closes.
+        """
         self._lifted, self.people = True, People()
         self.reload()
 
     def note(self, text: str) -> None:
-        """A line of the log, with the name of whoever is signed in."""
+        """Write a line to the log with the name of the signed-in user."""
         self.persistence.note_access(text, self.who)
 
     def close(self) -> None:
-        """The desk shuts."""
+        """Close the session when TurnDesk closes."""
         if self.session is not None:
             self.session.close()

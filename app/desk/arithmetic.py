@@ -1,4 +1,4 @@
-"""Arithmetic in entries: numbers as an operator types them, ``.5-.002``, ``(1.25+.03)/2``, nothing else."""
+"""Arithmetic expressions in input fields, for example ``.5-.002`` or ``(1.25+.03)/2``."""
 
 from __future__ import annotations
 
@@ -7,17 +7,20 @@ from math import isfinite
 
 from core.message import Message
 
-CHARACTERS = frozenset("0123456789.,+-*/()−")  # that an entry is typed with
-LONGEST = 80  # characters: more than any sum on the back of a drawing
+CHARACTERS = frozenset("0123456789.,+-*/()−")  # Characters that an expression may contain.
+LONGEST = 80  # Maximum length of an expression in characters.
 _TOKEN = re.compile(r"\s*(?:([0-9]+\.?[0-9]*|\.[0-9]+)|([-+*/()−]))")
 
 
 class EntryError(ValueError):
-    """The entry is no number; the sentence says why."""
+    """The expression is not a number. The message gives the reason."""
 
 
 def value_of(entry: str) -> float:
-    """The number that ``entry`` comes to. Raises EntryError with what is refused, where and why."""
+    """Return the value of an arithmetic expression.
+
+    Raises EntryError with the invalid character, its position and the reason.
+    """
     if not entry.strip():
         raise EntryError("no value entered; type a number")
     if len(entry) > LONGEST:
@@ -38,7 +41,10 @@ def value_of(entry: str) -> float:
 
 
 def line_of(entry: str) -> int | None:
-    """The number of a line that ``entry`` comes to, such as ``20+5``; None when it comes to none."""
+    """Return the line number that an expression such as ``20+5`` evaluates to.
+
+    None if the expression is invalid, or if its value is not an integer of at least 1.
+    """
     try:
         value = value_of(entry)
     except EntryError:
@@ -47,7 +53,7 @@ def line_of(entry: str) -> int | None:
 
 
 class _Reader:
-    """One entry, read from left to right: sum, product, sign, number or bracket."""
+    """Recursive-descent parser of one expression with sums, products, signs, numbers and parentheses."""
 
     def __init__(self, entry: str) -> None:
         self._entry = entry
@@ -120,7 +126,10 @@ class _Reader:
 
 
 def _tokens(entry: str) -> list[tuple[str, int]]:
-    """Numbers and signs, each with the character where it stands, counted from 1."""
+    """Return the numbers and operators of an expression, each with its column, counted from 1.
+
+    Raises EntryError for a character that an expression cannot contain.
+    """
     tokens, at = [], 0
     while at < len(entry):
         match = _TOKEN.match(entry, at)

@@ -1,8 +1,8 @@
-"""Slow and repeated work of the desk, on threads of its own.
+"""Slow and repeated work of TurnDesk on worker threads.
 
-Of slow work the newest request wins, and answers are taken up once a frame. What is proved, drawn or looked
-for is only worth something as long as nobody wants something newer; what is written is written to its end.
-Whoever asks is answered on his own thread, when he polls.
+For proving, drawing and searching, the newest request replaces older ones, because an outdated result is
+useless. Queued work, such as writing, always runs to its end. Results are delivered on the caller's thread
+when the caller polls, once a frame.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from typing import TypeVar
 
 _log = logging.getLogger(__name__)
 
-ENDS = 2.0  # s that closing waits for work in hand
+ENDS = 2.0  # Seconds that closing waits for the work in progress.
 T = TypeVar("T")
 Watch = Callable[[float], None]
 """Told how far slow work has come; it may raise AbandonedError, which has to be let through."""
@@ -26,10 +26,10 @@ Failed = Callable[[str], None]
 
 
 class DaemonWorker:
-    """Carries tasks out, one after the other, on one daemon thread; the thread starts with the first task.
+    """One daemon thread that executes tasks in order. The thread starts with the first task.
 
-    A ThreadPoolExecutor would join its threads when the interpreter ends, however long they hang. A task may
-    raise nothing.
+    A ThreadPoolExecutor would join its threads when the interpreter exits, even if they hang. A task must not
+    raise an exception.
     """
 
     def __init__(self, name: str) -> None:
@@ -40,7 +40,7 @@ class DaemonWorker:
         self._closed = False
 
     def submit(self, task: Callable[[], None]) -> None:
-        """Queue a task; a closed worker drops it."""
+        """Queue a task. A closed worker drops the task."""
         with self._lock:
             if self._closed:
                 return
@@ -50,7 +50,7 @@ class DaemonWorker:
                 self._thread.start()
 
     def close(self, limit: float) -> None:
-        """Finish the queued tasks; wait ``limit`` seconds for them at most."""
+        """Finish the queued tasks, but wait for them for ``limit`` seconds at most."""
         with self._lock:
             self._closed = True
             self._tasks.put(None)
@@ -63,11 +63,11 @@ class DaemonWorker:
 
 
 class AbandonedError(Exception):
-    """Something newer is wanted: the work in hand is given up."""
+    """The work in progress is canceled because a newer request replaced it."""
 
 
 def sentence(error: BaseException) -> str:
-    """What a failure on a worker is called on the screen."""
+    """Return the text of a worker's error for the screen."""
     if isinstance(error, OSError) and error.strerror:
         return error.strerror
     return str(error) or type(error).__name__
@@ -75,25 +75,26 @@ def sentence(error: BaseException) -> str:
 
 @dataclass(slots=True, eq=False)
 class Request:
-    """One request, handed to the work that it is for; called by that work, it is its ``Watch``."""
+    """One request to a worker. The work calls the request as its ``Watch`` to report progress."""
 
     worker: Latest
-    run: Callable[[Request], Callable[[], None]]  # does the work; what it returns gives the answer
+    # Does the work and returns the function that delivers the result.
+    run: Callable[[Request], Callable[[], None]]
     failed: Failed
-    queued: bool  # worked to its end, whatever is asked for meanwhile
+    queued: bool  # Runs to its end even if a newer request arrives.
     wanted: bool = True
-    overtaken: bool = False  # by a newer one, which waits as long as the worker has patience
+    overtaken: bool = False  # Replaced by a newer request, which waits for ``patience`` seconds.
     began: float = 0.0
 
     def __call__(self, reached: float = 0.0) -> None:
-        """The work has come so far. Raises AbandonedError when it is to be given up."""
+        """Report the progress of the work. Raises AbandonedError if the work must stop."""
         self.worker.go_on(self)
         self.worker.reached = int(reached)
 
     def publish(self, put: Callable[[], None]) -> None:
-        """Call ``put`` from the worker, with what is known so far; nothing newer can be asked for meanwhile.
+        """Call ``put`` on the worker with an intermediate result, while no newer request can arrive.
 
-        Raises AbandonedError when nobody wants it any more.
+        Raises AbandonedError if the result is no longer wanted.
         """
         with self.worker.lock:
             if not self.wanted:
@@ -103,20 +104,21 @@ class Request:
 
 @dataclass(slots=True)
 class Latest:
-    """``ask`` takes the place of what was asked before; ``queue`` waits for its turn and is never given up.
+    """A worker on which a new request replaces the previous one.
 
-    For what is typed: ``quiet`` seconds without another request before work begins, put off no longer than
-    ``longest``; and ``patience`` seconds for which an overtaken request may still come to its end. ``beside``
-    is another worker whose thread this one shares.
+    ``ask`` replaces the previous request. ``queue`` adds work that is never canceled. For requests that
+    follow typing, work begins after ``quiet`` seconds without another request, but at the latest after
+    ``longest`` seconds. A replaced request may continue for ``patience`` seconds. ``beside`` is another
+    worker whose thread this worker shares.
     """
 
-    name: str  # of the thread
+    name: str  # Name of the thread.
     quiet: float = 0.0
     longest: float = 0.0
     patience: float = 0.0
     beside: Latest | None = None
     clock: Callable[[], float] = time.monotonic
-    reached: int = 0  # how far the work in hand has come
+    reached: int = 0  # Progress of the work in progress, in the unit of the work.
     lock: threading.Condition = field(default_factory=threading.Condition)
     _waiting: deque[Request] = field(default_factory=deque)
     _current: Request | None = None
@@ -129,20 +131,20 @@ class Latest:
     def __post_init__(self) -> None:
         self._pool = DaemonWorker(self.name) if self.beside is None else self.beside._pool
 
-    # --- the side that asks --------------------------------------------------------------------------
+    # --- caller's side -------------------------------------------------------------------------------
 
     @property
     def busy(self) -> bool:
-        """Whether an answer is still to come, or to be taken up."""
+        """Whether work is in progress or a result is waiting for ``poll``."""
         with self.lock:
             at_work = self._current is not None and self._current.wanted
             return at_work or bool(self._waiting or self._answers)
 
     def ask(self, work: Callable[[Request], T], done: Callable[[T], None], failed: Failed) -> None:
-        """Have ``work`` done instead of what was asked for before.
+        """Request ``work`` in place of the previous request.
 
-        ``poll`` then calls ``done`` with its answer, or ``failed`` with a sentence. ``work`` gets the request
-        as its watch.
+        ``poll`` later calls ``done`` with the result, or ``failed`` with an error text. ``work`` gets the
+        request as its watch.
         """
         with self.lock:
             if not self.patience:
@@ -153,12 +155,15 @@ class Latest:
             self._begin(work, done, failed, queued=False)
 
     def queue(self, work: Callable[[], T], done: Callable[[T], None], failed: Failed) -> None:
-        """Have ``work`` done after all that waits; nothing takes its place. Answered as ``ask`` is."""
+        """Add ``work`` that runs after all waiting work and is never canceled.
+
+        ``poll`` delivers the result as for ``ask``.
+        """
         with self.lock:
             self._begin(lambda _request: work(), done, failed, queued=True)
 
     def give_up(self) -> None:
-        """Nobody wants the answer any more; what was queued is done and answered all the same."""
+        """Cancel the current request. Queued work continues, and its result is still delivered."""
         with self.lock:
             self._drop_waiting()
             if self._current is not None and not self._current.queued:
@@ -167,7 +172,7 @@ class Latest:
             self.reached = 0
 
     def poll(self) -> None:
-        """Once a frame: give the answers that have come, in the order of the work."""
+        """Deliver the finished results in the order of the work; called once a frame."""
         while True:
             with self.lock:
                 if not self._answers:
@@ -176,7 +181,7 @@ class Latest:
             answer()
 
     def settle(self, timeout: float) -> None:
-        """Wait for the answers and give them; for scripts and tests, never for the screen."""
+        """Wait for the results and deliver them. For scripts and tests only, because this method blocks."""
         end = time.monotonic() + timeout
         while self.busy and time.monotonic() < end:
             with self.lock:
@@ -184,9 +189,9 @@ class Latest:
             self.poll()
 
     def close(self) -> None:
-        """End the thread: what was asked for is given up, what was queued is done to its end, unanswered.
+        """End the thread. Requests are canceled. Queued work is finished, but its result is not delivered.
 
-        Work that takes longer than ``ENDS`` seconds is left to the daemon thread.
+        Work that takes longer than ``ENDS`` seconds remains on the daemon thread.
         """
         with self.lock:
             self._closing = True
@@ -214,10 +219,10 @@ class Latest:
     def _drop_waiting(self) -> None:
         self._waiting = deque(each for each in self._waiting if each.queued)
 
-    # --- the thread ----------------------------------------------------------------------------------
+    # --- worker thread -------------------------------------------------------------------------------
 
     def go_on(self, request: Request) -> None:
-        """Raises AbandonedError when the work at this request is to be given up."""
+        """Check that the work on this request may continue. Raises AbandonedError if not."""
         late = request.overtaken and self.clock() - request.began > self.patience
         if late or not request.wanted:
             raise AbandonedError
@@ -232,7 +237,10 @@ class Latest:
                 self.lock.notify_all()
 
     def _next(self) -> Request | None:
-        """What to do now, once the keys rest or have been waited for long enough; None: nothing."""
+        """Return the next request, or None if no request waits.
+
+        Wait until typing has paused for ``quiet`` seconds, or until ``longest`` seconds have passed.
+        """
         with self.lock:
             end = self.clock() + self.longest
             while self._waiting and not self._closing:
@@ -250,7 +258,7 @@ class Latest:
 
 
 def _answer_of(request: Request) -> Callable[[], None] | None:
-    """Do the work; None when it was given up."""
+    """Do the work and return the function that delivers its result; None if the work was canceled."""
     try:
         return request.run(request)
     except AbandonedError:
@@ -263,12 +271,15 @@ def _answer_of(request: Request) -> Callable[[], None] | None:
 
 
 def _is_a_defect(error: BaseException) -> bool:
-    """Whether it is no sentence of ours or of the system: whoever mends it needs its traceback."""
+    """Return whether an error is a programming error, so that its traceback must be logged."""
     return type(error).__module__ == "builtins" and not isinstance(error, OSError | ValueError)
 
 
 class RepeatingThread:
-    """Calls ``look`` after ``first`` s, then every ``every`` s; its name is what the watchdog knows."""
+    """A thread that calls ``look`` after ``first`` seconds and then every ``every`` seconds.
+
+    The watchdog identifies the thread by its name.
+    """
 
     def __init__(self, name: str, look: Callable[[], object], every: float, first: float = 0.0) -> None:
         self._look, self._every, self._first = look, every, first
@@ -277,15 +288,18 @@ class RepeatingThread:
 
     @property
     def closing(self) -> bool:
-        """Whether it was told to end; else its end is a mistake."""
+        """Whether ``close`` was called. If the thread ends without ``close``, its end is an error."""
         return self._closing.is_set()
 
     def start(self) -> None:
-        """Once."""
+        """Start the thread. Call this once."""
         self._thread.start()
 
     def close(self) -> None:
-        """Wait ``ENDS`` seconds at most for a look that is under way; one that hangs is left running."""
+        """End the thread. Wait for a call in progress for ``ENDS`` seconds at most.
+
+        A call that hangs remains on the daemon thread.
+        """
         self._closing.set()
         if self._thread.is_alive():
             self._thread.join(ENDS)

@@ -1,4 +1,4 @@
-"""Exit statuses, and the one exception that ends a command with a sentence."""
+"""Exit statuses of commands, and the exception that ends a command with an error message."""
 
 from __future__ import annotations
 
@@ -9,16 +9,19 @@ from contextlib import contextmanager
 from core.message import CodedError, Message, error_code
 
 EXIT_OK, EXIT_ERRORS, EXIT_USAGE = 0, 1, 2
-EXIT_INTERRUPTED = 130  # what a shell tells of Ctrl+C
+EXIT_INTERRUPTED = 130  # Status that a shell reports for Ctrl+C.
 
 
 class CommandError(CodedError):
-    """The command cannot go on: usage, unreadable file, bad machine file. Ends with status 2."""
+    """The command cannot continue because of its usage, an unreadable file or a bad machine file.
+
+    The command then exits with status 2.
+    """
 
 
 @contextmanager
 def as_command_error(*kinds: type[Exception]) -> Iterator[None]:
-    """Let errors of these types end the command with their sentence."""
+    """Convert exceptions of these types to CommandError with the same text."""
     try:
         yield
     except kinds as error:
@@ -26,13 +29,13 @@ def as_command_error(*kinds: type[Exception]) -> Iterator[None]:
 
 
 def cannot_write(file: object, error: OSError) -> CommandError:
-    """Return the error for a file that the system does not let us write."""
+    """Return the error for a file that the operating system does not let TurnDesk write."""
     return CommandError(
         Message("{file} cannot be written: {cause}", file=file, cause=error.strerror), "cannot-write"
     )
 
 
 def report_refusal(error: CodedError) -> int:
-    """Print why the command cannot continue; return its exit status."""
+    """Print why the command cannot continue, and return its exit status."""
     sys.stderr.write(f"turndesk: {error}\n")
     return EXIT_USAGE

@@ -1,7 +1,7 @@
-"""A backup of all that is kept, once a day: verified, rotated, where the machine file says. No Qt.
+"""Daily backup of the store, verified and rotated, in the folder that the machine file specifies. No Qt.
 
-It waits for a standstill, but not for longer than half a day. The clock on the wall may be wrong: what is
-dated later than now was made before it was set back, and is older than anything else.
+The backup waits for a standstill of the machine, but for 12 h at most. The computer's clock may be wrong. A
+backup with a date in the future was made before the clock was set back, and counts as the oldest.
 """
 
 from __future__ import annotations
@@ -25,10 +25,11 @@ _FIRST_LOOK, _LOOK = 60.0, 600.0  # s
 
 @dataclass(slots=True)
 class DailyBackup:
-    """``copy`` writes a backup, ``check`` tells what is wrong in one; ``still``: whether nothing runs.
+    """Makes a backup each day, verifies it and deletes old backups.
 
-    ``apart``: what is backed up, where the machine file names another place; ``hint`` is told when that lies
-    on the same disk.
+    ``copy`` writes a backup. ``check`` returns the defects of a backup file. ``still`` returns whether the
+    machine is at rest. ``apart`` is the folder of the backed-up data if the machine file specifies another
+    folder for backups. ``hint`` is called if that folder is on the same disk.
     """
 
     folder: Path
@@ -48,15 +49,15 @@ class DailyBackup:
         self._thread = RepeatingThread("daily-backup", self.look, _LOOK, _FIRST_LOOK)
 
     def start(self) -> None:
-        """Once."""
+        """Start the thread that makes the backups. Call this once."""
         self._thread.start()
 
     def close(self) -> None:
-        """A backup that is under way is finished."""
+        """End the thread after a backup in progress is finished."""
         self._thread.close()
 
     def look(self) -> Path | None:
-        """Make the backup of the day where it is due; answers it. What is in the way is told once a day."""
+        """Make the daily backup if it is due, and return its path. Report an error once a day."""
         try:
             age = self._age()
             if age is not None and (age < _DAY or (age < _DAY + _PATIENCE and not self.still())):
@@ -69,7 +70,11 @@ class DailyBackup:
         return made
 
     def _age(self) -> timedelta | None:
-        """Of the newest; None: there is none. A backup of the future, by a clock set back, counts as none."""
+        """Return the age of the newest backup.
+
+        None if no backup exists, or if the newest one has a date in the future because the clock was set
+        back.
+        """
         newest = max(self._there(), key=partial(_made_at, self._name()), default=None)
         if newest is None:
             return None
@@ -83,7 +88,10 @@ class DailyBackup:
         return f"{DAILY}{self.now():%Y-%m-%d-%H%M%S}{ENDING}"
 
     def _made(self) -> Path:
-        """Raises OSError or StoreError; what is no good leaves no file, and the older ones stay."""
+        """Write and verify a backup, delete the oldest backups, and return the new path.
+
+        A backup that fails the check is deleted, and the older ones remain. Raises OSError or StoreError.
+        """
         self.folder.mkdir(parents=True, exist_ok=True)
         target = self.folder / self._name()
         self.copy(target)
@@ -104,7 +112,10 @@ class DailyBackup:
         return target
 
     def _look_at_the_disk(self) -> None:
-        """Say once that another place is none: a disk that is not mounted leaves its folder on this one."""
+        """Report once if the backup folder is on the same disk as the data.
+
+        This happens if the backup disk is not mounted.
+        """
         if self.apart is not None and not self._hinted:
             self._hinted = self.folder.stat().st_dev == self.apart.stat().st_dev
             if self._hinted:
@@ -118,5 +129,5 @@ class DailyBackup:
 
 
 def _made_at(now: str, path: Path) -> tuple[bool, str]:
-    """The order in which backups were made, by their names and that of one made now."""
+    """Return the sort key for the age of a backup. ``now`` is the name of a backup made now."""
     return path.name <= now, path.name

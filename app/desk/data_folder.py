@@ -1,4 +1,4 @@
-"""The data folder (TURNDESK_HOME): where this installation keeps store, logs and settings."""
+"""The data folder (``TURNDESK_HOME``) of this installation, with its store, logs and settings."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ from pathlib import Path
 from core.message import CodedError, Message
 
 HOME = "TURNDESK_HOME"
-BACKUPS = "backups"  # the folder of backups, within it
-RECORDS = "records"  # the folder of what the scope has recorded, within it
+BACKUPS = "backups"  # Subfolder for backups.
+RECORDS = "records"  # Subfolder for recordings of the scope.
 
 
 class DataFolderError(CodedError):
-    """TURNDESK_HOME names no folder, or has to; ``str()`` is the sentence for whoever can set it."""
+    """TURNDESK_HOME is not a folder, or must be set. The text explains how to set it."""
 
 
 def check_data_folder() -> None:
-    """Refuse a TURNDESK_HOME that is a file or lies below one; one that is not there yet will be made.
+    """Check that TURNDESK_HOME is not a file or inside a file. A folder that does not exist is accepted.
 
-    Raises HomeError.
+    Raises DataFolderError.
     """
     named = os.environ.get(HOME, "")
     if not named:
@@ -37,9 +37,10 @@ def check_data_folder() -> None:
 
 
 def data_folder() -> Path:
-    """The folder of store, logs and settings: ``TURNDESK_HOME``, else the platform's data folder.
+    """Return the folder of the store, logs and settings.
 
-    Raises DataFolderError for a user without a home, as in a container.
+    This is ``TURNDESK_HOME`` if it is set, else the platform's data folder. Raises DataFolderError for a user
+    without a home folder, as in a container.
     """
     named = os.environ.get(HOME, "")
     try:

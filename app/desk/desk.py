@@ -1,7 +1,7 @@
-"""The desk: what an operator can do on the Automatic page, and what the control answers. No Qt, never waits.
+"""The model of the Automatic page and of the running TurnDesk, without Qt and without waiting.
 
-Every method that a key or finger calls returns at once. What it cannot do it says on the prompt line
-(``notice``); what it does it posts, and the next snapshot tells whether it happened.
+Every method that a key or a touch calls returns at once. If the action is not possible, the prompt line shows
+why (``notice``). Otherwise the method posts a command, and a later snapshot shows the result.
 """
 
 from __future__ import annotations
@@ -62,8 +62,8 @@ _NO_MACHINE = DeskMachine()
 class Desk:
     """The model of the Automatic page, and the objects that all pages share.
 
-    ``persistence`` stores settings, levels, counts and runs; without it they last until the desk closes.
-    ``first_move`` checks the first move of a start, where the machine can do that.
+    ``persistence`` stores settings, levels, counts and runs. Without it, they are lost when TurnDesk closes.
+    ``first_move`` checks the first move of a start, if the machine supports this check.
     """
 
     def __init__(
@@ -84,7 +84,8 @@ class Desk:
         self.machine: Final = machine
         self.first_move: Final = first_move
         self.clock: Final = clock or DeskClock()
-        self.changes: Final = changes or FileChanges()  # of the machine file, to be accepted
+        # Changes of the machine file that the operator must accept.
+        self.changes: Final = changes or FileChanges()
         self.book: Final = book or OffsetBook(locked=NONE_KEPT)
         self.window: Final = WindowState(LatePresses(self.snapshot, self.clock.seconds))
         self.control: Final = replace(control, post=self.window.late.guard(control.post))
@@ -129,7 +130,7 @@ class Desk:
         self.keep(partial(self.settings.persistence.save_setting, LAST_PROGRAM, path))
 
     def post(self, command: Command) -> None:
-        """Hand a command to the control; the next snapshots tell what becomes of it."""
+        """Send a command to the control. Later snapshots show its effect."""
         self.control.post(command)
 
     def snapshot(self) -> Snapshot:
@@ -137,45 +138,46 @@ class Desk:
         return self.control.snapshot()
 
     def say(self, text: str) -> None:
-        """Show an answer; it remains for 4 s or until the next key."""
+        """Show a message for 4 s or until the next key."""
         self.answers.say(text)
 
     def warn(self, text: str) -> None:
-        """Show an answer that no key removes before its 4 s are over: input was dropped, for example."""
+        """Show a message for 4 s, even if a key is pressed, for example because input was dropped."""
         self.answers.say(text, lasting=True)
 
     def done(self, text: str) -> None:
-        """Say that it was done: a success looks different from a refusal."""
+        """Show a success message, which is drawn differently from a refusal."""
         self.answers.say(text, done=True)
 
     def refuse(self, why: str) -> None:
-        """Say that it was not done, and why."""
+        """Show that an action was rejected, with the reason."""
         self.say(Message("REJECTED: {why}", why=why))
 
     def ask(self, question: str, yes: Callable[[], None], key: str = YES) -> None:
-        """Ask before something is lost or moves: ``PRESS Y TO …, N TO …``. Esc is N.
+        """Ask the operator to confirm an action that loses data or moves the machine.
 
-        ``key`` means yes, and is never the one that asked; a finger has a target on the prompt line.
+        The question has the form ``PRESS Y TO …, N TO …``. Esc means N. ``key`` means yes, and differs from
+        the key that caused the question. On a touch screen, the prompt line has a button for the answer.
         """
         self.answers.ask(question, yes, key)
 
     @property
     def asked(self) -> str:
-        """The key that means yes to the question that stands; empty while none does."""
+        """The key that means yes to the open question. Empty if no question is open."""
         return self.answers.key if self.answers.asked is not None else ""
 
     def clear(self) -> None:
-        """Take the answer or the question back."""
+        """Remove the message or the question from the prompt line."""
         self.answers.take_back()
 
     @property
     def notice(self) -> str:
-        """The answer to the last key, or without one the question; empty without either."""
+        """The message for the last key, or else the open question. Empty if there is neither."""
         return self.answers.notice
 
     @property
     def start_words(self) -> str:
-        """How a cycle is started at this machine."""
+        """The instruction for starting a cycle at this machine."""
         if self.control.panel is None:
             return "PRESS BOTH PALM BUTTONS" if self.machine.two_hand else "PRESS CYCLE START"
         if self.machine.two_hand and self.machine.one_hand and self.settings.now.latched:
@@ -184,7 +186,7 @@ class Desk:
 
     @property
     def release_words(self) -> str:
-        """How the E-stop is freed at this machine."""
+        """The instruction for releasing the E-stop at this machine."""
         if self.window.has_field():
             by_hand = "F1, THEN U: RELEASE E-STOP"
             return by_hand if self.control.panel is not None else "RELEASE THE E-STOP (F1: LEAVE THE PAGE)"
@@ -192,44 +194,47 @@ class Desk:
 
     @property
     def readout(self) -> Readout:
-        """What the large figures show."""
+        """The kind of value that the large position display shows."""
         return Readout(self.settings.now.readout)
 
     def refused(self, act: Act) -> bool:
-        """Whether the level in force is too low to change this; it is said then, with how to get it."""
+        """Return whether the access level is too low for this act, and show the reason if it is."""
         why = self.access.refusal(act)
         if why:
             self.say(why)
         return bool(why)
 
     def choose_setting(self, name: str, value: object) -> None:
-        """Take a choice of the screen; where it cannot be kept it counts until the end, and that is said."""
+        """Apply a screen setting.
+
+        If it cannot be saved, a message is shown and the setting lasts until TurnDesk closes.
+        """
         if not self.refused(Act.SCREEN):
             self.keep(partial(self.settings.choose, name, value))
 
     def keep(self, change: Callable[[], None]) -> None:
-        """Do what is to be kept; that it is not is said."""
+        """Call a function that saves data, and show a message if saving fails."""
         try:
             change()
         except StoreError as error:
             self.say(Message("NOT SAVED: {error}", error=error))
 
     def next_readout(self) -> None:
-        """Position, distance to go, distance from home."""
+        """Switch the large position display to position, distance to go or distance from home in turn."""
         self.choose_setting("readout", self.readout.following.value)
 
     def close(self) -> None:
-        """Stop the machine and close its drivers; then end the workers and all that is attached."""
+        """Stop the machine and close its drivers, then end the workers and close all attached models."""
         own = [ClosingStep("loading", self.session.close), ClosingStep("levels", self.access.close)]
         self.closing.close([*own, *self.pages.closing_steps()])
 
     def hear(self, event: Event) -> None:
-        """What the executor has to say; it may be called from its thread."""
+        """Accept an event of the executor. This method may be called from the executor's thread."""
         self.answers.hear(event)
         self.log.hear(event)
 
     def barred(self) -> str:
-        """Why the palms start nothing now; empty when they may."""
+        """Return why the start buttons have no effect now. Empty if they can start a cycle."""
         if self.window.is_stop_held() or not self.window.starts_here:
             return prompt_line.STOP_HELD if self.window.is_stop_held() else prompt_line.NOT_HERE
         if self.storage.restoring:
@@ -240,14 +245,14 @@ class Desk:
         if self.snapshot().state is not State.IDLE:
             return ""
         if loaded.phase is Phase.UNREADABLE:
-            return prompt_line.refusal(loaded)  # the executor still has what was there before
+            return prompt_line.refusal(loaded)  # The executor still has the previous program.
         stale = self.rebuilding.wanted or self.book.busy or loaded.phase is Phase.READING
         return prompt_line.STALE if stale else ""
 
     # --- every frame ---------------------------------------------------------------------------------
 
     def look(self) -> tuple[Snapshot, MachineStatus, Loaded]:
-        """One snapshot, and what the page shows of it; called once a frame."""
+        """Update the models once a frame. Return the snapshot, the machine status and the loaded program."""
         self.hands.turn_knobs()
         snapshot = self.snapshot()
         self.access.look(snapshot)
@@ -272,7 +277,7 @@ class Desk:
         return snapshot, view, loaded
 
     def _see_runs(self, snapshot: Snapshot, loaded: Loaded) -> None:
-        if snapshot.starts not in LINES:  # a line of MDI is no run of the program
+        if snapshot.starts not in LINES:  # An MDI line does not count as a run of the program.
             self.runs.see(snapshot, loaded, self.post, self.say)
             self.pages.see_run(snapshot, loaded)
         self.pages.see_frame(snapshot)
@@ -282,7 +287,7 @@ class Desk:
             self.keep(partial(self.runs.follow_first_job, snapshot, loaded))
 
     def first_move_refusal(self, snapshot: Snapshot) -> str:
-        """Why Cycle Start does not begin the program from here; empty when its first move is clear."""
+        """Return why the first move prevents a start of the program. Empty if the first move is clear."""
         if self.first_move is None or snapshot.state is not State.IDLE:
             return ""
         return self.first_move.refusal if snapshot.starts is Starts.PROGRAM else ""
@@ -290,14 +295,20 @@ class Desk:
     # --- keys ----------------------------------------------------------------------------------------
 
     def switch(self, name: str) -> None:
-        """Turn ``single_block``, ``optional_stop``, ``cycle_repeat`` or ``no_count`` over."""
+        """Toggle ``single_block``, ``optional_stop``, ``cycle_repeat`` or ``no_count``.
+
+        Raises ValueError for another name.
+        """
         if name not in SWITCHES:
             raise ValueError(f"there is no switch called {name!r}")
         self.clear()
         self.post(SetSwitch(name, self.station.posted.toggled(name, getattr(self.snapshot(), name))))
 
     def may_close(self, close: Callable[[], None]) -> bool:
-        """Whether the control may be left; where something would be lost by it Y does ``close``."""
+        """Return whether TurnDesk can close without losing unsaved work.
+
+        If work would be lost, ask first; Y then calls ``close``.
+        """
         waiting = self.storage.waiting()
         if waiting:
             words = tr("UNSAVED WORK WILL BE LOST: {what}. Y: CLOSE   N: STAY")
@@ -305,12 +316,15 @@ class Desk:
         return not waiting
 
     def feed_hold(self, by: str = BY_SCREEN, press: int = 0) -> None:
-        """Feed hold, whatever else is going on; ``press`` is the number of the press of a key."""
+        """Start feed hold in any state of the machine.
+
+        ``press`` is the number of the key press, 0 if unknown.
+        """
         self.post(FeedHold(by, press))
         self.clear()
 
     def reset(self) -> None:
-        """Acknowledge an alarm; give up an interrupted program, after asking once."""
+        """Acknowledge an alarm, or cancel an interrupted program after the operator confirms."""
         state = self.snapshot().state
         if state in prompt_line.MOVING:
             self.say("THE MACHINE IS MOVING. FIRST PRESS PAUSE (FEED HOLD)")
@@ -324,7 +338,11 @@ class Desk:
         self.post(Reset())
 
     def yes(self) -> None:
-        """Y: yes to the question that stands, or else to what is asked about an interrupted job."""
+        """Handle the key Y.
+
+        Y confirms the open question. Without a question, Y confirms that an interrupted job starts again at
+        line 1.
+        """
         snapshot = self.snapshot()
         found, here = snapshot.interrupted, self.window.starts_here
         if self.asked:
@@ -340,13 +358,13 @@ class Desk:
             self.post(ConfirmStart(found.at))
 
     def no(self) -> None:
-        """N: no to the question that is asked, or to the start at line 1 that was confirmed; never more."""
+        """Handle the key N: reject the open question, or cancel the confirmed start at line 1."""
         self.clear()
         if self.snapshot().confirmed:
             self.post(ConfirmStart(""))
 
     def enable(self) -> None:
-        """Switch the drives on, after E-stop or power-up."""
+        """Switch the drives on after an E-stop or after power-up, or show why this is not possible."""
         state = self.snapshot().state
         if state is State.DISABLED:
             self.clear()
@@ -359,9 +377,10 @@ class Desk:
             self.done("THE DRIVES ARE ALREADY ON")
 
     def escape(self) -> bool:
-        """Esc takes a question back; while something moves it holds, because it is what a hand hits first.
+        """Handle the Esc key; return False if there was nothing to do.
 
-        What is only told, asked for or not, comes not before the hold. False when there was nothing to do.
+        Esc cancels an open question, or a confirmed start at line 1. While the machine moves, Esc starts feed
+        hold. A message without a question does not delay the feed hold.
         """
         shot = self.snapshot()
         moves = shot.state in prompt_line.MOVING
@@ -377,7 +396,7 @@ class Desk:
         return True
 
     def answer(self) -> None:
-        """Yes to what is asked, as long as the machine is in the state in which it was asked."""
+        """Confirm the open question if the machine is still in the state in which the question was asked."""
         if self.window.late.refuses(Starting.YES):
             return
         self.answers.expire(self.snapshot())
@@ -385,5 +404,5 @@ class Desk:
 
     @property
     def read(self) -> bool:
-        """Whether the question that stands can have been read when what is handled now was pressed."""
+        """Whether the open question was shown long enough before the present key press to have been read."""
         return self.answers.read(self.hands.at())

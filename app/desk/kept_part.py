@@ -1,6 +1,6 @@
-"""What the store keeps about the part of a program: its stock, stick-out, silenced checks; by its name.
+"""Stored settings of the part of a program: stock, stick-out and silenced checks.
 
-None of it is ever written into the program's text.
+The store finds them by the program's name. They are never written to the program text.
 """
 
 from __future__ import annotations
@@ -16,9 +16,10 @@ Setting = Callable[[str], object]
 
 @dataclass(frozen=True, slots=True)
 class KeptPart:
-    """``stock`` as it was said (``bar:1.0+.02``), empty: not said. ``stick_out`` mm, None: not said.
+    """The stored part settings of one program.
 
-    ``silenced`` are checks of the part, and why.
+    ``stock`` is the stock as entered, for example ``bar:1.0+.02``, or empty. ``stick_out`` is in mm, or None
+    if not entered. ``silenced`` maps each silenced check to the reason.
     """
 
     stock: str = ""
@@ -26,7 +27,7 @@ class KeptPart:
     silenced: Mapping[str, str] = field(default_factory=dict)
 
     def settings(self, program: str) -> dict[str, object]:
-        """What is stored, by the name of the setting; None: nothing."""
+        """Return the settings to store for a program, by setting name. The value None removes a setting."""
         rest: dict[str, object] = {"stick_out": self.stick_out, "silenced": dict(self.silenced)}
         said = {name: value for name, value in rest.items() if value}
         return {stock_key(program): self.stock or None, part_key(program): said or None}
@@ -36,7 +37,7 @@ NOTHING_KEPT = KeptPart()
 
 
 def kept_part(setting: Setting, program: str) -> KeptPart:
-    """What is kept with a program; what nobody could have stored counts as not there."""
+    """Return the stored part settings of a program. Invalid stored values are ignored."""
     stock, rest = setting(stock_key(program)), setting(part_key(program))
     known = rest if isinstance(rest, dict) else {}
     out, silenced = known.get("stick_out"), known.get("silenced")
@@ -48,6 +49,6 @@ def kept_part(setting: Setting, program: str) -> KeptPart:
 
 
 def lasting(stock: str) -> str:
-    """What is said of a stock, the same from every folder: a file by its whole path."""
+    """Return a stock description that is valid in every folder, with the absolute path of a file."""
     kind, _, rest = stock.partition(":")
     return f"{kind}:{Path(rest).resolve()}" if kind in {"profile", "after"} else stock

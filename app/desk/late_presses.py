@@ -1,8 +1,8 @@
-"""Starting actions that a late press does not carry out: the one closed list of them.
+"""The complete list of actions that a late key press or touch must not start.
 
-A press is late when it was made before the end of a stall of the screen. Every other late press is carried
-out in its order. Whether a press starts something is decided where it would do so, because one key has many
-meanings: at the command that it posts, at the simulated station, and at the answer to a question.
+A press is late if it was made before the end of a stall of the screen. All other late presses are executed in
+order. One key has many meanings, so each press is checked where it would start something: at the command that
+it posts, at the simulated station and at the answer to a question.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ from core.executor import commands
 from core.executor.commands import Command
 from core.executor.snapshot import Snapshot, State
 
-TOLD = 4.0  # s after the last dropped press; what is dropped later gets a message of its own
+TOLD = 4.0  # Seconds after the last dropped press. A press dropped later gets a new message.
 
 
 class Starting(Enum):
-    """What a press may start: motion, the drives, the spindle, an output, or what a question asks about."""
+    """An action that a press may start, for example motion, drives or an output."""
 
     CYCLE = auto()
     DRIVES = auto()
@@ -38,12 +38,12 @@ class Starting(Enum):
     RELEASE = auto()
     LINE_1 = auto()
     YES = auto()
-    FOLLOWING = auto()  # of any kind, after an answer that was dropped
-    TOUCH = auto()  # on a screen that looks different now
+    FOLLOWING = auto()  # Any key after a dropped answer.
+    TOUCH = auto()  # A touch on a screen that has changed since.
 
 
 def name_of(starting: Starting) -> str:
-    """Return what the operator calls it."""
+    """Return the operator's name of a starting action, translated."""
     names = {
         Starting.CYCLE: tr("CYCLE START"),
         Starting.DRIVES: tr("DRIVES ON"),
@@ -74,7 +74,7 @@ def _always(_command: Command, _now: Snapshot) -> bool:
 
 
 def _acknowledges(_command: Command, now: Snapshot) -> bool:
-    """Return whether it clears an alarm, which may have come up during the stall; any other Reset stops."""
+    """Return whether a reset acknowledges an alarm, which may be new. Any other reset stops the program."""
     return now.state is State.FAULT
 
 
@@ -83,12 +83,15 @@ def _begins_at_line_1(command: Command, _now: Snapshot) -> bool:
 
 
 def _switches(command: Command, _now: Snapshot) -> bool:
-    """Return whether it is more than the key that switches the coolant off."""
+    """Return whether a forced output can start something. Only switching the coolant off cannot."""
     return isinstance(command, commands.ForceOutput) and (command.on or command.name != "coolant")
 
 
 def _raises(command: Command, now: Snapshot) -> bool:
-    """Return whether it makes the axes faster: hands that saw no effect press too often."""
+    """Return whether a command raises the feed override.
+
+    An operator who sees no effect on a stalled screen tends to press the key too often.
+    """
     return isinstance(command, commands.FeedOverride) and command.fraction > now.feed_override
 
 
@@ -132,34 +135,35 @@ HARMLESS: frozenset[type[Command]] = frozenset(
 
 
 def starts(command: Command, now: Snapshot) -> Starting | None:
-    """Return what a command starts, None where it starts nothing."""
+    """Return the action that a command starts, or None if the command starts nothing."""
     found = STARTS.get(type(command))
     return found[0] if found is not None and found[1](command, now) else None
 
 
 @dataclass(slots=True)
 class LatePresses:
-    """Drops what a late press would start, and collects it for one message. ``clock`` is monotonic, s.
+    """Drops actions that a late press would start, and collects their names for one message.
 
-    ``report`` gets the names of all that was dropped; ``on_answer`` is called when an answer was.
+    ``clock`` returns monotonic time in seconds. ``report`` gets the names of all dropped actions.
+    ``on_answer`` is called when the answer to a question was dropped.
     """
 
     snapshot: Callable[[], Snapshot]
     clock: Callable[[], float]
     report: Callable[[tuple[str, ...]], None] = lambda _names: None
     on_answer: Callable[[], None] = lambda: None
-    late: bool = False  # the press that is handled now is late
+    late: bool = False  # The press that is being handled is late.
     _dropped: list[Starting] = field(default_factory=list)
     _last: float = float("-inf")
 
     def refuses(self, starting: Starting) -> bool:
-        """Return whether the press that is handled now must not start this; it is reported then."""
+        """Return whether the present press is too late to start this action. A dropped action is reported."""
         if self.late:
             self.report_dropped(starting)
         return self.late
 
     def report_dropped(self, starting: Starting) -> None:
-        """Report that a press is not carried out, with what else was dropped a moment ago."""
+        """Report a dropped action together with the actions that were dropped shortly before."""
         now = self.clock()
         if now - self._last > TOLD:
             self._dropped.clear()
@@ -172,7 +176,10 @@ class LatePresses:
 
     @contextmanager
     def suspended(self) -> Iterator[None]:
-        """Meanwhile nothing is done by the press: what is held is renewed once a frame."""
+        """Return a context in which actions do not count as caused by the press.
+
+        It is used when a key that is held down is renewed, once a frame.
+        """
         late, self.late = self.late, False
         try:
             yield
@@ -180,7 +187,7 @@ class LatePresses:
             self.late = late
 
     def guard(self, post: Callable[[Command], None]) -> Callable[[Command], None]:
-        """Return ``post`` without the commands that a late press must not give."""
+        """Return a version of ``post`` that drops the commands a late press must not give."""
 
         def guarded(command: Command) -> None:
             starting = starts(command, self.snapshot()) if self.late else None

@@ -1,4 +1,4 @@
-"""The description of a page of the main window. It names classes, and imports none of them."""
+"""The description of a page of the main window. It contains class names but imports no class."""
 
 from __future__ import annotations
 
@@ -11,10 +11,11 @@ ALL_LANGUAGES = LATHES | MILLS
 
 @dataclass(frozen=True, slots=True)
 class PageEntry:
-    """One page. ``view`` and ``model`` are dotted names of classes: imported when the page is first opened.
+    """The description of one page.
 
-    The model is the one that is attached to the desk; a view without one makes what it needs of the desk. A
-    page without a key is not in the main menu. ``later`` are dotted names of what it imports once it is open.
+    ``view`` and ``model`` are dotted class names, which are imported when the page is first opened. The model
+    must be attached to TurnDesk. A view without a model gets its data from ``Desk``. A page without a key is
+    not in the main menu. ``later`` lists dotted names that are imported after the page has opened.
     """
 
     name: str
@@ -23,15 +24,15 @@ class PageEntry:
     key: str = ""
     label: str = ""
     use: str = ""
-    languages: frozenset[str] = ALL_LANGUAGES  # of the machines that have it
+    languages: frozenset[str] = ALL_LANGUAGES  # Programming languages of the machines that have this page.
     later: tuple[str, ...] = ()
-    after: str = ""  # of a page of an optional feature: the page that it follows in the main menu
-    shortcut: str = ""  # key that opens it from any page, as app.screen.window.keys calls it
+    after: str = ""  # Page of an optional feature: the page that precedes it in the main menu.
+    shortcut: str = ""  # Key that opens this page from any page, by its name in app.screen.window.keys.
 
 
 @dataclass(frozen=True, slots=True)
 class ProgramKey:
-    """A function key of the list of programs: it opens ``page``, and ``use`` gets the name of the program."""
+    """A function key of the program list that opens ``page``. ``use`` gets the program's name."""
 
     label: str
     page: str

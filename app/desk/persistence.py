@@ -1,4 +1,4 @@
-"""Persistence, as far as the screen asks for it: what is kept from day to day; and where nothing is kept."""
+"""Persistence as the screen uses it, and its replacement if no store can be opened."""
 
 from __future__ import annotations
 
@@ -21,21 +21,21 @@ NOTHING_KEPT = "no data is being saved; start turndesk with a writable folder (T
 
 @dataclass(frozen=True, slots=True)
 class NoRunRecords:
-    """The run records where no store is open: every record is dropped, and part counts are zero.
+    """The run records where no store is open. Every record is dropped, and part counts are zero.
 
-    ``trouble`` is why no store is open; empty for scripts, which have no store.
+    ``trouble`` is why no store is open. It is empty for scripts, which have no store.
     """
 
     trouble: str = ""
 
     def read_records_by_text(self) -> Mapping[str, RunRow]:
-        """Return no records. Raise StoreError if the store could not be opened."""
+        """Return an empty mapping. Raises StoreError if the store could not be opened."""
         if self.trouble:
             raise StoreError(self.trouble)
         return {}
 
     def count_parts(self, _program: str) -> int:
-        """Return 0."""
+        """Return 0, because no parts are counted."""
         return 0
 
     def add_parts(self, program: str, count: int = 1) -> None:
@@ -61,73 +61,76 @@ class NoRunRecords:
 class Persistence:
     """Settings, run records, versions, users and the event log.
 
-    This class is for scripts and for a store that cannot be opened: it keeps settings until the program
-    ends, and nothing else. Reading may raise StoreError; writing is posted and never waits. Call ``backup``,
+    This base class is for scripts and for a store that cannot be opened. It stores settings until the program
+    ends, and nothing else. Reading may raise StoreError. Writing is posted and never waits. Call ``backup``,
     ``restore``, ``keep_settings``, ``events`` and ``save_version``, and wait for changes of ``opened``, on a
-    worker only.
+    worker thread only.
     """
 
     settings: dict[str, object] = field(default_factory=dict)
-    who: Callable[[], str] = str  # has signed in; empty: there are no levels
+    who: Callable[[], str] = str  # Returns the signed-in user; empty if access levels are off.
 
     def read_setting(self, key: str) -> object:
-        """What was kept under this name; None: nothing."""
+        """Return the stored value of a setting, or None."""
         return self.settings.get(key)
 
     def save_setting(self, key: str, value: object) -> None:
-        """Keep anything JSON can hold; None forgets it."""
+        """Store a value that JSON can represent. None removes the setting."""
         self.settings[key] = value
 
     def keep_settings(self, values: Mapping[str, object]) -> None:
-        """The same of several, back when they are on the disk; on a worker. Raises StoreError."""
+        """Store several settings. Return when they are on the disk.
+
+        Call this method on a worker. Raises StoreError.
+        """
         for key, value in values.items():
             self.save_setting(key, value)
 
     def note_change(self, text: str, who: str = "") -> None:
-        """A line of the log, with the name, for a change whose table has no history of its own.
+        """Write a change to the event log, for data without its own history.
 
-        ``who`` has asked for it, where that is not whoever is signed in now. Nothing where there are no
-        levels.
+        ``who`` is the user who requested the change; empty for the signed-in user. Without access levels,
+        nothing is written.
         """
 
     def note_access(self, text: str, who: str) -> None:
-        """A line of the log about levels: who has signed in, which PIN was wrong."""
+        """Write an access event to the event log, for example a sign-in or a wrong PIN."""
 
     @property
     def runs(self) -> RunRecords | NoRunRecords:
-        """Return the run records of the store that is open now. A restore opens another store."""
+        """The run records of the store that is open now. A restore opens another store."""
         return NoRunRecords()
 
     def opened(self) -> Store:
-        """Return the store that is open now. Raise StoreError if no store is open."""
+        """Return the store that is open now. Raises StoreError if no store is open."""
         raise StoreError(NOTHING_KEPT, "nothing-stored")
 
     def people(self) -> People:
-        """Who works at the machine. Raises StoreError."""
+        """Return the users of the machine. Raises StoreError."""
         return People()
 
     def events(self, _search: str, _kinds: Collection[str], _limit: int) -> Sequence[EventRow]:
-        """The log, newest first; no ``kinds``: all."""
+        """Return up to ``_limit`` log entries, newest first. Empty ``_kinds`` includes all kinds."""
         return ()
 
     def renamed(self, old: str, new: str) -> None:
-        """Versions, count and record go with a program that gets another name."""
+        """Move the versions, part count and run record of a program to its new name."""
 
     def save_version(self, _name: str, _text: bytes, _why: str) -> int:
-        """Keep a version and answer its number when it is on the disk. Raises StoreError.
+        """Save a version of a program, and return its number when it is on the disk. Raises StoreError.
 
-        Where no versions are kept nothing may be thrown away.
+        Without a store, this method always raises the error, because the text would be lost.
         """
         raise StoreError(NOTHING_KEPT, "nothing-stored")
 
     def backup(self, _target: Path) -> None:
-        """A copy of everything that is kept. Raises StoreError."""
+        """Write a backup of the whole store. Raises StoreError."""
         raise StoreError(NOTHING_KEPT, "nothing-stored")
 
     def judge(self, _source: Path) -> Verdict:
-        """Whether a backup is whole, and how it differs from what is kept; on a worker. Raises StoreError."""
+        """Check a backup and compare it with the present store. Call on a worker. Raises StoreError."""
         raise StoreError(NOTHING_KEPT, "nothing-stored")
 
     def restore(self, _source: Path) -> Path | None:
-        """Put a backup in the place of what is kept; answers where that went. Raises StoreError."""
+        """Replace the store by a backup, and return the path of the replaced store. Raises StoreError."""
         raise StoreError(NOTHING_KEPT, "nothing-stored")

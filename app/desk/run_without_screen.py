@@ -1,4 +1,4 @@
-"""A run without a screen, headless: who presses the buttons, and a clock that need not wait."""
+"""Execution of one program without a screen, with automatic button presses."""
 
 from __future__ import annotations
 
@@ -12,33 +12,37 @@ from core.executor.snapshot import Snapshot, State
 from core.message import Message
 from core.ports import Clock
 
-TICK = 0.01  # s between two looks at the machine
-PATIENCE = 60.0  # s of machine time after which a wait for an input is given up
-HOMING = 120.0  # s of machine time for all axes; ten inches at a slow 6 in/min are 100
-_PRESSES = 10  # of Cycle Start at one stop, .2 s apart
+TICK = 0.01  # Seconds between two polls of the machine.
+PATIENCE = 60.0  # Seconds of machine time after which a wait for an input is canceled.
+HOMING = 120.0  # Seconds of machine time for homing all axes. Ten inches at 6 in/min take 100 s.
+_PRESSES = 10  # Maximum presses of Cycle Start at one stop, 0.2 s apart.
 UNDER_WAY = frozenset(State) - {State.IDLE, State.DISABLED, State.ESTOP, State.FAULT}
 
 
 class Control(Protocol):
-    """What the run needs of the executor."""
+    """Interface of the executor as the headless run uses it."""
 
     @property
     def snapshot(self) -> Snapshot:
-        """The machine of this tick."""
+        """The snapshot of the present tick."""
         ...
 
     def post(self, command: Command) -> None:
-        """Hand a command in."""
+        """Send a command to the executor."""
         ...
 
     def tick(self) -> None:
-        """One step of its clock."""
+        """Advance the executor by one tick of its clock."""
         ...
 
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """How a run ended: ``complete``, ``refused``, ``alarm``, ``hold`` or ``waiting``; ``why`` in words."""
+    """The result of a run.
+
+    ``state`` is ``complete``, ``refused``, ``alarm``, ``hold`` or ``waiting``. ``why`` is the reason as text.
+    ``elapsed`` is the cycle time in seconds.
+    """
 
     state: str
     why: str
@@ -47,7 +51,7 @@ class Outcome:
 
 
 class HeadlessRun:
-    """Loads a job, starts it, presses Cycle Start at M00 and M01, and tells how it ended."""
+    """Loads and starts a job, presses Cycle Start at M00 and M01, and reports the outcome."""
 
     def __init__(
         self,
@@ -58,9 +62,10 @@ class HeadlessRun:
         palms: Callable[[], None] | None = None,
         see: Callable[[Snapshot, Proof], None] | None = None,
     ) -> None:
-        """``palms`` presses both palm buttons, or asks a person to, where a command starts nothing.
+        """Create a run that uses this executor and clock.
 
-        ``see`` is told of every step once the machine is ready, before the start too.
+        ``palms`` presses both palm buttons, or asks a person to press them, if a command cannot start a
+        cycle. ``see`` gets every snapshot after the machine is ready, including those before the start.
         """
         self._executor = executor
         self._clock = clock
@@ -72,7 +77,7 @@ class HeadlessRun:
         self._last_move = 0.0
 
     def run(self, job: Job, proof: Proof, *, optional_stop: bool = False) -> Outcome:
-        """The whole run of one cycle."""
+        """Execute one cycle of a job, and return its outcome."""
         self._until(lambda s: s.state is not State.DISABLED, EnableDrives(), tries=100)
         if not self._home():
             self._executor.post(FeedHold("the command line"))
@@ -84,7 +89,7 @@ class HeadlessRun:
         self._executor.post(LoadJob(job, proof))
         self._proof = proof
         self._step()
-        before = self._executor.snapshot.parts  # a program of one action is over before anybody looks
+        before = self._executor.snapshot.parts  # A program with one action may end before the first poll.
         if not self._start(lambda s: s.state is not State.IDLE or bool(s.start_refused) or s.parts > before):
             return self._outcome("waiting", "no Cycle Start received; were both palm buttons pressed?")
         if self._executor.snapshot.state in UNDER_WAY:
@@ -92,7 +97,7 @@ class HeadlessRun:
         return self._ended()
 
     def _home(self) -> bool:
-        """Axes that do not know where they are look for it, as at the screen; False: in vain."""
+        """Home the axes that are not homed. Return False if homing does not finish."""
         snapshot = self._executor.snapshot
         lost = [name for name, homed in zip(snapshot.axes, snapshot.homed, strict=True) if not homed]
         if not lost or snapshot.state is not State.IDLE:
@@ -149,7 +154,7 @@ class HeadlessRun:
             self._step()
 
     def _started_again(self) -> bool:
-        """Press Cycle Start until it goes on: a press just after the last one counts as its bounce."""
+        """Press Cycle Start until the program continues. The control ignores a press soon after another."""
         for _ in range(_PRESSES):
             self._start(lambda s: s.state is not State.PROGRAM_STOP)
             if self._executor.snapshot.state is not State.PROGRAM_STOP:
@@ -157,7 +162,7 @@ class HeadlessRun:
         return False
 
     def _stuck(self, snapshot: Snapshot) -> bool:
-        """Whether it has waited too long for an input, which nobody will ever change here."""
+        """Return whether the program has waited too long for an input, which never changes in this run."""
         now = self._clock.now()
         if snapshot.state is not State.WAIT or snapshot.waiting_for.startswith("DWELL"):
             self._last_move = now
@@ -166,7 +171,7 @@ class HeadlessRun:
     def _ended(self) -> Outcome:
         snapshot = self._executor.snapshot
         alarm = snapshot.alarms[-1] if snapshot.alarms else snapshot.stop
-        if alarm is not None and snapshot.state is not State.IDLE:  # an E-stop is a stop, not an alarm
+        if alarm is not None and snapshot.state is not State.IDLE:  # An E-stop is a stop and not an alarm.
             return self._outcome(
                 "alarm",
                 Message(

@@ -1,4 +1,4 @@
-"""Settings of the screen that the operator has chosen: language, theme, units, readout, station."""
+"""Settings of the screen that the operator chooses, such as language, theme, units and readout."""
 
 from __future__ import annotations
 
@@ -14,20 +14,23 @@ KEY = "screen"
 
 
 class Units(StrEnum):
-    """The unit of the figures that are shown; what is typed is always in that of the control."""
+    """The unit of displayed values. The operator always enters values in the unit of the control."""
 
     PROGRAM = "AS THE PROGRAM"
     INCH = "INCH"
     METRIC = "MM"
 
     def metric(self, control: bool) -> bool:
-        """Whether figures are metric; ``control``: whether the control is, now."""
+        """Return whether displayed values are metric.
+
+        ``control`` is whether the control uses metric units now.
+        """
         return control if self is Units.PROGRAM else self is Units.METRIC
 
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """All choices; every one has a value that works on a new machine."""
+    """All screen settings, with default values for a new machine."""
 
     theme: str = "dark"
     language: str = "en"
@@ -35,8 +38,8 @@ class Settings:
     readout: str = "POSITION"
     dock: bool = True
     full_screen: bool = False
-    first_job: bool = False  # its card is shown
-    latched: bool = False  # palms one after the other, where everything is simulated
+    first_job: bool = False  # The card of the first job is shown.
+    latched: bool = False  # The palm buttons may be pressed one after the other on a simulated machine.
 
 
 CHOICES: Mapping[str, tuple[object, ...]] = {
@@ -51,12 +54,12 @@ CHOICES: Mapping[str, tuple[object, ...]] = {
 }
 
 
-_PASSING = frozenset({"readout"})  # turned on by a key many times a shift: no line of the log
+_PASSING = frozenset({"readout"})  # Settings that change many times per shift and are not logged.
 
 
 @dataclass(slots=True)
 class SettingsBook:
-    """The choices in force. A value that is kept but no choice any more is forgotten, not obeyed."""
+    """The settings in force. A stored value that is not a valid choice is ignored."""
 
     persistence: Persistence = field(default_factory=Persistence)
     now: Settings = field(init=False)
@@ -65,7 +68,7 @@ class SettingsBook:
         self.reload()
 
     def reload(self) -> None:
-        """Read what is kept; where that cannot be read the screen still has settings."""
+        """Read the stored settings. If the store cannot be read, the defaults apply."""
         try:
             kept = self.persistence.read_setting(KEY)
         except StoreError:
@@ -75,7 +78,7 @@ class SettingsBook:
         self.now = Settings(**{n: v for n, v in found.items() if n in names and _is_choice(n, v)})
 
     def choose(self, name: str, value: object) -> None:
-        """Take a choice and keep it. Raises ValueError for what is none, StoreError when it is not kept."""
+        """Apply a setting and save it. Raises ValueError for an invalid value, StoreError if saving fails."""
         if not _is_choice(name, value):
             raise ValueError(f"{name} cannot be {value!r}")
         before, self.now = getattr(self.now, name), replace(self.now, **{name: value})  # type: ignore[arg-type]
@@ -86,13 +89,13 @@ class SettingsBook:
             )
 
     def following(self, name: str) -> object:
-        """The choice after the present one."""
+        """Return the choice after the present one, in a cycle."""
         choices = CHOICES[name]
         return choices[(choices.index(getattr(self.now, name)) + 1) % len(choices)]
 
     @property
     def units(self) -> Units:
-        """The unit of the figures."""
+        """The unit of displayed values."""
         return Units(self.now.units)
 
 

@@ -1,4 +1,4 @@
-"""Standard input, ``-`` where a file is named: what comes in there is one thing, for one argument."""
+"""Reading of standard input in place of a file, by the argument ``-``. Only one argument can use it."""
 
 from __future__ import annotations
 
@@ -8,19 +8,20 @@ from app.desk.command_errors import CommandError
 from core.message import Message
 
 DASH = "-"
-MOST_BYTES = 64 * 1024 * 1024  # a program has no more, and a pipe may have no end
+MOST_BYTES = 64 * 1024 * 1024  # Limit in bytes, because a pipe may never end.
 _taken: dict[str, bytes] = {}
 
 
 def nothing_taken() -> None:
-    """A command begins."""
+    """Forget the input that was read. Call this at the beginning of a command."""
     _taken.clear()
 
 
 def standard_input(what: str) -> bytes:
-    """All that comes in, up to one byte more than anything may have; the same again for who asks again.
+    """Return all bytes of standard input, up to one byte more than the limit.
 
-    Raises CommandError where it is closed, or was taken for something else.
+    A second call with the same ``what`` returns the same bytes. Raises CommandError if standard input is
+    closed or was read for another purpose.
     """
     if what in _taken:
         return _taken[what]

@@ -1,4 +1,4 @@
-"""The operator station of the simulated machine: palm buttons, feed hold, E-stop, spindle switch and pots."""
+"""The simulated operator station: palm buttons, feed hold, E-stop, spindle switch and pots."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from app.desk.status.prompt_line import BOTH_UP, ONE_PALM
 # --- palm buttons and pots ----------------------------------------------------------------------------
 
 
-TOGETHER = 0.5  # seconds within which the second palm button must follow the first
+TOGETHER = 0.5  # Seconds within which the second palm button must follow the first.
 
 
 class StationPanel(Protocol):
-    """What a hand can do to the simulated station. Whether both palms came together the station says."""
+    """Interface of the simulated station. The station decides whether both palm buttons start a cycle."""
 
     def press_left(self) -> None: ...
 
@@ -33,38 +33,40 @@ class StationPanel(Protocol):
     def press_estop(self) -> None: ...
 
     def release_estop(self) -> None:
-        """Twist the mushroom out again."""
+        """Twist the E-stop button out again."""
         ...
 
     def set_spindle_auto(self, auto: bool) -> None: ...
 
     def set_spindle_pot(self, fraction: float) -> None:
-        """Turn the spindle override pot to this share of its range, 0…1."""
+        """Turn the spindle override pot to a fraction of its range, 0…1."""
         ...
 
     def set_feed_pot(self, fraction: float) -> None:
-        """Turn the feed override pot to this share of the programmed feed, 0…1.5."""
+        """Set the feed override pot to a fraction of the programmed feed, 0…1.5."""
         ...
 
     def turn_handwheel(self, counts: int) -> None:
-        """Signed; only where the machine has a handwheel."""
+        """Turn the handwheel by a signed number of counts, at a machine with a handwheel."""
         ...
 
 
 @dataclass(slots=True)
 class Palms:
-    """Which palm buttons are down and since when; tells a person what was wrong with a start.
+    """The palm buttons that are pressed, with their times. It is used to explain a failed start.
 
-    A pair that did not come within the time, or one let go while the other stays, is dead until both are up:
-    a palm that is taped down starts nothing.
+    A pair is dead if the buttons were not pressed in time, or if one was released and the other was not. A
+    dead pair starts nothing until both buttons are released, so that a button that is taped down starts
+    nothing.
     """
 
-    down: dict[str, float] = field(default_factory=dict)  # "left"/"right" → seconds, monotonic
-    together: bool = False  # both have been down at once since the last time none was
+    # "left" or "right", with its monotonic time in seconds.
+    down: dict[str, float] = field(default_factory=dict)
+    together: bool = False  # Both were down together since the last time both were up.
     dead: bool = False
 
     def press(self, side: str, now: float) -> bool:
-        """Note a press; True when this made both go down within the time."""
+        """Record a press. Return True if both buttons are now down and were pressed within the time limit."""
         if side in self.down:
             return False
         self.down[side] = now
@@ -76,7 +78,7 @@ class Palms:
         return not self.dead
 
     def release(self, side: str) -> bool:
-        """Note a release; True when a button was let go that never had the other beside it in time."""
+        """Record a release. Return True if the button was released without the other one pressed in time."""
         if self.down.pop(side, None) is None:
             return False
         alone = not self.together
@@ -86,12 +88,12 @@ class Palms:
         return alone
 
 
-SLEW = 1.0  # of the whole range a second: faster than that a control takes it for a bad wiper, not for a hand
+SLEW = 1.0  # Fraction of the range per second. A control treats a faster change as a faulty pot.
 
 
 @dataclass(slots=True)
 class Pot:
-    """A pot on the screen: ``wanted`` jumps with the finger, ``value`` turns after it as a knob can."""
+    """A pot on the screen. ``wanted`` follows the touch, and ``value`` follows at a limited speed."""
 
     most: float
     wanted: float = 1.0
@@ -100,9 +102,9 @@ class Pot:
     late: LatePresses | None = None
 
     def set(self, fraction: float) -> None:
-        """Choose where the pot shall stand; it turns there as fast as a knob can.
+        """Set the target of the pot. The pot turns there at a limited speed.
 
-        A late press does not raise it: hands that saw no effect press too often.
+        A late press does not raise the target, because an operator who sees no effect presses too often.
         """
         if self.late is None or fraction <= self.wanted or not self.late.refuses(self.starting):
             self._choose(fraction)
@@ -111,7 +113,7 @@ class Pot:
         self.wanted = max(0.0, min(self.most, fraction))
 
     def turn(self, seconds: float) -> bool:
-        """Turn on for so long; True when it has moved."""
+        """Turn the pot for this many seconds. Return True if the pot has moved."""
         if self.value == self.wanted:
             return False
         step = SLEW * seconds
@@ -121,16 +123,18 @@ class Pot:
 
 OVERRIDE_STEP = 0.1
 OVERRIDE_MOST = 1.5
-LATCHED = 5.0  # s for which a palm that was touched waits for the other one
-LONGEST_TURN = 0.1  # seconds of turning at a time: a screen that was away does not catch up with a jump
+LATCHED = 5.0  # Seconds for which a touched palm button waits for the other one.
+# Maximum seconds of turning per frame, so that a pot does not jump after a stall of the screen.
+LONGEST_TURN = 0.1
 
 
 @dataclass(slots=True)
 class StationHands:
-    """What is held and where the knobs stand. Without a station (a real machine has its own) nothing happens.
+    """The buttons and pots of the simulated station that the operator uses on the screen.
 
-    ``say`` answers on the prompt line, ``clear`` takes an answer back, ``starting`` hears of both palms;
-    ``barred`` tells why they start nothing now.
+    Without a simulated station, all actions have no effect. ``say`` shows a message on the prompt line, and
+    ``clear`` removes it. ``starting`` is called when both palm buttons are pressed. ``barred`` returns why a
+    start is not possible now.
     """
 
     station: StationPanel | None
@@ -139,33 +143,34 @@ class StationHands:
     clear: Callable[[], None]
     starting: Callable[[], None]
     barred: Callable[[], str] = str
-    ago: Callable[[], float] = float  # s since the press that is handled now really happened
+    ago: Callable[[], float] = float  # Seconds since the press that is being handled.
     palms: Palms = field(default_factory=Palms)
-    one_palm: str = ONE_PALM  # what is said when one was pressed alone
+    one_palm: str = ONE_PALM  # Message after a single palm button was pressed.
     estop_pressed: bool = False
     late: LatePresses | None = None
     spindle_pot: Pot = field(default_factory=lambda: Pot(1.0, starting=Starting.SPINDLE))
     feed_pot: Pot = field(default_factory=lambda: Pot(OVERRIDE_MOST))
-    latched: str = ""  # the palm that waits for the other one, "left" or "right"
+    latched: str = ""  # The palm button that waits for the other one, "left" or "right".
     _latched_at: float = 0.0
     _looked: float | None = None
 
     def refuse_late(self, late: LatePresses) -> None:
-        """Have late presses start nothing at the station."""
+        """Drop late presses that would start something at the station."""
         self.late = self.spindle_pot.late = self.feed_pot.late = late
 
     def _refuses(self, starting: Starting) -> bool:
         return self.late is not None and self.late.refuses(starting)
 
     def at(self) -> float:
-        """When the press that is handled now happened, by this clock."""
+        """Return the time of the press that is being handled, by this clock."""
         return self.clock() - self.ago()
 
     def palm(self, side: str, down: bool) -> None:
-        """A palm button goes down or up, at the time of its event.
+        """Press or release a palm button, at the time of the key event.
 
-        The station's relay decides whether that is a start; it sees presses when they come here, so of a pair
-        that was not pressed together it sees one only.
+        The relay of the station decides whether the pair starts a cycle. The relay gets presses when this
+        method is called. Therefore this method passes on only one press of a pair that was not pressed
+        together.
         """
         station = self.station
         if station is None:
@@ -183,9 +188,10 @@ class StationHands:
                 self.say(self.one_palm)
 
     def latch(self, side: str) -> None:
-        """A palm where everything is simulated, by one finger or the mouse: it waits for the other one.
+        """Press a palm button of a simulated machine with one touch or the mouse.
 
-        With that both go down at once, as two hands press them; the finger that comes up lets both go.
+        The button waits for the other one. A press of the other one presses both together, and the release of
+        the touch releases both.
         """
         first, self.latched = self.latch_now(), ""
         if self._refuses(Starting.CYCLE):
@@ -201,13 +207,16 @@ class StationHands:
             self.palm(each, down=True)
 
     def latch_now(self) -> str:
-        """The palm that waits for the other one; after a while it waits no more."""
+        """Return the palm button that waits for the other one.
+
+        After a time limit, the button no longer waits.
+        """
         if self.latched and self.clock() - self._latched_at > LATCHED:
             self.latched = ""
         return self.latched
 
     def latch_up(self) -> None:
-        """The finger has come up."""
+        """Release both palm buttons at the end of the touch."""
         for side in tuple(self.palms.down):
             self.palm(side, down=False)
 
@@ -221,19 +230,19 @@ class StationHands:
             (station.press_left if side == "left" else station.press_right)()
 
     def let_go(self) -> None:
-        """Hands off: the window has lost the keyboard, so no release would ever arrive."""
+        """Release all buttons, because the window has lost the keyboard and gets no release events."""
         self.latched = ""
         for side in tuple(self.palms.down):
             self.palm(side, down=False)
 
     def hold(self, down: bool) -> None:
-        """The station's feed hold button."""
+        """Press or release the station's feed hold button."""
         self.latched = ""
         if self.station:
             (self.station.press_hold if down else self.station.release_hold)()
 
     def estop(self, pressed: bool) -> None:
-        """Hit the mushroom, or twist it out."""
+        """Press the E-stop button, or twist it out."""
         if not pressed and self._refuses(Starting.RELEASE):
             return
         if self.station and pressed is not self.estop_pressed:
@@ -242,20 +251,23 @@ class StationHands:
             (self.station.press_estop if pressed else self.station.release_estop)()
 
     def set_spindle_auto(self, auto: bool) -> None:
-        """Turn the spindle switch to AUTO, or to OFF."""
+        """Turn the spindle switch to AUTO or to OFF."""
         if self.station and not (auto and self._refuses(Starting.SPINDLE)):
             self.station.set_spindle_auto(auto)
 
     def turn_spindle_pot(self, steps: int) -> None:
-        """The spindle pot by so many steps of ten percent."""
+        """Turn the spindle pot by a number of steps of ten percent."""
         self.spindle_pot.set(stepped(self.spindle_pot.wanted, steps))
 
     def turn_feed_pot(self, steps: int) -> None:
-        """The feed pot by so many steps of ten percent, so that knob and override never differ."""
+        """Turn the feed pot by a number of steps of ten percent.
+
+        The feed override always equals the position of the pot.
+        """
         self.feed_pot.set(stepped(self.feed_pot.wanted, steps))
 
     def turn_knobs(self) -> None:
-        """Once a frame: the pots turn on towards where they shall stand."""
+        """Move the pots toward their targets; called once a frame."""
         now = self.clock()
         passed = min(LONGEST_TURN, now - self._looked) if self._looked is not None else 0.0
         self._looked = now
@@ -267,10 +279,10 @@ class StationHands:
 
 
 def stepped(fraction: float, steps: int) -> float:
-    """An override so many steps further."""
+    """Return an override fraction after a number of steps of ten percent, without a range limit."""
     return round(fraction / OVERRIDE_STEP + steps) * OVERRIDE_STEP
 
 
 def override_of(fraction: float, steps: int) -> float:
-    """Return a feed override so many steps further, within its range."""
+    """Return a feed override after a number of steps of ten percent, within its range."""
     return max(0.0, min(OVERRIDE_MOST, stepped(fraction, steps)))

@@ -1,4 +1,4 @@
-"""Tool shapes as the proof counts with them: the store's rows joined with nose radius and tip quadrant."""
+"""Tool shapes as the proof uses them, from the stored shapes and the tool offsets."""
 
 from __future__ import annotations
 
@@ -13,7 +13,10 @@ from core.tool_edges import edge_name, tool_of
 
 
 def shape_of(row: ShapeRow, tool: ToolRow | None) -> ToolShape:
-    """The shape of a tool; nose radius and tip quadrant are those of its offset, 0 where it has none."""
+    """Return the shape of a tool with the nose radius and tip quadrant of its offset.
+
+    Both are 0 for a tool without an offset.
+    """
     offset = tool or ToolRow()
     read = {
         "kind": ToolKind(row.kind),
@@ -24,9 +27,9 @@ def shape_of(row: ShapeRow, tool: ToolRow | None) -> ToolShape:
 
 
 def tool_shapes(shapes: Mapping[int, ShapeRow], tools: Mapping[int, ToolRow]) -> dict[int, ToolShape]:
-    """The shapes by tool, without those that cannot be: nothing can be drawn of them.
+    """Return the valid shapes by tool number. Invalid shapes are omitted because they cannot be drawn.
 
-    A further edge is of its tool's shape, with its own nose radius and tip.
+    A further cutting edge has the shape of its tool, with its own nose radius and tip quadrant.
     """
     edges = {key: shapes[tool_of(key)] for key in tools if tool_of(key) in shapes}
     return {
@@ -37,9 +40,10 @@ def tool_shapes(shapes: Mapping[int, ShapeRow], tools: Mapping[int, ToolRow]) ->
 
 
 def wrong_shapes(shapes: Mapping[int, ShapeRow], tools: Mapping[int, ToolRow]) -> tuple[str, ...]:
-    """A sentence for everything in the shapes that cannot be.
+    """Return an error text for every mistake in the shapes.
 
-    Each field was sound when it was entered; it is another that has changed since, or the tool's offset.
+    Each field was valid when it was entered. A mistake results from a later change of another field or
+    offset.
     """
     return tuple(
         Message("{number} {field}: {wrong}", number=edge_name(number), field=wrong.field, wrong=wrong.text)
@@ -49,7 +53,7 @@ def wrong_shapes(shapes: Mapping[int, ShapeRow], tools: Mapping[int, ToolRow]) -
 
 
 def row_mistakes(row: ShapeRow, tool: ToolRow | None) -> tuple[ShapeMistake, ...]:
-    """What in a row cannot be: fields that contradict each other, a code or an outline that means nothing."""
+    """Return the mistakes in a shape: contradicting fields, or an invalid code or outline."""
     if row.profile and outline_points(row.profile) is None:
         text = "a profile needs at least three points, each with Z and X in mm, for example 0,0 2.5,0 1.2,1.5"
         return (ShapeMistake("profile", text, "not-an-outline"),)

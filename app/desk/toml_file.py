@@ -1,4 +1,4 @@
-"""A TOML file that a person writes, and what is wrong in it: every mistake is named at once."""
+"""Reading of TOML files that users write. All mistakes of a file are reported together."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from core.input_file import TooLargeError, input_bytes, toml_tables
 from core.message import CodedError, Message, nearest
 
 _MOST_BYTES = 16 * 1024 * 1024
-# Texts and comments stay as they are; behind =, [ or , a figure may begin with its point.
+# Strings and comments are not changed. A number after =, [ or a comma may begin with its point.
 _POINT_FIRST = re.compile(r"""(?:"(?:\\.|[^"\\\n])*"|'[^'\n]*'|\#.*)|([=\[,]\s*[-+]?)(?=\.\d)""")
 
 
 def read_toml(path: Path) -> dict[str, object]:
-    """The parsed file. Raises CommandError when it cannot be read or is no TOML.
+    """Return the tables of a TOML file. Raises CommandError if the file cannot be read or is invalid.
 
-    ``.25`` is no figure to TOML, and the one that shops write: it is read as 0.25.
+    Shops write ``.25``, which is not valid in TOML. It is read as 0.25.
     """
     try:
         text = _bytes_of(path).decode("utf-8").replace("\r\n", "\n")
@@ -50,7 +50,10 @@ def _with_nought(found: re.Match[str]) -> str:
 
 
 def _bytes_of(path: Path) -> bytes:
-    """What it holds; ``-`` is stdin. Raises CommandError for far more than a person writes, or OSError."""
+    """Return the bytes of a file; ``-`` is standard input.
+
+    Raises CommandError if standard input is too large, TooLargeError if the file is, or OSError.
+    """
     if str(path) == DASH:
         data = standard_input("TOML")
     else:
@@ -68,7 +71,7 @@ def _too_large(path: Path) -> CommandError:
 
 
 def unknown(key: str, known: Iterable[str]) -> str:
-    """The sentence for a key that nobody reads, with the nearest that somebody does."""
+    """Return the error text for an unknown key, with the most similar known key."""
     names = list(known)
     near = nearest(key, names)
     return Message(
@@ -79,7 +82,7 @@ def unknown(key: str, known: Iterable[str]) -> str:
 
 
 def unknown_key(key: str, known: Iterable[str], table: str = "") -> CodedError:
-    """Return the mistake of a key that nothing reads, with the table that holds it."""
+    """Return the error for an unknown key, with the name of its table."""
     return CodedError(
         Message("[{table}] {key}", table=table, key=unknown(key, known)) if table else unknown(key, known),
         "unknown-key",
@@ -87,7 +90,7 @@ def unknown_key(key: str, known: Iterable[str], table: str = "") -> CodedError:
 
 
 def refuse(path: Path, mistakes: Sequence[CodedError]) -> None:
-    """Raise CommandError with the texts and the codes of all mistakes, in their order, if there are any."""
+    """Raise CommandError with the texts and codes of all mistakes, if there are any."""
     if mistakes:
         text = "; ".join(str(each) for each in mistakes)
         raise CommandError(

@@ -1,7 +1,7 @@
-"""Translation of texts into the operator's language. No Qt: the screen passes in the translator at its start.
+"""Translation of texts into the operator's language, without Qt. The screen sets the translator at its start.
 
-A text with values is a ``Message``: its template is looked up, its values are translated and put in.
-A text without values is looked up as it is. A text that the catalogue does not have stays English.
+The template of a ``Message`` is translated, and its values are translated and inserted. A text without values
+is translated as a whole. A text that the catalog does not contain remains English.
 """
 
 from __future__ import annotations
@@ -12,47 +12,48 @@ from functools import lru_cache
 
 from core.message import CASES, Message, Value
 
-Translate = Callable[[str], str]  # the translation of a template or a whole text; empty if there is none
+# Returns the translation of a template or text; empty if the catalog has none.
+Translate = Callable[[str], str]
 
 ENGLISH = "en"
 
 
 class _Speaker:
-    """The translator in use and its language."""
+    """The translator in use, and its language."""
 
     translate: Translate | None = None
     language = ENGLISH
 
 
 def speak(translate: Translate | None, language: str = ENGLISH) -> None:
-    """Translate texts by ``translate`` from now on; None leaves them English.
+    """Set the translator for all texts. None leaves the texts English.
 
-    ``language`` is its code, as ISO 639-1 has it.
+    ``language`` is its ISO 639-1 code.
     """
     _Speaker.translate = None if translate is None else lru_cache(8192)(translate)
     _Speaker.language = language
 
 
 def spoken() -> str:
-    """Return the language that texts are shown in now."""
+    """Return the ISO 639-1 code of the language in use."""
     return _Speaker.language
 
 
-_NAMES = frozenset({"name", "program", "path", "text", "remark"})  # holes for text of the user
+_NAMES = frozenset({"name", "program", "path", "text", "remark"})  # Placeholders for text of the user.
 _HOLE = re.compile(r"\{\w*\}")
 _LOWER = re.compile(r"[a-z]{2}")
-_CODE = re.compile(r"[^a-z\s]+")  # one word in capitals
+_CODE = re.compile(r"[^a-z\s]+")  # One word in capitals.
 
-_DATA, _END = "\u2068", "\u2069"  # Unicode's isolates: they are not visible
+_DATA, _END = "\u2068", "\u2069"  # Unicode's isolate characters, which are not visible.
 
 
 def data(text: str) -> str:
-    """Mark a text of the user, such as a remark or a name: ``tr`` does not translate it."""
+    """Mark a text of the user, such as a remark or a name, so that ``tr`` does not translate it."""
     return f"{_DATA}{text}{_END}" if text else ""
 
 
 def tr(text: str) -> str:
-    """Return a text in the operator's language; the English text where the catalogue has none."""
+    """Return a text in the operator's language, or the English text if there is no translation."""
     translate = _Speaker.translate
     shown = text if translate is None else _translated(text, translate)
     return shown.replace(_DATA, "").replace(_END, "") if _DATA in shown else str.__str__(shown)
@@ -63,12 +64,12 @@ def _translated(text: str, translate: Translate) -> str:
         return _filled(text, translate)
     if text.startswith(_DATA) or not text:
         return text
-    # Sentences that are written in small letters are found by them where the screen shows capitals.
+    # A text in capitals may have its translation under the text in small letters.
     return translate(text) or (translate(text.lower()).upper() if text.isupper() else "") or text
 
 
 def _filled(message: Message, translate: Translate) -> str:
-    """Return the translated template with its translated values."""
+    """Return the translated template with its translated values inserted."""
     template = translate(message.template) or message.template
     of_program = _LOWER.search(_HOLE.sub("", message.template)) is not None
     values = {
@@ -80,7 +81,7 @@ def _filled(message: Message, translate: Translate) -> str:
 
 
 def _is_own_word(name: str, value: Value, of_program: bool) -> bool:
-    """Return whether a value is a number, a name, or a word of the program in a finding."""
+    """Return whether a value must not be translated: a number, a name, or a word of the program."""
     if isinstance(value, Message):
         return False
     if not isinstance(value, str) or name in _NAMES:

@@ -1,4 +1,4 @@
-"""The codes beside the text: what that at the cursor means, with its picture, and a list to choose from."""
+"""Code help of the editor: the meaning and picture of the code at the cursor, and a list of codes."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ Point = tuple[float, float]
 
 
 def picture_of(head: str, dialect: Dialect = Dialect.OMNITURN) -> Sketch | None:
-    """The picture of a code of a lathe's language, Z to the right and r up; None where words say it all."""
+    """Return the sketch of a lathe code, Z to the right and radius up, or None without a sketch."""
     return _PICTURES.get(dialect, {}).get(head)
 
 
@@ -36,21 +36,25 @@ def _arc(centre: Point, radius: float, begin: float, end: float) -> tuple[Point,
 
 
 def _with_arc(words: str, *, convex: bool) -> Sketch:
-    """From the face to the chuck: it rounds a shoulder, or fills its corner."""
+    """Return a sketch from the face to the chuck with an arc: a rounded shoulder or a filled corner."""
     corner = _arc((-4, 4), 4, 0, 90) if convex else _arc((0, 8), 4, 270, 180)
     solid = part((0, 0), *corner, (-16, 8), (-16, 0))
     return sketch(solid, cut(*corner), _arrow(corner[5], corner[7]), dims=(Dim(words, (2, 10)),))
 
 
 def _arrow(a: Point, b: Point) -> Outline:
-    """Which way the tool goes."""
+    """Return an arrow in the direction of tool motion."""
     angle = math.atan2(b[1] - a[1], b[0] - a[0])
     ends = [(b[0] - 1.4 * math.cos(angle + s), b[1] - 1.4 * math.sin(angle + s)) for s in (0.5, -0.5)]
     return Outline((ends[0], b, ends[1]), "tool")
 
 
 def _roughing(deep: str, left: str, *points: str) -> Sketch:
-    """``deep`` and ``left`` name the depth of a pass and what is left; ``points`` start and ends."""
+    """Return a sketch of a roughing cycle.
+
+    ``deep`` and ``left`` are the words for the depth of cut and the allowance, and ``points`` are those for
+    the start and end points.
+    """
     profile = ((0, 3), (-6, 3), (-9, 6), (-14, 6), (-14, 9))
     passes = [
         cut((1, r), (z, r)) for r, z in ((8.0, -13.7), (7.0, -13.7), (6.3, -9.0), (5.0, -7.7), (4.0, -6.7))
@@ -62,7 +66,7 @@ def _roughing(deep: str, left: str, *points: str) -> Sketch:
 
 
 def _threading(lead: str, start: str, last: str, end: str) -> Sketch:
-    """Words for the lead, what holds where it starts, at the last pass or behind it, and where it ends."""
+    """Return a sketch of a threading cycle with the words for lead, start, last pass and end."""
     teeth = [(-float(k), 7.0 if k % 2 else 5.6) for k in range(13)]
     depths = [cut((3, 7.0 - 0.7 * math.sqrt(k)), (-12, 7.0 - 0.7 * math.sqrt(k))) for k in (1, 2, 3, 4)]
     solid = part((0, 0), *teeth, (-20, 7), (-20, 0))
@@ -71,7 +75,7 @@ def _threading(lead: str, start: str, last: str, end: str) -> Sketch:
 
 
 def _beside(*, outside: bool) -> Sketch:
-    """The nose beside the contour of a shaft or of a bore, on the way to the chuck."""
+    """Return a sketch of the tool nose along the outside or inside contour, moving to the chuck."""
     solid = part((0, 0), (0, 5), (-8, 5), (-12, 8), (-18, 8), (-18, 0))
     off = 1.2 if outside else -1.2
     path = cut((2, 5 + off), (-8, 5 + off), (-12, 8 + off), (-18, 8 + off))
@@ -82,7 +86,10 @@ def _beside(*, outside: bool) -> Sketch:
 
 
 def _quadrants() -> Sketch:
-    """Where the tip lies from the nose's centre; r points to the operator, here up."""
+    """Return a sketch of the tip quadrants around the nose center.
+
+    The radius points up, to the operator.
+    """
     nose = Outline(_arc((0, 0), 3, 0, 360), "tool", closed=True)
     tips = tuple(Dim(str(n), (6.0 * z, 6.0 * x)) for n, (z, x) in TIP_DIRECTIONS.items() if n)
     cross = (Outline(((-4, 0), (4, 0)), "part"), Outline(((0, -4), (0, 4)), "part"))
@@ -100,7 +107,7 @@ _PICTURES: dict[Dialect, dict[str, Sketch]] = {
         "G42": _beside(outside=False),
         "T": _quadrants(),
     },
-    # X is seen upwards there, so left and right, clockwise and counter-clockwise, change places.
+    # X points up in this language, so left and right, and clockwise and counterclockwise, are swapped.
     Dialect.SINUMERIK: {
         "G3": _with_arc("G3 CR=", convex=True),
         "G2": _with_arc("G2 CR=", convex=False),
@@ -113,11 +120,11 @@ _PICTURES: dict[Dialect, dict[str, Sketch]] = {
 }
 
 
-PICTURE = 17.0  # units: height of a picture
+PICTURE = 17.0  # units: height of a sketch
 
 
 class CodeStrip(Panel):
-    """One code: how it is written, and what it means. Pressing it opens the list."""
+    """Line with one code, its syntax and meaning. A press opens the list."""
 
     ground = "panel"
     entry: Shown[Entry | None] = Shown(None)
@@ -136,38 +143,41 @@ class CodeStrip(Panel):
 
 
 class CodeList(CodeChoices):
-    """The choices, and of the marked one its words, lines that use it and its picture, if there is one."""
+    """List of codes.
+
+    For the selected code, the list shows its description, examples and sketch.
+    """
 
     def __init__(
         self, look: Look, field: TextField, proof: LiveProof, back: Callable[[], None], parent: QWidget
     ) -> None:
-        """``back`` leads from the list to the text."""
+        """Create the list. ``back`` closes the list and returns to the text."""
         self._codes = CodeHelp()
         super().__init__(look, self._codes, self._take, parent)
         self._field, self._proof, self._back = field, proof, back
-        self.dialect = Dialect.OMNITURN  # of the program, whose codes have pictures of their own
+        self.dialect = Dialect.OMNITURN  # of the program; the sketches depend on the language
         self._picture = SketchPanel(look, lambda _word: None, lambda _point: None, self)
 
     def follow(self) -> Entry | None:
-        """The code that the cursor stands on."""
+        """Update the code under the cursor and return its entry."""
         field = self._field
         self._codes.follow(self._proof.now.book, field.textCursor().block().text(), field.column)
         return self._codes.entry
 
     def ask(self) -> bool:
-        """Complete what has been typed, or look the code up; False where no text has been proved yet."""
+        """Open the list for the typed text. Return False if no text has been proved yet."""
         self.follow()
         return self._codes.ask()
 
     def _take(self) -> None:
-        """The marked code into the text."""
+        """Insert the selected code into the text."""
         chosen = self._codes.chosen
         if chosen is not None:
             self._field.write(chosen.written, self._codes.begin)
         self._back()
 
     def refresh(self) -> None:
-        """Once a frame: drawn anew when other choices are shown or another one is marked."""
+        """Update the sketch and the list; called once per frame."""
         super().refresh()
         chosen = self._codes.chosen
         drawn = picture_of(chosen.head, self.dialect) if chosen is not None else None
@@ -180,15 +190,15 @@ class CodeList(CodeChoices):
             )
 
     def _foot(self) -> float:
-        """Pixels that example and picture of the marked choice take."""
+        """Return the height of the example and the sketch in pixels."""
         return super()._foot() + self._drawn()
 
     def _drawn(self) -> float:
-        """Pixels that the picture takes."""
+        """Return the height of the sketch in pixels."""
         return PICTURE * self.look.u if not self._picture.isHidden() else 0.0
 
     def keys(self) -> dict[int, Key]:
-        """The function keys while the list is looked through."""
+        """Return the function keys while the list is open."""
         shown = self._codes
         return {
             2: Key("WRITE", self._take),
@@ -199,7 +209,7 @@ class CodeList(CodeChoices):
         }
 
     def arrows(self) -> dict[int, Callable[[], None]]:
-        """The same actions by the arrow keys, and Return."""
+        """Return the actions of the arrow keys and of Enter."""
         by = {number: key.action for number, key in self.keys().items()}
         return {
             Qt.Key.Key_Up: by[4],

@@ -1,4 +1,4 @@
-"""The program that is edited: where it lies, how it is saved, and the draft that is kept until it is."""
+"""Document of the editor: its file, how it is saved, and the draft that protects unsaved text."""
 
 from __future__ import annotations
 
@@ -17,23 +17,24 @@ from core.message import CodedError, Message
 from core.store.program_records import check_name
 from core.store.store_errors import StoreError
 
-MOST_LINES = 50_000  # the text field takes .7 s of the screen's time for them
+MOST_LINES = 50_000  # The text field needs 0.7 s for this number of lines.
 _DOS = "\r\n"
 
 
 class TooLongError(CodedError, ValueError):
-    """A text that the field would hold up the screen with; the sentence says so."""
+    """Error for a text that is too long for the editor, with a message for the operator."""
 
 
 class NameRefusedError(ValueError):
-    """A name that no program can have; the sentence says why."""
+    """Error for an invalid program name, with a message for the operator."""
 
 
 @dataclass(frozen=True, slots=True)
 class Document:
-    """``text`` has bare line feeds, as an editor does; ``line_end`` is what the file has.
+    """Edited program. ``text`` has line feeds only, and ``line_end`` is the line ending of the file.
 
-    ``protected``: a sample, which may be saved under another name only. ``fresh``: not on the disk yet.
+    ``protected`` marks a sample, which must be saved under another name. ``fresh`` marks a document that is
+    not on the disk yet.
     """
 
     path: Path
@@ -44,21 +45,24 @@ class Document:
 
     @property
     def name(self) -> str:
-        """What the screen and the store call it."""
+        """File name of the program."""
         return self.path.name
 
     def encoded(self, text: str) -> bytes:
-        """``text`` as it goes to the disk, with the line ends that the file has."""
+        """Return ``text`` as the bytes of the file, with the file's line ending."""
         return with_last_line_ended(text).replace("\n", self.line_end).encode("utf-8", "replace")
 
 
 def with_last_line_ended(text: str) -> str:
-    """The text with its last line ended, as it is saved and proved: nobody need press Return for that."""
+    """Return the text with a final line feed, as it is saved and proved."""
     return text if text.endswith("\n") or not text else text + "\n"
 
 
 def open_document(path: Path, samples: Path) -> Document:
-    """The document of a file. Raises SourceError when it is no program text, TooLongError when too much."""
+    """Open a file as a document.
+
+    Raises SourceError if the file is not a program text, and TooLongError if the text is too long.
+    """
     text = _text(path)
     if text.count("\n") >= MOST_LINES:
         raise TooLongError(
@@ -76,7 +80,7 @@ def open_document(path: Path, samples: Path) -> Document:
 
 
 def _text(path: Path) -> str:
-    """An empty file is no program to run, but one to write."""
+    """Return the text of a file. An empty file is permitted."""
     try:
         return load_source(path).text
     except SourceError as error:
@@ -86,12 +90,15 @@ def _text(path: Path) -> str:
 
 
 def new_document(folder: Path, typed: str, usual: str) -> Document:
-    """A new and empty document of this name. Raises NameRefusedError with a sentence."""
+    """Return a new, empty document for a typed name. Raises NameRefusedError."""
     return Document(folder / program_name(typed, usual), fresh=True)
 
 
 def program_name(typed: str, usual: str) -> str:
-    """The file name that was meant: a name without an ending gets the ``usual`` one."""
+    """Return the file name for a typed name, with the ``usual`` extension if the name has none.
+
+    Raises NameRefusedError if the name is not valid.
+    """
     name = typed.strip()
     if not name:
         raise NameRefusedError("ENTER A PROGRAM NAME")
@@ -118,17 +125,18 @@ def program_name(typed: str, usual: str) -> str:
     return name if ending else name + usual
 
 
-# --- saving: the file first, then the version; what stood there before is kept too -------------------------
+# --- saving: the file first, then the version; the previous content is archived too ------------------------
 
 
 CHANGED = "changed by another program"
 
 
 def save_document(document: Document, text: str, archive: Archive, replacing: bool) -> str:
-    """Write ``text`` into the file of ``document`` and keep it as a version.
+    """Write ``text`` to the file of ``document`` and archive it as a version.
 
-    Answers why no version could be kept, empty when all went well, or ``CHANGED`` when the file is not any
-    more what was opened (nothing is written then, unless ``replacing``). Raises FileError.
+    Returns an empty string, the reason why no version was archived, or ``CHANGED``. ``CHANGED`` means that
+    the file differs from the opened text. Nothing is written then, unless ``replacing`` is set. Raises
+    FileError.
     """
     there = present(document.path)
     foreign = there is not None and not _is_opened(document, there)
@@ -138,21 +146,24 @@ def save_document(document: Document, text: str, archive: Archive, replacing: bo
     if there is not None:
         trouble = _kept(archive, document.name, there, "text before editing")
         if trouble and foreign:
-            return CHANGED  # what somebody else wrote is not replaced before it is safe
+            return CHANGED  # Content from another program is not replaced before it is archived.
     data = document.encoded(text)
     write_whole(document.path, data)
     return _kept(archive, document.name, data, "saved in the editor") or trouble
 
 
 def _is_opened(document: Document, data: bytes) -> bool:
-    """Whether the file still holds what was opened or last saved."""
+    """Return whether the file still contains the text that was opened or last saved."""
     if document.fresh:
         return False
     return data == document.encoded(document.text) or _decodes_to(document, data)
 
 
 def _decodes_to(document: Document, data: bytes) -> bool:
-    """Files from DOS: other characters, a byte order mark, the old sign for the end of a file."""
+    """Return whether data from DOS decodes to the document's text.
+
+    Such data can have another character set, a byte order mark or an end-of-file character.
+    """
     for code in ("utf-8-sig", "cp437", "latin-1"):
         try:
             text = data.decode(code)
@@ -176,26 +187,29 @@ WHY = "unsaved draft"
 
 @dataclass(slots=True)
 class Drafts:
-    """A file for each text, written on a worker: the last of what was typed since it last came round."""
+    """Draft files, one per text, written by a worker with the latest unsaved text."""
 
     folder: Path
     archive: Archive
-    trouble: str = ""  # why the last could not be kept
-    _wanted: dict[str, str | None] = field(default_factory=dict)  # None: it is not needed any more
+    trouble: str = ""  # reason why the last draft was not written
+    _wanted: dict[str, str | None] = field(default_factory=dict)  # None: the draft is obsolete
     worker: Latest = field(default_factory=lambda: Latest("editing-drafts"))
 
     def look(self, document: Document, text: str) -> None:
-        """This is in the editor now."""
+        """Record the present text of the editor as the draft."""
         self._wanted[document.name] = None if text == document.text else text
         self._go_on()
 
     def forget(self, document: Document) -> None:
-        """Its text is saved or given up: the draft file goes."""
+        """Delete the draft of a document, because its text was saved or discarded."""
         self._wanted[document.name] = None
         self._go_on()
 
     def recover(self, document: Document, say: Callable[[str], None]) -> None:
-        """A draft that was left for it goes into the history, before anything is written for it now."""
+        """Move a leftover draft of the document to the history before a new draft is written.
+
+        ``say`` is called with a message.
+        """
         self.worker.queue(lambda: self._recovered(document), say, say)
 
     def _recovered(self, document: Document) -> str:
@@ -210,19 +224,19 @@ class Drafts:
                 return messages.DRAFT
             why = messages.NO_STORE
         except (FileNotFoundError, NotADirectoryError):
-            return ""  # none was left
+            return ""  # No draft was left.
         except (OSError, UnicodeDecodeError, StoreError) as error:
             why = str(error)
-        aside = place.replace(place.with_suffix(".left"))  # what is typed now gets its own
+        aside = place.replace(place.with_suffix(".left"))  # The present text gets a separate draft file.
         return Message(messages.DRAFT_STAYS, name=aside, why=why)
 
     def poll(self) -> None:
-        """Once a frame: take up what was written, and write what was typed since."""
+        """Process finished writes and start the next; called once per frame."""
         self.worker.poll()
         self._go_on()
 
     def close(self) -> None:
-        """Write what is left and end the worker."""
+        """Write the pending drafts and stop the worker."""
         self.worker.close()
         for name in list(self._wanted):
             self._write(name, self._wanted.pop(name))
@@ -239,7 +253,7 @@ class Drafts:
         self._go_on()
 
     def _write(self, name: str, text: str | None) -> str:
-        """Whole or not at all; what failed, in words."""
+        """Write or delete a draft file atomically, and return an error message or an empty string."""
         place = self._place(name)
         try:
             if text is None:

@@ -1,7 +1,7 @@
-"""The editor: opening, creating, saving and leaving, with every version kept. No Qt, never waits.
+"""Editor model without Qt: opening, creating, saving and leaving programs, with version history.
 
-What the operator asks for begins at once and ends in a later ``poll``, once a frame; the text itself lies in
-the text field of the page, which hands it over with each request.
+No method waits. Each request of the operator starts at once and ends in a later ``poll``, which is called
+once per frame. The text is in the text field of the page, which passes it with each request.
 """
 
 from __future__ import annotations
@@ -35,10 +35,10 @@ from core.message import Message
 
 
 class Stage(StrEnum):
-    """What the editor is doing with its document."""
+    """State of the editor."""
 
     CLOSED = "closed"
-    OFFERED = "offered"  # a new file: F1 creates it, Esc aborts
+    OFFERED = "offered"  # a new file: F1 creates it, Esc cancels
     READING = "reading"
     OPEN = "open"
     NAMING = "naming"  # saving waits for a name
@@ -47,7 +47,10 @@ class Stage(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class LeftProgram:
-    """Which program was left, whether it was saved meanwhile with changes, and whether it is to be run."""
+    """Program that was closed in the editor.
+
+    ``changed`` means that it was saved with changes, and ``to_desk`` that it is to be loaded.
+    """
 
     path: Path
     changed: bool
@@ -57,9 +60,9 @@ class LeftProgram:
 
 @dataclass(slots=True)
 class Editor:
-    """One document at a time. ``left`` hears of the program that was left in good order.
+    """Editor of one document at a time. ``left`` is called with the program that was closed.
 
-    ``steps`` prove without keeping anything, ``programs`` is the operator's own folder.
+    ``steps`` prove a text without storing anything, and ``programs`` is the operator's program folder.
     """
 
     steps: LoadingSteps
@@ -67,25 +70,25 @@ class Editor:
     programs: Path
     samples: Path
     left: Callable[[LeftProgram], None] = field(default=lambda _: None)
-    may_save: Callable[[], str] = str  # why the level in force does not; empty when it may
+    may_save: Callable[[], str] = str  # reason why the access level does not permit saving, or empty
     stage: Stage = Stage.CLOSED
     document: Document | None = None
     notice: str = ""
-    text_number: int = 0  # counts texts put into the field from here: opened, created, restored
-    text: str = ""  # the last of them
-    wanted: str = ""  # a name typed where a program is chosen: it is what the editor is entered for
-    made_of: Path | None = None  # a file of which an optional feature makes the text of this program
-    restored: bool = False  # it takes the place of what was typed, as one step that can be undone
+    text_number: int = 0  # counts the texts that the model puts into the field: opened, created or restored
+    text: str = ""  # the last of these texts
+    wanted: str = ""  # name typed on another page, for which the editor is opened
+    made_of: Path | None = None  # file from which an optional feature generates the text of this program
+    restored: bool = False  # the text replaces the typed text as one step that can be undone
     block_delete: bool = False
-    usual_ending: str = ".nc"  # of a new program: that of the language that this machine is typed in
+    usual_ending: str = ".nc"  # extension of new programs, from the language of the machine
     proof: LiveProof = field(init=False)
     drafts: Drafts = field(init=False)
     worker: Latest = field(default_factory=lambda: Latest("editing-files"))
     _offered: str = ""
     _leaving: bool = False
     _to_desk: bool = False
-    _changed: bool = False  # something of it was saved since it was opened
-    asked: Callable[[str], None] | None = None  # what F6 does now: never what the key does that asked
+    _changed: bool = False  # saved at least once since it was opened
+    asked: Callable[[str], None] | None = None  # action of F6; never the action of the key that asked
     _unnamed: str = ""  # text whose saving waits for a name
 
     def __post_init__(self) -> None:
@@ -93,19 +96,19 @@ class Editor:
         self.drafts = Drafts(self.programs / ".drafts", self.archive)
 
     def poll(self) -> None:
-        """Once a frame: take up what the worker has finished."""
+        """Process finished work; called once per frame."""
         self.worker.poll()
         self.drafts.poll()
         if self.drafts.trouble and not self.notice:
             self.notice = self.drafts.trouble
 
     def close(self) -> None:
-        """End the editor's workers; what is being written is written to its end."""
+        """Stop the workers after pending writes are finished."""
         self.proof.close()
         self.worker.close()
         self.drafts.close()
 
-    # --- coming in -----------------------------------------------------------------------------------
+    # --- opening -------------------------------------------------------------------------------------
 
     def open(self, path: Path, block_delete: bool = False) -> None:
         """Read a program into the editor."""
@@ -115,13 +118,13 @@ class Editor:
         self.worker.queue(lambda: open_document(path, self.samples), self._opened, self._not_opened)
 
     def offer(self, typed: str) -> None:
-        """A name that no program has: ask whether it shall be a new one."""
+        """Ask whether to create a new file with this name."""
         self.clear()
         self.stage, self._offered = Stage.OFFERED, typed
         self.notice = messages.CREATE
 
     def create(self) -> None:
-        """F1: the name that was offered becomes a new, empty document."""
+        """Create the offered document (F1)."""
         if self.stage is not Stage.OFFERED:
             return
         try:
@@ -136,7 +139,7 @@ class Editor:
         self._opened(document)
 
     def abort(self) -> None:
-        """Esc: back to where one came from."""
+        """Cancel the offer of a new document (Esc)."""
         if self.stage is Stage.OFFERED:
             self.clear()
             self._shut()
@@ -158,46 +161,46 @@ class Editor:
         self.text, self.restored = text, restored
         self.text_number += 1
 
-    # --- writing -------------------------------------------------------------------------------------
+    # --- editing -------------------------------------------------------------------------------------
 
     @property
     def was_saved(self) -> bool:
-        """Whether something was saved since the document was opened."""
+        """Whether the document was saved since it was opened."""
         return self._changed
 
     @property
     def name(self) -> str:
-        """What is edited, or offered as a new file."""
+        """Name of the document or of the offered new file."""
         return self.document.name if self.document else self._offered
 
     def changed(self, text: str) -> None:
-        """This is in the field now: have it proved."""
+        """Prove the changed text and store it as a draft."""
         self.proof.submit(self.name, with_last_line_ended(text), self.block_delete)
         if self.document is not None:
             self.drafts.look(self.document, text)
 
     def preview(self, text: str) -> None:
-        """Have proved what a form would make of the text; nothing of it is kept."""
+        """Prove the text that a form would produce, without storing it."""
         self.proof.submit(self.name, with_last_line_ended(text), self.block_delete)
 
     def is_dirty(self, text: str) -> bool:
-        """Whether leaving now would have something to save."""
+        """Return whether the text has unsaved changes."""
         document = self.document
         return document is not None and text != document.text
 
     def restore(self, text: str, number: int) -> None:
-        """An older version takes the place of the text, as one step that can be undone."""
+        """Replace the text with an older version, as one step that can be undone."""
         self._put(text, restored=True)
         self.notice = messages.RESTORED.format(number)
 
     def clear(self) -> None:
-        """Take answer and questions back."""
+        """Clear the message and the pending question."""
         self.notice, self.asked = "", None
 
     # --- saving and leaving --------------------------------------------------------------------------
 
     def save(self, text: str, *, leave: bool = False, replacing: bool = False) -> None:
-        """Write the file and keep the version; then, if asked for, leave."""
+        """Save the file and archive the version, then leave if requested."""
         document = self.document
         if document is None or self.stage is not Stage.OPEN:
             return
@@ -213,7 +216,7 @@ class Editor:
             self._write(document, text, replacing=replacing)
 
     def take_name(self, typed: str) -> bool:
-        """The name under which a sample is saved; False when it is refused."""
+        """Save a sample under the typed name. Return False if the name is rejected."""
         document = self.document
         if document is None or self.stage is not Stage.NAMING:
             return False
@@ -230,15 +233,15 @@ class Editor:
         return True
 
     def keep_no_name(self) -> None:
-        """Esc at the question for a name: go on editing."""
+        """Cancel the name entry and continue editing (Esc)."""
         if self.stage is Stage.NAMING:
             self.clear()
             self.stage, self._leaving = Stage.OPEN, False
 
     def leave(self, text: str, *, to_desk: bool = False) -> None:
-        """Save what has changed, then go; an untouched new file is forgotten.
+        """Save changes and leave the editor. An empty new file is discarded.
 
-        ``to_desk``: it is loaded then (F3); otherwise the loaded program stays as it is (F1).
+        If ``to_desk`` is set, the program is loaded (F3). Otherwise the loaded program remains (F1).
         """
         document, self._to_desk = self.document, to_desk
         if document is None or self.stage is not Stage.OPEN:
@@ -251,7 +254,7 @@ class Editor:
             self._go(document)
 
     def abandon(self, text: str) -> None:
-        """Leave without saving; asked when there is something to lose, and done by another key."""
+        """Leave without saving. Unsaved changes require confirmation with another key."""
         if self.stage is not Stage.OPEN:
             return
         if self.is_dirty(text):
@@ -260,7 +263,7 @@ class Editor:
         self._shut()
 
     def answer(self, text: str) -> None:
-        """F6: yes to what is asked of the text that stands in the field."""
+        """Confirm the pending question (F6)."""
         asked = self.asked
         self.clear()
         if asked is not None and self.stage is Stage.OPEN:
@@ -280,7 +283,8 @@ class Editor:
             self._not_saved(messages.CHANGED_OUTSIDE.format(document.name))
             self.asked = lambda now: self.save(now, leave=leave, replacing=True)
             return
-        for each in (document, self.document or document):  # under its new name, and its old one
+        # Both the old and the new name of a sample have a draft.
+        for each in (document, self.document or document):
             self.drafts.forget(each)
         self.document, self.stage = replace(document, text=text, fresh=False), Stage.OPEN
         self._changed = True
@@ -306,11 +310,12 @@ class Editor:
         self.asked = None
 
 
-# --- coming in and going, beside the machine --------------------------------------------------------------
+# --- opening and closing in the context of the machine ----------------------------------------------------
 def enter(desk: Desk, editor: Editor) -> bool:
-    """Go into the editor: with the program of the name that was typed, or else with that on the desk.
+    """Open the editor with the program whose name was typed, or else with the loaded program.
 
-    A name that no program has is offered as a new file. False when it is refused; the desk says why.
+    An unknown name is offered as a new file. Returns False if the editor cannot be opened. TurnDesk shows the
+    reason.
     """
     name, now = editor.wanted.strip(), desk.session.now
     editor.wanted = ""
@@ -328,7 +333,10 @@ def enter(desk: Desk, editor: Editor) -> bool:
 
 
 def _take_up(desk: Desk, left: LeftProgram) -> None:
-    """Load the program if it was left by F3 and is not loaded yet; otherwise report what stays loaded."""
+    """Load the closed program if F3 requires it.
+
+    Otherwise report which program remains loaded.
+    """
     path, now = left.path, desk.session.now
     if left.changed:
         desk.storage.recheck_file()
@@ -339,7 +347,7 @@ def _take_up(desk: Desk, left: LeftProgram) -> None:
         if path != now.path:
             desk.done(tr(Message(messages.LOOKED, name=path.name, other=now.name)))
     elif desk.snapshot().state in UNDER_WAY:
-        desk.say(tr(messages.RELOAD))  # somebody started a cycle at the station meanwhile
+        desk.say(tr(messages.RELOAD))  # A cycle was started at the operator station in the meantime.
     elif path == now.path:
         desk.session.load(path, now.block_delete)
     else:
@@ -355,14 +363,17 @@ def _stays(left: LeftProgram, now: Loaded) -> str:
 
 
 def _is_to_load(left: LeftProgram, now: Loaded) -> bool:
-    """Return whether F3 loads it: it was written or is not what is loaded. Looking never loads another."""
+    """Return whether F3 loads the program: it was changed, or the loaded program has another text.
+
+    Viewing a program never replaces another loaded program.
+    """
     if left.changed or now.path is None:
         return True
     return left.path == now.path and not _is_loaded(left.text, now)
 
 
 def _is_loaded(text: str, now: Loaded) -> bool:
-    """Return whether the loaded program has this text; line ends do not count."""
+    """Return whether the loaded program has this text, ignoring line endings."""
     if now.source is None:
         return False
     loaded = now.source.text.replace("\r\n", "\n").replace("\r", "\n")

@@ -1,4 +1,4 @@
-"""What the editor says; the first two are the control's own words."""
+"""Messages of the editor. The first two are texts of the original control."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The parts of the page EDITOR: head line, path of the text, findings; which are seen when, and where."""
+"""Parts of the page EDITOR: head line, path, findings and keyboard, with their visibility and layout."""
 
 from __future__ import annotations
 
@@ -42,9 +42,9 @@ if TYPE_CHECKING:
 
 
 class EditedPath(PathView):
-    """Keeps what is looked at while the text is typed, unless nobody has zoomed or panned.
+    """Path of the edited text. An adjusted view remains while the text changes.
 
-    ``go_to`` is told the source line of what is touched.
+    ``go_to`` is called with the source line of a touched path.
     """
 
     title = "PATH TO THE CURSOR"
@@ -59,11 +59,11 @@ class EditedPath(PathView):
 
     @property
     def tip(self) -> Tip:
-        """Where the line of the cursor ends."""
+        """Tip at the end of the cursor line."""
         return self._tip or Tip()
 
     def follow(self, line: int) -> None:
-        """The tip to the end of a source line, or of the nearest one before it that moves."""
+        """Move the tip to the end of a source line, or of the nearest earlier line with motion."""
         picture = self.picture
         if picture is None or not len(picture.z) or (picture, line) == self._followed:
             return
@@ -76,7 +76,10 @@ class EditedPath(PathView):
         self.mark(picture.blocks_of_line(line))
 
     def line_here(self) -> str:
-        """To the source line of what the cross stands on; answers a sentence where it stands on none."""
+        """Go to the source line of the path at the crosshair.
+
+        Return a message if the crosshair is off the path.
+        """
         block = self.ruler.block() if self.ruler is not None else 0
         if not block:
             return tr("CROSSHAIR NOT ON THE PATH. PRESS AN ARROW KEY TO MOVE IT")
@@ -84,7 +87,7 @@ class EditedPath(PathView):
         return ""
 
     def keys(self) -> dict[int, Key]:
-        """The function keys while the keyboard is in the path."""
+        """Return the function keys while the path has the keyboard."""
         return {
             2: Key("FEED HOLD", self._hold),
             4: Key("VIEW", self.next_view),
@@ -94,7 +97,7 @@ class EditedPath(PathView):
         }
 
     def _hold(self) -> None:
-        """Measure from where the cross stands."""
+        """Set a measured point at the crosshair."""
         if self.ruler is not None:
             self.ruler.hold()
             self.update()
@@ -108,11 +111,14 @@ class EditedPath(PathView):
         return pane.end_of(tip.block)
 
 
-FOUND = 5.2  # units: two lines of text, at least a fingertip
+FOUND = 5.2  # units: two lines of text, at least a fingertip high
 
 
 class FindingList(RowPanel):
-    """Rows in the order of lines; the row of the cursor's line is marked and stays visible."""
+    """List of findings in the order of lines.
+
+    The finding of the cursor line is marked and remains visible.
+    """
 
     notch = 1
 
@@ -123,14 +129,14 @@ class FindingList(RowPanel):
         self._line = 0
 
     def show_findings(self, findings: Findings, line: int) -> None:
-        """What was found, and the cursor's line."""
+        """Show the findings and mark the cursor line."""
         if findings is not self.findings or line != self._line:
             self.findings, self._line = findings, line
             self.update()
 
     @property
     def words(self) -> str:
-        """What the title line of the list says."""
+        """Title line of the list."""
         found = self.findings
         if found.trouble:
             return found.trouble
@@ -146,7 +152,10 @@ class FindingList(RowPanel):
         )
 
     def following(self, line: int) -> Diagnostic | None:
-        """The next error after a line, round the end; without errors the next of what else was found."""
+        """Return the next error after a line.
+
+        The search continues at the start of the list. Without errors, the next other finding is returned.
+        """
         placed = [d for d in self.findings.diagnostics if d.line]
         found = [d for d in placed if d.severity is Severity.ERROR] or placed
         return next((d for d in found if d.line > line), found[0] if found else None)
@@ -179,11 +188,14 @@ def _many(count: int, word: str) -> str:
     return f"{count} {word}" if count == 1 else f"{count} {word}S"
 
 
-KEYS = 14.0  # units: width of the place that shows the keyboard, and of those that open a panel
+KEYS = 14.0  # units: width of the key that shows the keyboard and of the keys that open a panel
 
 
 class Heading(NamedTuple):
-    """``mark`` is CHANGED, SAMPLE or NEW, empty for what is as its file."""
+    """Content of the head line.
+
+    ``mark`` is CHANGED, SAMPLE, NEW or empty for an unchanged file.
+    """
 
     name: str = ""
     mark: str = ""
@@ -191,16 +203,20 @@ class Heading(NamedTuple):
 
 
 class HeadLine(Panel):
-    """The program being written, which need not be the one on the desk that the title line names."""
+    """Head line with the edited program, which can differ from the loaded program in the title line."""
 
     ground = "panel"
     heading = Shown(Heading())
-    panel_keys: Shown[tuple[HeadKey, ...]] = Shown(())  # what optional features write into this program
+    # keys of optional features that write into this program
+    panel_keys: Shown[tuple[HeadKey, ...]] = Shown(())
 
     def __init__(
         self, look: Look, keys: Callable[[], None], panel: Callable[[str], None], parent: QWidget
     ) -> None:
-        """``keys`` shows the drawn keyboard, or takes it away; ``panel`` is told the key that opens it."""
+        """Create the head line.
+
+        ``keys`` shows or hides the keyboard, ``panel`` opens the panel of a key.
+        """
         super().__init__(look, parent)
         self._keys, self._panel = keys, panel
 
@@ -218,23 +234,24 @@ class HeadLine(Panel):
         key = QRectF(self.width() - KEYS * u, 0, KEYS * u, high)
         self.key(painter, key, tr("KEYBOARD"), 1.9, self._keys, ink="accent", margin=1.0)
         for label, name in self.panel_keys:
-            key = key.translated(-(KEYS + 0.6) * u, 0)  # a place of its own: the one before is kept
+            # a separate variable, because the previous box is stored
+            key = key.translated(-(KEYS + 0.6) * u, 0)
             self.key(painter, key, label, 1.9, partial(self._panel, name), ink="accent", margin=1.0)
 
 
-# --- where everything stands on the page, in the unit of the Automatic page --------------------------------
+# --- layout of the page, in the unit of the Automatic page -------------------------------------------------
 
 
-KEYBOARD = 29.0  # units: height of the drawn keyboard, four rows of a finger's height
+KEYBOARD = 29.0  # units: height of the drawn keyboard, four rows of a fingertip
 NOWHERE = Rect(0, 0, 0, 0)
-HEAD_LINE = 6.8  # units: a finger's height, for the place that shows the keyboard
+HEAD_LINE = 6.8  # units: a fingertip, for the key that shows the keyboard
 
 
 class EditorPlaces(NamedTuple):
-    """The parts of the page; ``ask`` is empty while nothing is asked, ``keys`` without the drawn keyboard.
+    """Areas of the page. ``ask`` is empty without a question, and ``keys`` without the drawn keyboard.
 
-    ``code`` is the line that says what the code at the cursor means, ``codes`` what the list of codes takes;
-    ``path`` is the place of all pictures of the program: one of the part being cut is one more choice.
+    ``code`` is the line that explains the code at the cursor, and ``codes`` is the list of codes. ``path`` is
+    the area of all pictures of the program.
     """
 
     head: Rect
@@ -245,13 +262,14 @@ class EditorPlaces(NamedTuple):
     codes: Rect
     ask: Rect
     keys: Rect
-    body: Rect  # text, path and findings together: the history takes it
+    body: Rect  # text, path and findings together; the history uses this area
 
 
 def editor_places(width: int, height: int, u: float, *, asking: bool, keys: float = 0.0) -> EditorPlaces:
-    """Divide the room that the frame leaves to its page; ``u`` is its unit.
+    """Return the layout of the page in pixels. ``u`` is the unit of the page.
 
-    ``keys`` units of it are the drawn keyboard's: the text then has the whole width over it.
+    ``keys`` is the height of the drawn keyboard in units. With the keyboard, the text has the full width
+    above it.
     """
     gap = max(4, round(0.7 * u))
     head = Rect(0, 0, width, round(HEAD_LINE * u))
@@ -276,7 +294,7 @@ def editor_places(width: int, height: int, u: float, *, asking: bool, keys: floa
 
 
 class Mode(StrEnum):
-    """What the keys are for."""
+    """Mode of the editor page, which determines the meaning of the keys."""
 
     TEXT = "text"
     FIND = "find"
@@ -284,8 +302,8 @@ class Mode(StrEnum):
     NAME = "name"
     HISTORY = "history"
     OFFER = "offer"
-    CODES = "codes"  # the list of codes is looked through
-    LOOK = "look"  # at the path: the keyboard measures in it
+    CODES = "codes"  # the list of codes is open
+    LOOK = "look"  # the path has the keyboard, for measuring
     PANEL = "panel"  # a form of an optional feature writes the lines
 
 
@@ -293,7 +311,10 @@ ASKING = frozenset({Mode.FIND, Mode.GO_TO, Mode.NAME})
 
 
 class EditorParts(Page):
-    """The page by its parts, which ``EditorPage`` makes; ``mode`` says which of them are seen."""
+    """Editor page as a set of parts, which ``EditorPage`` creates.
+
+    ``mode`` determines the visible parts.
+    """
 
     mode: Mode
     editor: Editor
@@ -312,10 +333,10 @@ class EditorParts(Page):
     _with_letters = False
 
     def show_text(self) -> None:
-        """Heading, findings and picture of what is in the field now."""
+        """Update heading, findings and picture for the present text."""
         editor = self.editor
         line, column, count = self.field.line, self.field.column, self.field.blockCount()
-        if self.mode is Mode.PANEL:  # of the text with what the form writes
+        if self.mode is Mode.PANEL:  # of the text including the lines of the form
             line, count = self.panel.model.line, self.panel.model.text.count("\n") + 1
         place = Message("LINE {line} OF {count}  ·  COL {column}", line=line, count=count, column=column)
         self.head.heading = Heading(editor.name, self.typed_text.mark, place)
@@ -329,7 +350,7 @@ class EditorParts(Page):
         self._show_path(findings.picture, line)
 
     def _show_path(self, picture: Picture | None, line: int) -> None:
-        """The path up to the line of the cursor; on a mill the plane of that line in space."""
+        """Show the path up to the cursor line, or on a mill the plane of that line in 3D."""
         scene = picture.scene if picture is not None else None
         self.space.show_scene(scene)
         self.space.setVisible(scene is not None and self.mode is not Mode.OFFER and not self.lettered)
@@ -342,29 +363,29 @@ class EditorParts(Page):
         self.path.advance()
 
     def show_mode(self) -> None:
-        """The parts that this mode has."""
+        """Show the parts of the present mode."""
         self.path.measure(on=self.mode is Mode.LOOK)
         self.versions.setVisible(self.mode is Mode.HISTORY)
         self.codes.setVisible(self.mode is Mode.CODES)
         self.panel.setVisible(self.mode is Mode.PANEL)
         self.field.setVisible(
             self.mode not in {Mode.OFFER, Mode.PANEL}
-        )  # what was edited last is not what is offered
+        )  # The previous text is not the offered program.
         for part in (self.path, self.findings, self.code):
             part.setVisible(self.mode is not Mode.OFFER and not self.lettered)
         self.letters.setVisible(self.lettered)
         self.letters.write_into(self.ask.first if self.mode in ASKING else self.field)
         self._lay_out()
 
-    # --- the drawn keyboard --------------------------------------------------------------------------
+    # --- drawn keyboard ------------------------------------------------------------------------------
 
     @property
     def lettered(self) -> bool:
-        """Whether the keyboard is drawn: where something is written, if a finger has asked for it."""
+        """Whether the drawn keyboard is visible: the user has requested it, and the mode accepts text."""
         return self._with_letters and self.mode in ASKING | {Mode.TEXT}
 
     def turn_letters(self) -> None:
-        """Show the keyboard, or take it away."""
+        """Show or hide the drawn keyboard."""
         self._with_letters = not self._with_letters
         self.show_mode()
 
@@ -372,7 +393,7 @@ class EditorParts(Page):
         strike(key, self.letters.focusProxy() or self.field)
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """Everything again, in the new unit."""
+        """Lay out all parts again after a change of size."""
         self._lay_out()
         self.dress()
 
@@ -397,7 +418,7 @@ class EditorParts(Page):
             part.update()
 
     def dress(self) -> None:
-        """Everything in the colours and sizes that are in force now."""
+        """Apply the present colors and font sizes to all parts."""
         self.field.dress()
         self.ask.dress()
         self.path.restart()

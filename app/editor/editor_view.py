@@ -1,6 +1,6 @@
-"""The page EDITOR (F3): the text with its margin, the path beside it, and what proving has found.
+"""Page EDITOR (F3): the text with its margin, the path, and the findings of the proof.
 
-Everything is done by keys alone, and every function key is a target for a finger.
+All functions are available from the keyboard, and every function key is a touch target.
 """
 
 from __future__ import annotations
@@ -53,9 +53,9 @@ PROMPTS = {
 
 
 class EditorPage(EditorParts):
-    """Shows what the desk's editor holds; it opens with the program on the desk or a name that was typed.
+    """Editor page; opens with the loaded program or with a typed name.
 
-    Keys of the line that asks come to ``eventFilter``.
+    Keys of the question line arrive in ``eventFilter``.
     """
 
     NAME = page_table.EDITOR
@@ -64,13 +64,13 @@ class EditorPage(EditorParts):
         super().__init__(host, parent)
         look, self.editor = host.look, editor
         self.mode = Mode.TEXT
-        self._target = page_table.AUTOMATIC  # where leaving leads to
+        self._target = page_table.AUTOMATIC  # page that is shown after leaving
         self._moving = False
         self.head = HeadLine(look, self.turn_letters, self.open_panel, self)
         self.letters = LetterPad(look, self._strike, self, PROGRAMS)
         self.field = TextField(look, self)
         self.path = EditedPath(look, self.go_to, self, player_of(host.desk))
-        self.space = WorkingPlaneView(look, self)  # takes the path's place where the program is for a mill
+        self.space = WorkingPlaneView(look, self)  # replaces the path for a mill program
         self.findings = FindingList(look, self._go_to_finding, self)
         self.code = CodeStrip(look, self.look_up, self)
         self.codes = CodeList(look, self.field, editor.proof, self.back, self)
@@ -80,21 +80,25 @@ class EditorPage(EditorParts):
         self.finder = Finder(self.field, self.ask)
         self.typed_text = TypedText(self.field, self.editor)
         self.panel: EditorPanel = page_table.editor_panel(EditorPanel)(host, self)
-        self._shown_panel = (0, 0)  # texts of the panel that were proved, and put into the field
+        # numbers of the panel's text that was proved and of the text put into the field
+        self._shown_panel = (0, 0)
 
-    # --- the frame's calls ---------------------------------------------------------------------------
+    # --- calls of the main window --------------------------------------------------------------------
 
     def opens(self) -> bool:
-        """Not while a program is under way, nor beside a turning spindle."""
+        """Return whether the editor can open. It cannot while a program runs or the spindle turns."""
         return self.editor.stage is not Stage.CLOSED or enter(self.desk, self.editor)
 
     def opened(self) -> None:
-        """The program on the desk, or the name that was typed for a new one, is being fetched."""
+        """Reset the page. The program is being read."""
         self._target = page_table.AUTOMATIC
         self.enter(Mode.TEXT)
 
     def leave(self) -> bool:
-        """Save first; the page goes by itself when that is done."""
+        """Start saving and return whether the page can close now.
+
+        Otherwise it closes after saving.
+        """
         if self.editor.stage is Stage.OFFERED:
             self.editor.abort()
         if self.editor.stage is not Stage.CLOSED:
@@ -103,29 +107,29 @@ class EditorPage(EditorParts):
         return self.editor.stage is Stage.CLOSED
 
     def labels(self) -> tuple[str, ...]:
-        """What the function keys do now."""
+        """Return the labels of the present function keys."""
         now = self._keys()
         return tuple(now[n].label if n in now else "" for n in range(1, 11))
 
     def key_actions(self) -> KeyActions:
-        """The function keys of the moment."""
+        """Return the actions of the present function keys."""
         found = {f"F{number}": key.action for number, key in self._keys().items()}
         found["Codes"] = self.look_up
         found |= {name: partial(self.open_panel, name) for name in self.panel.KEYS}
-        if self.mode is Mode.LOOK:  # keys of the Automatic page that mean the same here
+        if self.mode is Mode.LOOK:  # keys of the Automatic page with the same meaning
             path = self.path
             found |= {"Zoom in": partial(path.zoom, 1), "Zoom out": partial(path.zoom, -1)}
             found |= {"Measure": self.back, "View": path.next_view}
         return found
 
     def esc_holds(self) -> bool:
-        """Return whether Esc holds the feed while something moves; beside a question it is no."""
+        """Return whether Esc stops the axes during motion, which it does unless a question is pending."""
         return not self.editor.notice and self.editor.stage is not Stage.OFFERED
 
     def escape(self) -> bool:
-        """A question is taken back, else the answer of the last key; what has nothing to save is left."""
+        """Cancel the question, the mode or the message. Leave the editor without unsaved changes."""
         if self._moving and self.esc_holds():
-            self.desk.feed_hold()  # what a hand hits first must do the safe thing on every page
+            self.desk.feed_hold()  # Esc must do the safe action on every page.
         elif self.editor.stage is Stage.OFFERED:
             self.editor.abort()
         elif self.mode is not Mode.TEXT:
@@ -143,11 +147,11 @@ class EditorPage(EditorParts):
         return True
 
     def asks(self) -> str:
-        """The question that F6 answers with yes; empty without one."""
+        """Return the question that F6 confirms, or an empty string."""
         return self.editor.notice if self.editor.asked else ""
 
     def prompt(self) -> str:
-        """The answer of the last key, or else what was found in the cursor's line."""
+        """Return the last message, or else the finding in the cursor line."""
         if self.editor.notice:
             return self.editor.notice
         if self._moving:
@@ -164,7 +168,7 @@ class EditorPage(EditorParts):
         return messages.STANDING
 
     def refresh(self, snapshot: Snapshot, _view: MachineStatus, _loaded: Loaded) -> None:
-        """Take up what the workers have finished, prove what has been typed, show it."""
+        """Process finished work, prove the typed text and update the page."""
         editor = self.editor
         self._moving = snapshot.state in MOVING
         editor.poll()
@@ -177,12 +181,12 @@ class EditorPage(EditorParts):
             self._follow_panel()
         self.show_text()
         if self.mode is Mode.LOOK and self.path.ruler is None:
-            self.back()  # measuring has ended: the keyboard is the text's again
+            self.back()  # Measuring has ended, so the text gets the keyboard again.
         self.versions.refresh()
         self.codes.refresh()
 
     def _follow_stage(self) -> None:
-        """The questions that the editor asks of itself."""
+        """Change the mode when the editor waits for a name or offers a new file."""
         stage = self.editor.stage
         if stage is Stage.NAMING and self.mode is not Mode.NAME:
             self.enter(Mode.NAME)
@@ -196,7 +200,7 @@ class EditorPage(EditorParts):
     # --- the function keys ---------------------------------------------------------------------------
 
     def _keys(self) -> Keys:
-        """Those that mean something now."""
+        """Return the function keys of the present mode."""
         word = "SAV+MENU" if self.mode is Mode.TEXT and self.typed_text.dirty else "MENU"
         menu, back = Key(word, partial(self.leave_to, page_table.MENU)), Key("BACK", self.back)
         undo = {8: Key("UNDO", self.field.undo), 9: Key("REDO", self.field.redo)}
@@ -208,7 +212,8 @@ class EditorPage(EditorParts):
             Mode.LOOK: lambda: {3: Key("GO TO LINE", self._to_line), **self.path.keys()},
         }
         if self.mode is Mode.PANEL and not self.panel.model.listing:
-            return {**of_mode[self.mode](), 10: back}  # what a form holds is written or dropped first
+            # A form must be written or discarded before the page closes.
+            return {**of_mode[self.mode](), 10: back}
         if self.mode in of_mode:
             return {1: menu, **of_mode[self.mode](), 10: back}
         if self.mode is Mode.OFFER:
@@ -228,7 +233,7 @@ class EditorPage(EditorParts):
         }
 
     def _load_label(self) -> str:
-        """What F3 does: it loads what was written, and what is not the loaded text."""
+        """Return the label of F3, which loads saved changes or a text that is not loaded."""
         editor, now = self.editor, self.desk.session.now
         if self.typed_text.dirty:
             return "SAV+LOAD"
@@ -237,7 +242,7 @@ class EditorPage(EditorParts):
         return "LOAD" if editor.was_saved or other or now.path is None else "LEAVE"
 
     def enter(self, mode: Mode) -> None:
-        """From now on the keys are for this."""
+        """Switch to a mode."""
         self.mode = mode
         self._ask()
         self.show_mode()
@@ -254,27 +259,27 @@ class EditorPage(EditorParts):
             self.field.setFocus()
 
     def back(self) -> None:
-        """From what is asked or looked at back to the text."""
+        """Return to the text from a question, a list or the path."""
         self.editor.keep_no_name()
         if self.mode is Mode.PANEL:
-            self.typed_text.stale = True  # what is proved now may be what a form would make of it
+            self.typed_text.stale = True  # The present proof can belong to the preview of a form.
         self.enter(Mode.TEXT)
 
     def go_to(self, line: int, column: int = 0) -> None:
-        """The cursor to a place of the program."""
+        """Move the cursor to a line and column."""
         if self.mode is Mode.LOOK:
             self.enter(Mode.TEXT)
         self.field.go_to(max(1, line), column)
         self.field.setFocus()
 
     def _go_to_finding(self, found: Diagnostic) -> None:
-        """The cursor to its line; of what was found in the part that is shown, as the line leaves it."""
+        """Move the cursor to a finding. For a finding in the part, show the part after that line."""
         self.go_to(found.line, found.column)
         if found.n:
             self.path.show_part()
 
     def next_finding(self) -> None:
-        """The cursor to the next line that something was found in."""
+        """Move the cursor to the next finding."""
         found = self.findings.following(self.field.line)
         if found is not None:
             self._go_to_finding(found)
@@ -282,11 +287,11 @@ class EditorPage(EditorParts):
             self.editor.notice = "NO ERRORS OR WARNINGS FOUND"
 
     def save(self) -> None:
-        """Save the text and go on editing."""
+        """Save the text and continue editing."""
         self.editor.save(self.typed_text.now())
 
     def leave_to(self, page: str) -> None:
-        """Save and go to another page."""
+        """Save the text and go to another page."""
         self._target = page
         self.editor.leave(self.typed_text.now(), to_desk=page == page_table.AUTOMATIC)
 
@@ -295,17 +300,17 @@ class EditorPage(EditorParts):
         self.editor.abandon(self.typed_text.now())
 
     def answer(self) -> None:
-        """Yes to what the editor asks."""
+        """Confirm the editor's question."""
         self.editor.answer(self.typed_text.now())
 
     def restore(self) -> None:
-        """The marked version into the editor."""
+        """Restore the selected version into the editor."""
         if self.history.text is not None:
             self.editor.restore(self.history.text, self.history.number)
             self.enter(Mode.TEXT)
 
     def look_up(self) -> None:
-        """What is being typed is completed, or the code at the cursor looked up."""
+        """Complete the typed code, or look up the code at the cursor."""
         if self.editor.stage is not Stage.OPEN or self.mode not in {Mode.TEXT, Mode.CODES}:
             return
         if self.codes.ask():
@@ -314,14 +319,14 @@ class EditorPage(EditorParts):
             self.editor.notice = messages.NO_CODES
 
     def look_at_path(self) -> None:
-        """The keyboard to the path, if there is any: to measure, and to find the line of what is drawn."""
+        """Give the keyboard to the path, for measuring and for finding the line of a move."""
         if self.path.drawn:
             self.enter(Mode.LOOK)
         else:
             self.editor.notice = messages.NO_PATH
 
     def open_panel(self, key: str = "") -> None:
-        """Open the panel of an optional feature with this key; from it back to the text."""
+        """Open the panel of an optional feature by its key. From the panel, return to the text."""
         if self.mode is Mode.PANEL:
             self.back()
         elif self.editor.stage is Stage.OPEN and self.mode is Mode.TEXT:
@@ -333,14 +338,14 @@ class EditorPage(EditorParts):
                 self.enter(Mode.PANEL)
 
     def _make_of(self, file: Path) -> None:
-        """The form of the file that this program is to be made of."""
+        """Open the form for the file from which this program is generated."""
         self.editor.made_of = None
         self.open_panel()
         if self.mode is Mode.PANEL:
             self.panel.model.open_file(file)
 
     def _follow_panel(self) -> None:
-        """What the form makes of the text is proved; what it has written comes into the field."""
+        """Prove the preview of the form, and put the written text into the field."""
         model, (proved, written) = self.panel.model, self._shown_panel
         model.look()
         if model.written != written:
@@ -352,25 +357,25 @@ class EditorPage(EditorParts):
         self.panel.refresh()
 
     def typed(self, key: str) -> bool:
-        """A key for a form of the panel, or for its list."""
+        """Pass a key to the panel's form or list, and return whether it was used."""
         return self.mode is Mode.PANEL and self.panel.model.typed(key)
 
     def takes(self, key: str) -> bool:
-        """Whether a character is text of the form."""
+        """Return whether a character is text of the form."""
         return self.mode is Mode.PANEL and self.panel.model.takes(key)
 
     def has_field(self) -> bool:
-        """The form has the keyboard."""
+        """Return whether the form has the keyboard."""
         return self.mode is Mode.PANEL
 
     def _to_line(self) -> None:
-        """The cursor to the line whose path the cross stands on."""
+        """Move the cursor to the line whose path is at the crosshair."""
         self.editor.notice = self.path.line_here()
 
-    # --- the line that asks ----------------------------------------------------------------------------
+    # --- question line ---------------------------------------------------------------------------------
 
     def _ask(self) -> None:
-        """The question of this mode; the line goes where there is none."""
+        """Show the question of the mode, or hide the question line."""
         if self.mode is Mode.FIND:
             self.ask.ask("FIND", "REPLACE WITH", entry=self.finder.start())
             self.finder.look()
@@ -382,7 +387,7 @@ class EditorPage(EditorParts):
             self.ask.hide()
 
     def _take(self) -> None:
-        """Return in the line that asks."""
+        """Accept the entry of the question line."""
         entry = self.ask.first.text()
         if self.mode is Mode.FIND:
             self.finder.step(1)
@@ -390,7 +395,7 @@ class EditorPage(EditorParts):
             self.editor.take_name(entry)
         elif (number := line_of(entry)) is None or number > self.field.blockCount():
             self.ask.answer = Message("ENTER A NUMBER FROM 1 TO {count}", count=self.field.blockCount())
-            self.ask.first.selectAll()  # the next digit replaces it
+            self.ask.first.selectAll()  # the next digit replaces the entry
         else:
             self.enter(Mode.TEXT)
             self.go_to(number)
@@ -398,7 +403,7 @@ class EditorPage(EditorParts):
     # --- Qt's calls ----------------------------------------------------------------------------------
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
-        """Keys in the line that asks; the field that has the keyboard has the drawn one too."""
+        """Handle keys of the question line. The focused field also receives the drawn keyboard."""
         if event.type() == QEvent.Type.FocusIn and isinstance(watched, QWidget):
             self.letters.write_into(watched)
         if isinstance(event, QKeyEvent) and event.type() == QEvent.Type.KeyPress:
@@ -406,7 +411,7 @@ class EditorPage(EditorParts):
         return False
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
-        """Keys that no field has taken; what means nothing here is the frame's."""
+        """Handle keys that no field has used, and pass the rest to the main window."""
         if not self._key(event):
             event.ignore()
 
@@ -417,7 +422,7 @@ class EditorPage(EditorParts):
         return action is not None
 
     def _action_of(self, event: QKeyEvent) -> Callable[[], None] | None:
-        """What a key does besides writing and the function keys; None when it means nothing here."""
+        """Return the action of a key other than text and function keys, or None."""
         key, modifiers = event.key(), event.modifiers()
         if modifiers & Qt.KeyboardModifier.ControlModifier:
             return self._chords().get(key)
@@ -435,7 +440,7 @@ class EditorPage(EditorParts):
         return None
 
     def _chords(self) -> Actions:
-        """With Ctrl; arrows move the picture where they do not move the cursor by words."""
+        """Return the actions of Ctrl with a key. Ctrl with arrows pans the path in the path mode."""
         find, chords = partial(self.enter, Mode.FIND), dict[int, Callable[[], None]]()
         if self.mode is not Mode.HISTORY:
             chords = {
@@ -453,7 +458,7 @@ class EditorPage(EditorParts):
         return chords
 
     def _go(self) -> None:
-        """The editor has been left: say what it had to say, and show the page that was wanted."""
+        """Show the editor's last message and the requested page after the editor has closed."""
         if self.editor.notice:
             self.desk.say(self.editor.notice)
             self.editor.clear()

@@ -1,4 +1,4 @@
-"""Proving while one types: on a worker, the latest text only, and never in the way of the next key."""
+"""Proof during typing: runs on a worker for the latest text only, without delaying keys."""
 
 from __future__ import annotations
 
@@ -17,38 +17,41 @@ if TYPE_CHECKING:
     from app.path.path_picture import Picture
     from core.language.code_book import CodeBook
 
-QUIET = 0.008  # seconds without a key after which proving begins
-LONGEST = 0.03  # seconds that typing may put it off
-PATIENCE = 0.2  # seconds of work after which a newer text takes the worker
+QUIET = 0.008  # seconds without a key press before proving starts
+LONGEST = 0.03  # maximum seconds by which typing delays proving
+PATIENCE = 0.2  # seconds of work after which a newer text interrupts the worker
 _WEIGHT = {Severity.ERROR: 2, Severity.WARNING: 1, Severity.NOTE: 0}
 
 
 @dataclass(frozen=True, slots=True)
 class Findings:
-    """What proving says of the text with this number; ``picture`` may still be that of an older one."""
+    """Result of proving the text with this number. ``picture`` can belong to an older text."""
 
     number: int = 0
     diagnostics: tuple[Diagnostic, ...] = ()
-    by_line: dict[int, Diagnostic] = field(default_factory=dict)  # the weightiest of each line
+    by_line: dict[int, Diagnostic] = field(default_factory=dict)  # most severe finding of each line
     picture: Picture | None = None
     cycle_time: float = 0.0
     blocks: int = 0
-    trouble: str = ""  # why it could not be proved at all
-    book: CodeBook | None = None  # of the text's language
+    trouble: str = ""  # reason why the text could not be proved
+    book: CodeBook | None = None  # code book of the text's language
 
     @property
     def errors(self) -> int:
-        """How many keep the program from running."""
+        """Number of findings that prevent a run."""
         return sum(d.severity is Severity.ERROR for d in self.diagnostics)
 
     @property
     def warnings(self) -> int:
-        """How many are only to be looked at."""
+        """Number of warnings."""
         return sum(d.severity is Severity.WARNING for d in self.diagnostics)
 
 
 def by_line(diagnostics: tuple[Diagnostic, ...]) -> dict[int, Diagnostic]:
-    """The weightiest finding of each line, of equals the first; line 0 speaks of the whole file."""
+    """Return the most severe finding of each line, the first of equals.
+
+    Line 0 is the whole file.
+    """
     found: dict[int, Diagnostic] = {}
     for one in diagnostics:
         there = found.get(one.line)
@@ -59,7 +62,10 @@ def by_line(diagnostics: tuple[Diagnostic, ...]) -> dict[int, Diagnostic]:
 
 @dataclass(slots=True)
 class LiveProof:
-    """``submit`` and ``now`` never wait. A text that a newer one has overtaken is not proved."""
+    """Proof of the latest text.
+
+    ``submit`` and ``now`` never wait, and older texts are skipped.
+    """
 
     workshop: LoadingSteps
     worker: Latest = field(
@@ -70,7 +76,7 @@ class LiveProof:
 
     @property
     def now(self) -> Findings:
-        """The latest that is known. A worker that has failed shows as trouble."""
+        """Latest findings. A failure of the worker appears as ``trouble``."""
         self.worker.poll()
         return self._now
 
@@ -80,23 +86,26 @@ class LiveProof:
         return self.worker.busy
 
     def submit(self, name: str, text: str, block_delete: bool = False) -> int:
-        """This is the text now; answers its number."""
+        """Submit the present text, and return its number."""
         self._number += 1
         work = partial(self._prove, self._number, Source(name, text), block_delete)
         self.worker.ask(work, self._show, self._failed)
         return self._number
 
     def forget(self) -> None:
-        """Drop the findings: another document is opened, and these are of the one before."""
+        """Clear the findings when another document opens."""
         self._number += 1
         self._now = Findings(self._number)
 
     def close(self) -> None:
-        """Give up what is being proved and end the worker."""
+        """Cancel the present proof and stop the worker."""
         self.worker.close()
 
     def _prove(self, number: int, source: Source, block_delete: bool, request: Request) -> Findings:
-        """On the worker. The findings are shown before the picture is drawn, those of the part last."""
+        """Prove a text on the worker.
+
+        Findings are published before the picture is drawn. Those of the part follow last.
+        """
         job = self.workshop.make_job(source, block_delete)
         proved = self.workshop.prove(job, request)
         found, proof = proved.diagnostics, proved.proof

@@ -1,4 +1,4 @@
-"""The line that asks: what to find and to replace, where to go, what name to save under."""
+"""Question line of the editor: find and replace, go to line, and file name."""
 
 from __future__ import annotations
 
@@ -22,17 +22,17 @@ from core.message import Message
 
 @dataclass(frozen=True, slots=True)
 class Search:
-    """``needle`` in any case of letters.
+    """Search for ``needle``, ignoring case.
 
-    ``whole`` leaves out what goes on beyond it: F100 is then not found in F1000 nor in F100.5, since whoever
-    replaces F100 by F300 does not mean those.
+    ``whole`` excludes matches inside longer words and numbers. F100 is then not found in F1000 or F100.5, so
+    that replacing F100 does not change those words.
     """
 
     needle: str
     whole: bool = True
 
     def places(self, text: str) -> tuple[int, ...]:
-        """Where it begins, from 0, none overlapping another."""
+        """Return the start positions of the matches, from 0, without overlaps."""
         if not self.needle:
             return ()
         return tuple(match.start() for match in re.finditer(self._pattern, text))
@@ -51,11 +51,11 @@ class Search:
         return pattern + "(?![A-Za-z])" if self.needle[-1].isalpha() else pattern
 
     def inside(self, text: str) -> int:
-        """How many more there are inside longer words and numbers."""
+        """Return the number of matches inside longer words and numbers."""
         return len(Search(self.needle, whole=False).places(text)) - len(self.places(text))
 
     def words(self, text: str) -> str:
-        """The count as the screen tells it."""
+        """Return the number of matches as display text."""
         count = len(self.places(text))
         found = Message("{count} FOUND", count=count) if count else "NOT FOUND"
         if not self.whole:
@@ -69,26 +69,26 @@ class Search:
 
 
 def following(places: tuple[int, ...], at: int) -> int | None:
-    """The first place from ``at`` on, going on at the top; None when there is none."""
+    """Return the first position from ``at`` on, starting over at the top, or None without positions."""
     if not places:
         return None
     return places[bisect_left(places, at) % len(places)]
 
 
 def preceding(places: tuple[int, ...], at: int) -> int | None:
-    """The last place before ``at``, going on at the end; None when there is none."""
+    """Return the last position before ``at``, starting over at the end, or None without positions."""
     return places[bisect_left(places, at) - 1] if places else None
 
 
-LABEL = 15.0  # units before a field
-ANSWER = 34.0  # units for what is said of the entry
+LABEL = 15.0  # units: width of a label
+ANSWER = 34.0  # units: width of the message
 
 
 class AskLine(Panel):
-    """One or two fields with their labels, and at the right what is to be said of the entry."""
+    """Line with one or two fields and their labels, and a message about the entry on the right."""
 
     ground = "panel"
-    answer = Shown("")  # what is to be said of the entry
+    answer = Shown("")  # message about the entry
 
     def __init__(self, look: Look, keys: QObject, parent: QWidget) -> None:
         super().__init__(look, parent)
@@ -101,7 +101,7 @@ class AskLine(Panel):
         self.hide()
 
     def ask(self, *labels: str, entry: str | None = None) -> None:
-        """Come up with the keyboard; what was entered last time is marked to be typed over."""
+        """Show the line with the keyboard focus. The previous entry is selected for overtyping."""
         self._labels = labels
         self.answer = ""
         if entry is not None:
@@ -116,17 +116,17 @@ class AskLine(Panel):
         self.update()
 
     def other_field(self) -> None:
-        """The keyboard to the other field."""
+        """Move the keyboard focus to the other field."""
         if len(self._labels) > 1:
             (self.second if self.first.hasFocus() else self.first).setFocus()
 
     def dress(self) -> None:
-        """Font and colours of the fields."""
+        """Apply font and colors to the fields."""
         for edit in (self.first, self.second):
             dress_line(edit, self.look, 2.3, 0.6)
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """The fields share what the labels leave."""
+        """Place the fields next to their labels."""
         self._place()
         self.dress()
 
@@ -149,7 +149,7 @@ class AskLine(Panel):
 
 
 class Finder:
-    """Looks for what is typed into the line that asks; the cursor goes to the first from where it stands."""
+    """Search of the text typed in the question line. The cursor moves to the next match."""
 
     def __init__(self, field: TextField, ask: AskLine) -> None:
         self._field, self._ask = field, ask
@@ -157,7 +157,7 @@ class Finder:
         ask.first.textEdited.connect(lambda _text: self.look())
 
     def start(self) -> str:
-        """What is looked for at first: what is marked, if it is part of one line, or the last time's."""
+        """Return the initial search text: the selection within one line, or the previous search text."""
         marked = self._field.textCursor().selectedText()
         return marked if marked and "\u2029" not in marked else self._ask.first.text()
 
@@ -166,13 +166,13 @@ class Finder:
         return Search(self._ask.first.text(), self.whole)
 
     def look(self) -> None:
-        """Count, and mark the first from the cursor on."""
+        """Count the matches and select the first from the cursor on."""
         if self._ask.isVisible():
             cursor = self._field.textCursor()
             self._show(following(self._places(), cursor.selectionStart()))
 
     def step(self, way: int) -> None:
-        """To the next (1) or the one before (-1)."""
+        """Select the next match (1) or the previous match (-1)."""
         cursor, places = self._field.textCursor(), self._places()
         if way > 0:
             after = cursor.selectionEnd() if cursor.hasSelection() else cursor.position()
@@ -181,7 +181,7 @@ class Finder:
             self._show(preceding(places, cursor.selectionStart()))
 
     def replace(self) -> None:
-        """Replace the marked one and go to the next."""
+        """Replace the selected match and select the next one."""
         cursor, places = self._field.textCursor(), self._places()
         start = cursor.selectionStart()
         length = len(self._search.needle)
@@ -193,7 +193,7 @@ class Finder:
             self.step(1)
 
     def replace_all(self) -> None:
-        """Replace all of them, as one step that can be undone."""
+        """Replace all matches as one step that can be undone."""
         places = self._places()
         if places:
             self._field.replace_at(places, len(self._search.needle), self._ask.second.text())
@@ -202,12 +202,12 @@ class Finder:
         )
 
     def other_width(self) -> None:
-        """Whole words and numbers only, or parts of them too."""
+        """Switch between whole words and partial words."""
         self.whole = not self.whole
         self.look()
 
     def keys(self) -> dict[int, Key]:
-        """The function keys while something is looked for."""
+        """Return the function keys during a search."""
         return {
             2: Key("NEXT", partial(self.step, 1)),
             3: Key("PREVIOUS", partial(self.step, -1)),

@@ -1,4 +1,4 @@
-"""The text with its colours and margin: line numbers, and a mark at each line with a finding, and why."""
+"""Text field with syntax colors and a margin of line numbers and finding marks."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from core.language.program_colours import spans
 from core.language.source import Dialect, dialect_of
 from core.language.syntax_colours import PLAIN, Ink
 
-# The palette's colour of each kind; weight tells codes from coordinates without colour.
+# Palette color of each kind; bold type distinguishes codes from coordinates without color.
 _OF_INK = {
     Ink.NUMBER: ("soft", False),
     Ink.CODE: ("accent", True),
@@ -44,7 +44,7 @@ _OF_INK = {
 
 
 class Highlighter(QSyntaxHighlighter):
-    """One line at a time; what a line hands on to the next is a state of its language."""
+    """Syntax highlighter. The state passed from line to line depends on the language."""
 
     def __init__(self, look: Look, document: QTextDocument) -> None:
         super().__init__(document)
@@ -54,20 +54,20 @@ class Highlighter(QSyntaxHighlighter):
         self._dialect = Dialect.OMNITURN
 
     def speak(self, dialect: Dialect) -> None:
-        """The language of the text; where it is another one than before all of it is gone through anew."""
+        """Set the language of the text. A changed language highlights the whole text again."""
         if dialect is not self._dialect:
             self._dialect = dialect
             self.rehighlight()
 
     def dress(self) -> None:
-        """The colours that are in force now; the whole text is gone through only when they have changed."""
+        """Apply the present colors. The text is highlighted again only after a change."""
         if self._dressed is not self._look.palette:
             self._dressed = self._look.palette
             self._formats.clear()
             self.rehighlight()
 
     def highlightBlock(self, text: str) -> None:
-        """Qt's call for a line that has changed, and for the next where the state it hands on has."""
+        """Highlight a line, as Qt requests after a change of the line or of its start state."""
         found, state = spans(self._dialect, text, max(self.previousBlockState(), PLAIN))
         self.setCurrentBlockState(state)
         for start, length, ink in found:
@@ -86,13 +86,16 @@ class Highlighter(QSyntaxHighlighter):
         return self._formats[key]
 
 
-SIZE = 2.3  # units: the text
+SIZE = 2.3  # text size in units
 TONES = {Severity.ERROR: "alarm", Severity.WARNING: "pause", Severity.NOTE: "wait"}
 WORDS = {Severity.ERROR: "ERROR", Severity.WARNING: "WARNING", Severity.NOTE: "NOTE"}
 
 
 class TextField(QPlainTextEdit):
-    """Qt's text field; undo, selection and clipboard are its own. Function keys pass through to the page."""
+    """Text field with Qt's undo, selection and clipboard.
+
+    Function keys pass through to the page.
+    """
 
     def __init__(self, look: Look, parent: QWidget) -> None:
         super().__init__(parent)
@@ -100,7 +103,7 @@ class TextField(QPlainTextEdit):
         self._found: Mapping[int, Diagnostic] = {}
         self.setLineWrapMode(QPlainTextEdit.LineWrapMode.NoWrap)
         self.setTabChangesFocus(False)
-        self.setContextMenuPolicy(Qt.ContextMenuPolicy.NoContextMenu)  # a menu would hold up every other key
+        self.setContextMenuPolicy(Qt.ContextMenuPolicy.NoContextMenu)  # A menu would block every other key.
         self.setAcceptDrops(False)
         self.setUndoRedoEnabled(True)
         self.margin = Margin(self)
@@ -111,11 +114,14 @@ class TextField(QPlainTextEdit):
 
     @property
     def line(self) -> int:
-        """The line of the cursor, from 1."""
+        """Line of the cursor, from 1."""
         return self.textCursor().blockNumber() + 1
 
     def put_text(self, text: str, *, afresh: bool) -> None:
-        """Another text; ``afresh`` forgets what could be undone, else it is one step of that."""
+        """Put a text into the field.
+
+        ``afresh`` clears the undo history. Otherwise the change can be undone as one step.
+        """
         if afresh:
             self.setPlainText(text)
             return
@@ -126,7 +132,7 @@ class TextField(QPlainTextEdit):
         self.setTextCursor(cursor)
 
     def go_to(self, line: int, column: int = 0) -> None:
-        """The cursor to a line, into the middle of the window."""
+        """Move the cursor to a line and column, and center the line."""
         block = self.document().findBlockByNumber(max(0, min(self.blockCount(), line) - 1))
         cursor = QTextCursor(block)
         cursor.setPosition(block.position() + max(0, min(column - 1, block.length() - 1)))
@@ -134,7 +140,7 @@ class TextField(QPlainTextEdit):
         self.centerCursor()
 
     def select(self, start: int, length: int) -> None:
-        """Mark a stretch of the text and show it."""
+        """Select a range of the text and scroll to it."""
         cursor = self.textCursor()
         cursor.setPosition(start)
         cursor.setPosition(start + length, QTextCursor.MoveMode.KeepAnchor)
@@ -143,11 +149,14 @@ class TextField(QPlainTextEdit):
 
     @property
     def column(self) -> int:
-        """The column of the cursor, from 1."""
+        """Column of the cursor, from 1."""
         return self.textCursor().positionInBlock() + 1
 
     def write(self, text: str, begin: int = 0) -> None:
-        """Write at the cursor, in the place of what stands in its line from column ``begin`` on, if given."""
+        """Insert text at the cursor.
+
+        ``begin`` is the column from which text of the line is replaced.
+        """
         cursor = self.textCursor()
         cursor.beginEditBlock()
         if begin:
@@ -157,7 +166,7 @@ class TextField(QPlainTextEdit):
         self.setTextCursor(cursor)
 
     def replace_at(self, places: tuple[int, ...], length: int, by: str) -> None:
-        """Put ``by`` in the place of each stretch, all as one step that can be undone."""
+        """Replace the ranges with ``by`` as one step that can be undone."""
         cursor = QTextCursor(self.document())
         cursor.beginEditBlock()
         for start in reversed(places):
@@ -167,18 +176,18 @@ class TextField(QPlainTextEdit):
         cursor.endEditBlock()
 
     def show_findings(self, found: Mapping[int, Diagnostic]) -> None:
-        """What proving says, by line."""
+        """Show the findings by line."""
         if found != self._found:
             self._found = found
             self.margin.update()
             self.viewport().update()
 
     def finding_at(self, line: int) -> Diagnostic | None:
-        """What proving has found in a line; None where it found nothing."""
+        """Return the finding in a line, or None."""
         return self._found.get(line)
 
     def dress(self) -> None:
-        """Take font and colours of the look."""
+        """Apply font and colors of the look."""
         colours = self.look.palette
         self.setFont(self.look.font(SIZE))
         self.setStyleSheet(
@@ -199,7 +208,10 @@ class TextField(QPlainTextEdit):
     # --- Qt's calls ----------------------------------------------------------------------------------
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
-        """Keys that write stay here; function keys, Esc and the page's chords go on to the page."""
+        """Handle keys that edit.
+
+        Function keys, Esc and the page's key combinations go to the page.
+        """
         chord = event.modifiers() & Qt.KeyboardModifier.ControlModifier
         page = event.key() in _PAGE or (bool(chord) and event.key() in _CHORDS)
         if page:
@@ -208,20 +220,23 @@ class TextField(QPlainTextEdit):
             super().keyPressEvent(event)
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
-        """No marked text is dragged: a drag has the whole keyboard, the stop keys too, to its end."""
+        """Clear the selection before a press.
+
+        A drag of selected text would block all keys, including the stop keys.
+        """
         shift = event.modifiers() & Qt.KeyboardModifier.ShiftModifier
         if self.textCursor().hasSelection() and event.button() is Qt.MouseButton.LeftButton and not shift:
             self.setTextCursor(self.cursorForPosition(event.position().toPoint()))
         super().mousePressEvent(event)
 
     def resizeEvent(self, event: QResizeEvent) -> None:
-        """The margin keeps its place."""
+        """Place the margin after a change of size."""
         super().resizeEvent(event)
         room = self.contentsRect()
         self.margin.setGeometry(room.left(), room.top(), self.margin.wide, room.height())
 
     def paintEvent(self, event: QPaintEvent) -> None:
-        """The text, and behind the lines that have one, the message."""
+        """Draw the text, and the message after each line with a finding."""
         super().paintEvent(event)
         if not self._found:
             return
@@ -243,7 +258,7 @@ class TextField(QPlainTextEdit):
             put(painter, room, LEFT, found.text)
 
     def shown(self) -> list[tuple[QTextBlock, QRectF]]:
-        """The lines in the window and where they stand."""
+        """Return the visible blocks with their boxes."""
         rows = []
         block = self.firstVisibleBlock()
         box = self.blockBoundingGeometry(block).translated(self.contentOffset())
@@ -272,7 +287,7 @@ class TextField(QPlainTextEdit):
 
 
 class Margin(QWidget):
-    """Line numbers, and a filled patch with a letter where something was found."""
+    """Margin with line numbers and a colored letter for each finding."""
 
     def __init__(self, field: TextField) -> None:
         super().__init__(field)
@@ -280,12 +295,12 @@ class Margin(QWidget):
 
     @property
     def wide(self) -> int:
-        """Width in pixels, by the number of digits."""
+        """Width in pixels for the present number of digits."""
         digits = max(3, len(str(self._field.blockCount())))
         return round((3.4 + 1.35 * digits) * self._field.look.u)
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        """Only the lines that are seen."""
+        """Draw the visible line numbers and findings."""
         look, u, field = self._field.look, self._field.look.u, self._field
         with Painter(self, look) as painter:
             painter.fill(QRectF(self.rect()), "ground")
@@ -302,7 +317,7 @@ class Margin(QWidget):
                 painter.write(room, str(number), 1.8, ink, at=RIGHT, bold=here)
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
-        """A finger on a number goes to the line."""
+        """Move the cursor to the touched line."""
         for block, box in self._field.shown():
             if box.top() <= event.position().y() < box.bottom():
                 self._field.go_to(block.blockNumber() + 1)
@@ -316,37 +331,41 @@ _CHORDS = frozenset({Qt.Key.Key_Space, Qt.Key.Key_S, Qt.Key.Key_F, Qt.Key.Key_H,
 
 
 class TypedText:
-    """Looks at most once a frame at what has been typed, however fast that is."""
+    """Link between the text field and the editor, updated at most once per frame."""
 
     def __init__(self, field: TextField, editor: Editor) -> None:
         self._field, self._editor = field, editor
-        self._seen: tuple[int, object] = (-1, None)  # revision of the field and document that were compared
+        # revision of the field and document of the last comparison
+        self._seen: tuple[int, object] = (-1, None)
         self._dirty = False
-        self._taken = 0  # number of the text of the editor that stands in the field
-        self.stale = False  # the text has changed since it was given to the editor
-        self._taking = False  # a text is being put into the field from here
+        self._taken = 0  # number of the editor's text that is in the field
+        self.stale = False  # the text has changed since it was passed to the editor
+        self._taking = False  # the field is being changed by this object
         self._text = ""
         field.textChanged.connect(self._changed)
 
     def _changed(self) -> None:
         self.stale = True
         if not self._taking:
-            self._editor.clear()  # whoever goes on typing has read the answer, and no question stays open
+            self._editor.clear()  # Typing clears the message and cancels a question.
 
     def now(self) -> str:
-        """The text that stands in the field."""
+        """Return the present text of the field."""
         return self._field.toPlainText()
 
     @property
     def dirty(self) -> bool:
-        """Whether there is something to save; asked once a frame, looked at when something has changed."""
+        """Whether the text has unsaved changes; compared again only after a change."""
         seen = (self._field.document().revision(), self._editor.document)
         if seen != self._seen:
             self._seen, self._dirty = seen, self._editor.is_dirty(self.now())
         return self._dirty
 
     def refresh(self) -> None:
-        """Once a frame: take a text that has come; have proved what was typed."""
+        """Put a new text of the editor into the field, or pass typed text to the proof.
+
+        Called once per frame.
+        """
         editor, field = self._editor, self._field
         self._colour()
         if editor.text_number != self._taken:
@@ -363,7 +382,7 @@ class TypedText:
         field.setReadOnly(editor.stage is not Stage.OPEN)
 
     def _colour(self) -> None:
-        """By the language that the name of the file tells; new colours are no new text."""
+        """Set the language of the file name. New colors do not count as changed text."""
         document = self._editor.document
         if document is not None:
             before, self._taking = self.stale, True
@@ -372,7 +391,7 @@ class TypedText:
 
     @property
     def mark(self) -> str:
-        """How the text stands to its file, in a word."""
+        """State of the text relative to its file, as a word."""
         document = self._editor.document
         if document is None:
             return ""

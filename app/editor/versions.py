@@ -1,4 +1,4 @@
-"""The versions of the program that is edited: where they are kept, what each would change, line by line."""
+"""Versions of the edited program and their differences, line by line."""
 
 from __future__ import annotations
 
@@ -14,59 +14,65 @@ from core.store.store_rows import VersionRow
 
 
 class Archive(Protocol):
-    """The versions of programs. Called on the editor's worker only; each raises StoreError."""
+    """Archive of program versions; called on the editor's worker only.
+
+    All methods raise StoreError.
+    """
 
     def versions(self, name: str) -> Sequence[VersionRow]:
-        """Every version of a program, newest first."""
+        """Return all versions of a program, newest first."""
         ...
 
     def text_of(self, name: str, version: int) -> bytes:
-        """One of them, as it was kept."""
+        """Return the stored bytes of a version."""
         ...
 
     def save_version(self, name: str, text: bytes, why: str) -> int:
-        """Keep another, and answer its number when it is on the disk; the same text again is no new one."""
+        """Store a version and return its number once it is on the disk.
+
+        An unchanged text does not create a new version.
+        """
         ...
 
 
 class NoArchive:
-    """Where nothing is kept: scripts, and a desk whose store cannot be opened."""
+    """Empty archive for scripts and for a TurnDesk whose store cannot be opened."""
 
     def versions(self, _name: str) -> Sequence[VersionRow]:
-        """No version is kept."""
+        """Return no versions."""
         return ()
 
     def text_of(self, name: str, version: int) -> bytes:
-        """Raises StoreError: no version is kept."""
+        """Raise StoreError, because no version is stored."""
         raise StoreError(
             Message("version {version} of {name} is not in the program history", version=version, name=name),
             "no-version",
         )
 
     def save_version(self, _name: str, _text: bytes, _why: str) -> int:
-        """Keeps nothing and answers 0."""
+        """Store nothing and return 0."""
         return 0
 
 
-# --- what has changed between two versions, line by line ---------------------------------------------------
+# --- differences between two versions, line by line --------------------------------------------------------
 
 
-AROUND = 2  # unchanged lines shown about a change
-MOST_COMPARED = 20_000  # lines: above that only the first and last difference are looked for
+AROUND = 2  # unchanged lines shown around a change
+MOST_COMPARED = 20_000  # number of lines above which only the first and last difference are searched
 
 
 @dataclass(frozen=True, slots=True)
 class DifferenceRow:
-    """One line of a comparison. ``sign`` is + (new), - (old), blank (both) or … (lines left out)."""
+    """Line of a comparison. ``sign`` is + (new), - (old), blank (both) or … (lines omitted)."""
 
     sign: str
-    old: int  # line number in the old text, 0: it is not there
+    old: int  # line number in the old text, or 0
     new: int
     text: str
 
 
 def differences(old: str, new: str) -> tuple[DifferenceRow, ...]:
-    """The rows from one text to another; empty when they are the same."""
+    """Return the rows of a comparison, or an empty tuple for equal texts."""
     if old == new:
         return ()
     before, after = old.splitlines(), new.splitlines()
@@ -101,12 +107,15 @@ def _rows(
     return gone + [DifferenceRow("+", 0, n + 1, after[n]) for n in range(*new)]
 
 
-# --- the versions of the program that is edited ------------------------------------------------------------
+# --- versions of the edited program ------------------------------------------------------------------------
 
 
 @dataclass(slots=True)
 class VersionHistory:
-    """``rows`` are the versions, newest first; ``changes`` leads from the marked one to the text on hand."""
+    """Version history.
+
+    ``changes`` are the differences from the selected version to the present text.
+    """
 
     archive: Archive
     worker: Latest
@@ -114,18 +123,18 @@ class VersionHistory:
     now: str = ""
     rows: tuple[VersionRow, ...] = ()
     marked: int = 0
-    text: str | None = None  # of the marked version, once it is read
+    text: str | None = None  # text of the selected version once it is read
     changes: tuple[DifferenceRow, ...] = ()
     trouble: str = ""
 
     def look(self, name: str, now: str) -> None:
-        """Open the history of a program; ``now`` is the text in the editor."""
+        """Open the history of a program. ``now`` is the text in the editor."""
         self.name, self.now = name, now
         self.rows, self.marked, self.text, self.changes, self.trouble = (), 0, None, (), ""
         self.worker.queue(lambda: tuple(self.archive.versions(name)), self._listed, self._failed)
 
     def mark(self, place: int) -> None:
-        """Mark another version and compare it."""
+        """Select a version and compare it."""
         if not self.rows:
             return
         self.marked = max(0, min(len(self.rows) - 1, place))
@@ -139,20 +148,20 @@ class VersionHistory:
         self.worker.ask(compare, self._compared, self._failed)
 
     def between(self, marked: str, now: str) -> tuple[str, str]:
-        """From which text to which the changes lead."""
+        """Return the old and the new text of the comparison."""
         return marked, now
 
     def heading(self) -> str:
-        """What the lines of the comparison are."""
+        """Return the heading of the comparison."""
         return Message("CHANGES FROM VERSION {number} TO THE EDITOR TEXT", number=self.number)
 
     @property
     def number(self) -> int:
-        """The number of the marked version, 0: there is none."""
+        """Number of the selected version, or 0 without versions."""
         return self.rows[self.marked].number if self.rows else 0
 
     def words(self) -> str:
-        """What is to be said of the marked version."""
+        """Return the status of the selected version as text."""
         if self.trouble:
             return self.trouble
         if not self.rows:
@@ -173,7 +182,10 @@ class VersionHistory:
 
 
 def lines_of(data: bytes) -> str:
-    """A version's text as an editor shows it; bytes of old codes stay apart from each other."""
+    """Decode the text of a version for display.
+
+    Texts that are not UTF-8 are decoded as Latin-1.
+    """
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError:

@@ -1,4 +1,4 @@
-"""The history: versions at the left, at the right what leads from the marked one to the text."""
+"""Version history: versions on the left, the differences of the selected version on the right."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ from app.screen.sheet_panel import RowPanel
 from core.message import Message
 from core.store.store_rows import VersionRow
 
-ROW = 5.2  # units: a version, a fingertip high
-LINE = 2.9  # units: a line of the comparison
-LIST = 50.0  # units: the list of versions
+ROW = 5.2  # units: height of a version, at least a fingertip
+LINE = 2.9  # units: height of a line of the comparison
+LIST = 50.0  # units: width of the list of versions
 INKS = {"+": "run", "-": "alarm", " ": "soft", "…": "off"}
 
 
 class VersionList(RowPanel):
-    """Redrawn when the history has another answer; marking one is the history's to do.
+    """List of versions. The selection itself is part of the history.
 
-    What scrolls are the lines of the comparison. The marked version is in the middle of the versions.
+    The comparison scrolls, and the selected version is in the middle of the list.
     """
 
     title = "HISTORY"
@@ -39,7 +39,7 @@ class VersionList(RowPanel):
         self.hide()
 
     def refresh(self) -> None:
-        """Once a frame: redraw when the history has another answer."""
+        """Redraw when the history has changed; called once per frame."""
         history = self._history
         now = (history.rows, history.marked, history.changes, history.words())
         if now[:3] != self._shown[:3]:
@@ -96,7 +96,7 @@ class VersionList(RowPanel):
         put_raw(painter, row.adjusted(14 * u, 0, 0, 0), LEFT, change.text.expandtabs(4))
 
     def keys(self) -> dict[int, Key]:
-        """The function keys of marking and looking."""
+        """Return the function keys for selecting and scrolling."""
         history = self._history
         return {
             4: Key("NEWER", lambda: history.mark(history.marked - 1)),
@@ -106,7 +106,7 @@ class VersionList(RowPanel):
         }
 
     def arrows(self) -> dict[int, Callable[[], None]]:
-        """The same actions by the arrow keys."""
+        """Return the same actions for the arrow keys."""
         by = {number: key.action for number, key in self.keys().items()}
         return {
             Qt.Key.Key_Up: by[4],

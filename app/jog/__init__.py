@@ -1,1 +1,1 @@
-"""The Jog page: moving by hand, homing, setting tools and touching them off."""
+"""The Jog page: manual axis motion, homing, tool setting and touch-off."""

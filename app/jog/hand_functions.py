@@ -1,7 +1,7 @@
-"""Spindle, coolant and collet by hand on the Jog page: each is a line of MDI, started by the palms.
+"""Manual functions of the Jog page: spindle, coolant and collet.
 
-There is no second way to switch anything on: what is chosen here goes through proof, permission, guard,
-switch and E-stop as a line that is typed in MDI. Switching off needs no palms.
+Each function is an MDI line that the operator starts with the start buttons. The line is proved and checked
+like a typed MDI line, with the same interlocks. Switching a function off needs no start buttons.
 """
 
 from __future__ import annotations
@@ -35,16 +35,19 @@ KEYS = {
     "6": OPEN,
 }
 NOT_OPENED = "CANNOT OPEN COLLET WHILE SPINDLE TURNS. 0: STOP SPINDLE"
-SPEED = "9"  # the key that asks for it
+SPEED = "9"  # The key that asks for the spindle speed.
 
 
 class Words(NamedTuple):
-    """How a language says it; ``speed`` alone where S is no word of M3's line."""
+    """The code of each function in a programming language.
+
+    ``speed`` is a separate line for the speed, if S is not allowed in the line of M3.
+    """
 
     forward: str
     reverse: str
     coolant: str
-    collet: tuple[str, str] = ("", "")  # close, open
+    collet: tuple[str, str] = ("", "")  # Codes for close and open.
     speed: str = ""
 
 
@@ -57,7 +60,11 @@ WORDS = {
 
 @dataclass(slots=True)
 class HandFunctions:
-    """What is chosen, made ready and on; ``open`` while the Jog page is in front, ``shown`` its panel."""
+    """The manual function that is selected, prepared or running.
+
+    ``open`` is True while the Jog page is open. ``shown`` is True while the panel of the functions is
+    visible.
+    """
 
     desk: Desk
     machine: Machine
@@ -66,24 +73,24 @@ class HandFunctions:
     open: bool = False
     shown: bool = False
     chosen: str = ""
-    rpm: float = 0.0  # that was typed last, 0: none yet
-    asked: bool = False  # the speed is being typed
+    rpm: float = 0.0  # The speed that was entered last; 0: none.
+    asked: bool = False  # The speed is being entered.
     text: str = ""
-    _wanted: str = ""  # what is to be chosen once the speed is known
-    _armed: bool = False  # Cycle Start begins lines alone
-    _moved: bool = False  # the slides have left the place where the last choice was proved
+    _wanted: str = ""  # The function to select after the speed is entered.
+    _armed: bool = False  # Cycle Start runs lines only.
+    _moved: bool = False  # The axes have moved since the selected function was proved.
 
     def __post_init__(self) -> None:
         self.line = PreparedLine(self.prove, self.desk.post, refused=self._refused)
 
     @property
     def words(self) -> Words:
-        """How this machine's language says it."""
+        """The codes in the machine's programming language."""
         return WORDS[self.machine.language]
 
     @property
     def there(self) -> frozenset[str]:
-        """What this machine has, of all functions."""
+        """The functions that this machine has."""
         found = {FORWARD, REVERSE, STOP}
         if "coolant" in self.machine.outputs:
             found |= {COOLANT_ON, COOLANT_OFF}
@@ -94,7 +101,7 @@ class HandFunctions:
     # --- page ----------------------------------------------------------------------------------------
 
     def opened(self) -> None:
-        """The Jog page comes up: from now on Cycle Start begins what is chosen here, and no program."""
+        """Prepare for the open Jog page: Cycle Start runs selected functions and no program."""
         self.open = True
         self._arm(self.desk.snapshot())
 
@@ -104,7 +111,10 @@ class HandFunctions:
             self.line.take_back()
 
     def leave(self) -> bool:
-        """Whether the page may be left: as in MDI not while a line is under way, and the spindle stays on."""
+        """Return whether the page can close, which is not possible while a line runs.
+
+        The spindle remains on.
+        """
         if self.under_way(self.desk.snapshot()):
             self.desk.say(tr("A LINE IS RUNNING. LET IT END, OR STOP IT AND PRESS R"))
             return False
@@ -115,23 +125,23 @@ class HandFunctions:
         return True
 
     def close(self) -> None:
-        """End the thread that proves."""
+        """End the worker that proves lines."""
         self.line.close()
 
     def under_way(self, snapshot: Snapshot) -> bool:
-        """Whether a line that was chosen here is being run."""
+        """Return whether a line that was selected here is running."""
         return self._armed and snapshot.state in CYCLE and snapshot.starts is Starts.LINE
 
-    # --- what keys and fingers do --------------------------------------------------------------------
+    # --- keys and touches ----------------------------------------------------------------------------
 
     def toggle(self) -> None:
-        """Show what can be switched by hand, or tool setting again."""
+        """Show the manual functions, or tool setting again."""
         self.take_back()
         self.desk.clear()
         self.shown = not self.shown
 
     def press(self, name: str) -> None:
-        """Choose a function; what switches off acts at once."""
+        """Select a function. A function that switches something off acts immediately."""
         if name == STOP:
             self.stop()
         elif name == COOLANT_OFF:
@@ -144,7 +154,10 @@ class HandFunctions:
 
     @property
     def speed(self) -> float:
-        """rpm that FORWARD and REVERSE start: the S in force, or as typed where S stands in their line."""
+        """The speed in rpm that FORWARD and REVERSE start, or 0 if none is known.
+
+        The speed is the active S, or the entered one if S is in the line of the function.
+        """
         modal = self.desk.snapshot().modal
         typed = 0.0 if self.words.speed else self.rpm
         return typed or (0.0 if modal.css else modal.rpm)
@@ -162,7 +175,7 @@ class HandFunctions:
         self.line.ask(self.text_of(name), snapshot, self._failed)
 
     def text_of(self, name: str) -> str:
-        """The line of MDI that this is."""
+        """Return the MDI line of a function."""
         words = self.words
         lines = {
             FORWARD: words.forward,
@@ -175,7 +188,10 @@ class HandFunctions:
         return tr(Message(lines[name], rpm=self.rpm if name == SPEED else self.speed))
 
     def _barred(self, snapshot: Snapshot) -> str:
-        """Why nothing is chosen now; the executor says the same of a start, and more."""
+        """Return why no function can be selected now.
+
+        The executor makes the same checks, and more, at the start.
+        """
         if snapshot.state is State.IDLE:
             return ""
         words = {
@@ -188,7 +204,10 @@ class HandFunctions:
         return words.get(snapshot.state) or tr("MACHINE IS BUSY. LET IT FINISH, OR PRESS R TO CANCEL")
 
     def stop(self) -> None:
-        """The spindle stops, at once and without palms; a line that was begun here is given up."""
+        """Stop the spindle immediately, without the start buttons.
+
+        A running line of this page is canceled.
+        """
         snapshot = self.desk.snapshot()
         self.take_back()
         self.desk.clear()
@@ -211,7 +230,7 @@ class HandFunctions:
         self.asked, self.text = True, ""
 
     def typed(self, key: str) -> bool:
-        """A key; False leaves it to the page."""
+        """Handle a key. Return False to leave the key to the page."""
         if self.asked:
             if key == "Enter":
                 self._enter()
@@ -232,7 +251,7 @@ class HandFunctions:
         return True
 
     def takes(self, key: str) -> bool:
-        """Whether a character is text of the speed."""
+        """Return whether this character is text input for the speed."""
         return self.asked and key in CHARACTERS
 
     def _enter(self) -> None:
@@ -262,10 +281,10 @@ class HandFunctions:
         elif wanted:
             self._choose(wanted)
 
-    # --- take back -----------------------------------------------------------------------------------
+    # --- cancel --------------------------------------------------------------------------------------
 
     def take_back(self) -> bool:
-        """Nothing is ready or asked any more; False when nothing was."""
+        """Cancel the selected function or the question. Return False if there was neither."""
         was = bool(self.chosen or self.asked)
         if self._armed and self.chosen and not self.under_way(self.desk.snapshot()):
             self.line.take_back()
@@ -277,14 +296,14 @@ class HandFunctions:
         self.chosen, self.asked, self.text, self._wanted = "", False, "", ""
 
     def take_back_by_key(self) -> bool:
-        """Esc takes back what is ready or asked; False when nothing is, or it is under way."""
+        """Handle Esc: cancel the selected function or the question. Return False if nothing was canceled."""
         if self.under_way(self.desk.snapshot()) or not self.take_back():
             return False
         self.desk.clear()
         return True
 
     def hide(self) -> bool:
-        """Esc shows tool setting again; False where that is shown, or a line is under way."""
+        """Handle Esc: show tool setting again. Return False if it is already shown or a line is running."""
         if self.under_way(self.desk.snapshot()):
             return False
         was, self.shown = self.shown, False
@@ -301,7 +320,10 @@ class HandFunctions:
     # --- every frame ---------------------------------------------------------------------------------
 
     def look(self, snapshot: Snapshot) -> None:
-        """Take up what the worker has found; what was ready is so no more where the slides have moved."""
+        """Accept the proof of a line; called once a frame.
+
+        A prepared line is canceled if the axes have moved.
+        """
         self._arm(snapshot)
         if self._armed:
             self.line.keep(snapshot)
@@ -316,11 +338,11 @@ class HandFunctions:
 
     @staticmethod
     def _gripping(snapshot: Snapshot) -> bool:
-        """Whether the collet holds what turns, or may turn by a switch."""
+        """Return whether the collet clamps a part that turns or that a switch could start to turn."""
         return HandFunctions.turns(snapshot) or snapshot.spindle_asked != 0.0
 
     def barred(self) -> str:
-        """Why the palms start nothing now; empty when they may."""
+        """Return why the start buttons have no effect now. Empty if they can start a line."""
         snapshot = self.desk.snapshot()
         if snapshot.state in CYCLE:
             return "" if self.under_way(snapshot) else prompt_line.NOT_HERE
@@ -331,7 +353,7 @@ class HandFunctions:
         return tr("NOTHING SELECTED. PICK 1–6, THEN CYCLE START")
 
     def prompt(self, snapshot: Snapshot) -> str:
-        """What can be done now; empty where it is the jog's to say."""
+        """Return the prompt for manual functions. Empty if the prompt for jogging applies."""
         if self.asked:
             return tr("TYPE THE RPM AND PRESS ENTER. ESC: CANCEL")
         if self.under_way(snapshot):
@@ -350,7 +372,7 @@ class HandFunctions:
             words = tr("RUN {line}: {start}   ESC: CANCEL")
             line = self.line.ready.source.text
             if self.words.speed and self.chosen in {FORWARD, REVERSE}:
-                line = f"{line} (S{self.speed:g})"  # which S counts does not stand in it
+                line = f"{line} (S{self.speed:g})"  # The line itself does not contain the active S.
             return tr(Message(words, line=line, start=tr(self.desk.start_words)))
         if self._moved:
             return tr("AXES WERE MOVED. PICK THE FUNCTION AGAIN")
@@ -362,5 +384,5 @@ class HandFunctions:
 
     @staticmethod
     def turns(snapshot: Snapshot) -> bool:
-        """Whether the spindle turns, or is told to."""
+        """Return whether the spindle turns or is commanded to turn."""
         return abs(snapshot.rpm_actual) > TURNING or snapshot.rpm_command != 0.0

@@ -1,8 +1,8 @@
-"""A held jog, its steps, speeds and directions: a slide moves by hand only while one key or finger is held.
+"""Continuous jog while one key or touch is held down, with its steps, speeds and directions.
 
-Everything that is not exactly that ends the move: the release, the loss of the keyboard, another key, a
-second finger, a changed increment, a screen that was away, a key that has gone silent. After such an end
-nothing moves before everything is let go and pressed anew.
+The motion ends when the key is released, when the window loses the keyboard, at another key or touch, after a
+change of the step, after a stall of the screen, or if the key stops repeating. After such an end, nothing
+moves until all keys are released and one is pressed again.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ INCH_STEPS, MM_STEPS, DEGREE_STEPS = (
     (1.0, 0.1, 0.01, 0.001),
     (1.0, 0.5, 0.1, 0.02),
 )
-INCH_SPEEDS, MM_SPEEDS = (1.0, 5.0, 20.0, 50.0), (25.0, 125.0, 500.0, 1250.0)  # a minute
-DEGREE_SPEEDS = (3.0, 15.0, 60.0, 180.0)  # a second
-STEP_SPEED = 20 * MM_PER_INCH / 60  # mm/s: the longest step is over in a third of a second
+INCH_SPEEDS, MM_SPEEDS = (1.0, 5.0, 20.0, 50.0), (25.0, 125.0, 500.0, 1250.0)  # Per minute.
+DEGREE_SPEEDS = (3.0, 15.0, 60.0, 180.0)  # Per second.
+STEP_SPEED = 20 * MM_PER_INCH / 60  # mm/s: the longest step takes a third of a second.
 STEP_SPEED_C = 60.0  # degrees/s
 C_RAPID = 360.0  # degrees/s
 CONTINUOUS = -1
@@ -35,25 +35,31 @@ CONTINUOUS = -1
 
 @dataclass(slots=True)
 class JogSpeeds:
-    """What is chosen now; ``step`` CONTINUOUS or one of four lengths, ``speed`` one of four."""
+    """The selected step and speed.
+
+    ``step`` is CONTINUOUS or the index of one of four lengths. ``speed`` is the index of one of four speeds.
+    """
 
     machine: Machine
     step: int = CONTINUOUS
     speed: int = 1
 
     def next_step(self) -> None:
-        """Continuous, then from the longest step to the shortest, then continuous again."""
+        """Select the next step: continuous, then from the longest to the shortest, and continuous again."""
         self.step = self.step + 1 if self.step < len(INCH_STEPS) - 1 else CONTINUOUS
 
     def next_speed(self) -> None:
-        """Faster, and from the fastest to the slowest."""
+        """Select the next faster speed, or after the fastest the slowest."""
         self.speed = (self.speed + 1) % len(INCH_SPEEDS)
 
     def _turns(self, axis: str) -> bool:
         return self.machine.axis(axis).rotary
 
     def distance(self, axis: str, mode: Mode, step: int | None = None) -> float:
-        """Length of a step, mm or degrees; one of X changes the figure shown, Ø or R, by its length."""
+        """Return the length of a step in mm or degrees.
+
+        If X is a diameter, a step of X changes the displayed diameter by the step length.
+        """
         step = self.step if step is None else step
         if self._turns(axis):
             return DEGREE_STEPS[step]
@@ -61,17 +67,17 @@ class JogSpeeds:
         return length / 2 if axis == "X" and mode.diameter else length
 
     def step_word(self, axis: str, mode: Mode, step: int) -> str:
-        """The length of a step of this axis as it is written."""
+        """Return the length of a step of this axis as text."""
         return _short(DEGREE_STEPS[step]) if self._turns(axis) else step_words(mode)[step]
 
     def step_speed(self, axis: str) -> float:
-        """How fast a step goes, mm/s or degrees/s."""
+        """Return the speed of a step in mm/s or degrees/s."""
         if self._turns(axis):
             return min(STEP_SPEED_C, self.machine.axis(axis).vmax)
         return min(STEP_SPEED, self.machine.limits.manual_rapid)
 
     def velocity(self, axis: str, mode: Mode, *, rapid: bool) -> float:
-        """How fast a held jog goes, mm/s or degrees/s."""
+        """Return the speed of a continuous jog in mm/s or degrees/s."""
         if self._turns(axis):
             return min(C_RAPID if rapid else DEGREE_SPEEDS[self.speed], self.machine.axis(axis).vmax)
         if rapid:
@@ -81,22 +87,22 @@ class JogSpeeds:
 
 
 def step_words(mode: Mode) -> tuple[str, ...]:
-    """The steps as they are written on their keys."""
+    """Return the step lengths as key labels."""
     return tuple(_short(step) for step in (MM_STEPS if mode.metric else INCH_STEPS))
 
 
 def speed_words(mode: Mode) -> tuple[str, ...]:
-    """The speeds as they are written on their keys, a minute."""
+    """Return the speeds of linear axes as key labels, in mm or inches per minute."""
     return tuple(f"{speed:g}" for speed in (MM_SPEEDS if mode.metric else INCH_SPEEDS))
 
 
 def turn_words() -> tuple[str, ...]:
-    """The speeds of an axis that turns, degrees a minute."""
+    """Return the speeds of rotary axes as key labels, in degrees per minute."""
     return tuple(f"{60 * speed:g}" for speed in DEGREE_SPEEDS)
 
 
 def rapid_word(machine: Machine, mode: Mode) -> str:
-    """The rapid of hand moves a minute."""
+    """Return the manual rapid speed as text, in mm or inches per minute."""
     return f"{machine.limits.manual_rapid * 60 / mode.unit:.0f}"
 
 
@@ -107,13 +113,13 @@ def _short(step: float) -> str:
 # --- directions ---------------------------------------------------------------------------------------
 
 
-Arrow = tuple[int, int]  # right and down, as the operator sees the machine; (0, 0): none
+Arrow = tuple[int, int]  # Right and down, as the operator sees the machine; (0, 0): no arrow.
 _NO_ARROW: Arrow = (0, 0)
 
 
 @dataclass(frozen=True, slots=True)
 class JogDirection:
-    """One target: axis and sign, its cell in the cross, and its key by Qt's name with how it is written."""
+    """One jog direction: axis and sign, its cell in the cross, and its key with Qt's name and a label."""
 
     axis: str
     sign: int
@@ -122,10 +128,10 @@ class JogDirection:
     key: str
     label: str
     arrow: Arrow = _NO_ARROW
-    shown: str = ""  # the axis as the operator calls it, where that is another name
+    shown: str = ""  # The displayed name of the axis, if it differs.
 
 
-# A lathe from above: X+ is towards the operator, Z+ to the right.
+# A lathe from above: X+ points toward the operator, Z+ to the right.
 _LATHE = (
     JogDirection("X", -1, 1, 0, "Up", "↑", (0, -1)),
     JogDirection("Z", -1, 0, 1, "Left", "←", (-1, 0)),
@@ -133,7 +139,7 @@ _LATHE = (
     JogDirection("X", 1, 1, 2, "Down", "↓", (0, 1)),
 )
 _LATHE_C = (JogDirection("C", -1, 0, 2, "PageDown", "PgDn"), JogDirection("C", 1, 2, 2, "PageUp", "PgUp"))
-# A mill from above: X+ to the right, Y+ away from the operator, Z+ up.
+# A mill from above: X+ points to the right, Y+ away from the operator, Z+ up.
 _MILL = (
     JogDirection("Y", 1, 1, 0, "Up", "↑", (0, -1)),
     JogDirection("X", -1, 0, 1, "Left", "←", (-1, 0)),
@@ -142,7 +148,7 @@ _MILL = (
     JogDirection("Z", 1, 2, 0, "PageUp", "PgUp"),
     JogDirection("Z", -1, 2, 2, "PageDown", "PgDn"),
 )
-# Of its rotary axes in the machine's order: cells and keys of + and −.
+# Cells and keys of + and − for rotary axes, in the machine's order.
 _ROTARY = (
     ((0, 0, "Insert", "Ins"), (0, 2, "Delete", "Del")),
     ((3, 0, "BracketRight", "]"), (3, 2, "BracketLeft", "[")),
@@ -150,7 +156,7 @@ _ROTARY = (
 
 
 def directions_of(machine: Machine) -> tuple[JogDirection, ...]:
-    """All targets of a machine; a lathe has those of C where its spindle can be positioned."""
+    """Return all jog directions of a machine. A lathe has C only if its spindle can be positioned."""
     if machine.kind != "mill":
         turning = tuple(replace(each, shown=machine.shown("C")) for each in _LATHE_C)
         return _LATHE + (turning if machine.c_enabled else ())
@@ -163,14 +169,14 @@ def directions_of(machine: Machine) -> tuple[JogDirection, ...]:
     return tuple(found)
 
 
-BEGINS = 0.3  # s within which the machine must have begun to move
-SILENT = 0.5  # s without another repeat of a key that repeats: its release was lost
-RENEWED = 4  # times in a lease
+BEGINS = 0.3  # Seconds within which the machine must begin to move.
+SILENT = 0.5  # Seconds without a repeat of a repeating key, after which its release counts as lost.
+RENEWED = 4  # Renewals per lease.
 
 
 @dataclass(slots=True)
 class Held:
-    """One jog that is held."""
+    """One continuous jog while its key or touch is held down."""
 
     source: str
     axis: str
@@ -179,14 +185,18 @@ class Held:
     since: float
     posted: float
     looked: float
-    repeated: float | None = None  # when the key last repeated, None: it has not yet
+    repeated: float | None = None  # Time of the last key repeat; None before the first repeat.
     moving: bool = False
     along: Direction | None = None
 
 
 @dataclass(slots=True)
 class HeldJog:
-    """``lease`` seconds; ``barred`` tells why nothing is jogged now; ``clock`` is monotonic."""
+    """The jog of one key or touch.
+
+    ``lease`` is in seconds. ``barred`` returns why jogging is not possible now. ``clock`` returns monotonic
+    time in seconds.
+    """
 
     starting: ClassVar[Starting] = Starting.JOG
     speeds: JogSpeeds
@@ -197,16 +207,21 @@ class HeldJog:
     clock: Callable[[], float]
     barred: Callable[[], str]
     mode: Mode = field(default_factory=Mode)
-    along: Callable[[str], Direction | None] = field(default=lambda _axis: None)  # of a tilted plane (3D-ROT)
-    refuses: Callable[[Starting], bool] = field(default=lambda _starting: False)  # to a late press
+    # Direction in a tilted plane (3D-ROT).
+    along: Callable[[str], Direction | None] = field(default=lambda _axis: None)
+    # Returns whether a late press must not start the action.
+    refuses: Callable[[Starting], bool] = field(default=lambda _starting: False)
     held: Held | None = None
-    rapid_armed: bool = False  # by the key RAPID on the screen: for the next jog only
-    button: str = ""  # the input that the last press came from, where a button beside the slides did
-    down: set[str] = field(default_factory=set)  # keys and fingers that were pressed and not let go yet
-    _ended: str = ""  # why the last one ended, to be said once more when the slide rests
+    rapid_armed: bool = False  # Rapid was selected on the screen, for the next jog only.
+    button: str = ""  # Input name of the last press, if it was a button at the machine.
+    down: set[str] = field(default_factory=set)  # Keys and touches that are pressed.
+    _ended: str = ""  # Reason for the end of the last jog, shown again when the axis is at rest.
 
     def press(self, source: str, axis: str, sign: int, *, rapid: bool, button: str = "") -> None:
-        """A key or finger goes down on a direction, or a ``button`` beside the slides: its input's name."""
+        """Handle a press on a direction.
+
+        ``source`` is the key or touch. ``button`` is the input name of a button at the machine, or empty.
+        """
         others, self._ended = self.down - {source}, ""
         self.rapid_armed = False
         self.down.add(source)
@@ -221,14 +236,14 @@ class HeldJog:
             self._go(source, axis, sign, rapid)
 
     def _go(self, source: str, axis: str, sign: int, rapid: bool) -> None:
-        """What one press alone begins."""
+        """Start a step or a continuous jog. Subclasses may start another motion."""
         if self.speeds.step != CONTINUOUS:
             self._step(axis, sign, rapid)
         else:
             self._begin(source, axis, sign, rapid)
 
     def _step(self, axis: str, sign: int, rapid: bool) -> None:
-        """One step, which is its own length and not longer by being held."""
+        """Start one step. Holding the key does not make the step longer."""
         if rapid:
             self.say(tr("RAPID NEEDS CONTINUOUS JOG. SELECT CONT OR RELEASE SHIFT"))
             return
@@ -249,34 +264,34 @@ class HeldJog:
         self.post(command)
 
     def repeated(self, source: str) -> None:
-        """A held key repeats by itself: it is still down."""
+        """Note a key repeat, which shows that the key is still down."""
         if self.held is not None and self.held.source == source:
             self.held.repeated = self.clock()
 
     def release(self, source: str) -> None:
-        """A key or finger comes up."""
+        """Handle the release of a key or touch."""
         self.down.discard(source)
         if self.held is not None and self.held.source == source:
             self.stop("")
 
     def other_key(self) -> None:
-        """Another key goes down: whoever reaches for it does not look at the slide."""
+        """End the jog because another key was pressed, so that the operator may not be watching the axis."""
         if self.held is not None:
             self.stop(tr("JOG STOPPED: ANOTHER KEY WAS PRESSED"))
 
     def shift_released(self) -> None:
-        """A rapid does not go on without its Shift, nor slower."""
+        """End a rapid jog when Shift is released."""
         if self.held is not None and self.held.rapid:
             self.stop(tr("SHIFT RELEASED. RAPID STOPPED"))
 
     def let_go(self, why: str = "") -> None:
-        """Hands off everything: no release will arrive any more."""
+        """Release all keys and end the jog, because no release event will arrive."""
         self.down.clear()
         if self.held is not None:
             self.stop(why)
 
     def stop(self, why: str) -> None:
-        """End the jog; nothing moves before all is let go."""
+        """End the jog. Nothing moves until all keys are released."""
         if self.held is not None:
             self.held = None
             self.post(JogStop())
@@ -285,7 +300,7 @@ class HeldJog:
             self.say(why)
 
     def look(self, snapshot: Snapshot) -> None:
-        """Once a frame: renew the lease while everything is as it should be, or let it go."""
+        """Renew the lease of the jog, or end the jog after an error; called once a frame."""
         self.mode = Mode(snapshot.modal.metric, snapshot.reads_diameter)
         held, now = self.held, self.clock()
         if held is None:
@@ -300,11 +315,11 @@ class HeldJog:
             held.moving = True
             self._renew(held, now)
         elif held.moving or snapshot.state is not State.IDLE or now - held.since > BEGINS:
-            self.held = None  # the machine has ended it, or never began
+            self.held = None  # The machine has ended the motion or never began it.
             self.post(JogStop())
 
     def _say_again(self, snapshot: Snapshot) -> None:
-        """An answer goes when the state changes; this one came while the slide still moved."""
+        """Show the reason of the end again, because a change of state removed the first message."""
         if self._ended and snapshot.state is not State.JOG:
             self.say(self._ended)
             self._ended = ""

@@ -1,4 +1,4 @@
-"""A page on which keys and fingers are held to move a slide, and the cross of targets that they hold."""
+"""Page with keys and touch targets that move an axis while they are held down."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from app.screen.look import CENTRE, Look, Painter, put
 from app.screen.page_base import Host, ModelPage, PageModel
 from app.screen.panel import Control, FingerPanel
 
-_LOW = 9.0  # units
-Finger = Callable[[str, str, int], None]  # what it is, axis, sign
+_LOW = 9.0  # Units.
+Finger = Callable[[str, str, int], None]  # Arguments: source, axis, sign.
 
 
 def draw_arrow(painter: Painter, box: QRectF, to: tuple[int, int], colour: str) -> None:
-    """At the side of its target to which it points."""
+    """Draw an arrow at the side of its target to which the arrow points."""
     size = 0.16 * min(box.width(), box.height())
     centre = box.center() + QPointF(to[0] * 0.30 * box.width(), to[1] * 0.28 * box.height())
     forward, side = QPointF(to[0] * size, to[1] * size), QPointF(to[1] * size, to[0] * size)
@@ -30,7 +30,7 @@ def draw_arrow(painter: Painter, box: QRectF, to: tuple[int, int], colour: str) 
 
 
 def draw_middle(painter: Painter, box: QRectF, words: tuple[str, str, str]) -> None:
-    """What an arrow does now: its kind, the figure, the unit."""
+    """Draw the present jog mode in the middle of the cross: its kind, value and unit."""
     kind, figure, unit = words
     high, edge = 2.2 * painter.look.u, 0.1 * box.height()
     painter.write(QRectF(box.x(), box.y() + edge, box.width(), high), kind, 1.6, "soft", at=CENTRE)
@@ -39,7 +39,7 @@ def draw_middle(painter: Painter, box: QRectF, words: tuple[str, str, str]) -> N
 
 
 class JogCross(FingerPanel):
-    """A slide moves while a finger is on one of its targets."""
+    """Cross of touch targets. An axis moves while one of its targets is touched."""
 
     def __init__(
         self,
@@ -51,10 +51,10 @@ class JogCross(FingerPanel):
     ) -> None:
         super().__init__(look, parent)
         self._hold, self._directions, self._finger_on = hold, directions, finger
-        self.mark = ""  # behind X Y Z where they are those of a tilted plane
+        self.mark = ""  # Mark that follows X, Y and Z in a tilted plane.
 
     def cross(self, painter: Painter, room: QRectF) -> QRectF:
-        """Draw the targets into this room; where their middle is."""
+        """Draw the targets in this rectangle, and return the rectangle in their middle."""
         u = self.look.u
         columns = 1 + max(2, *(each.column for each in self._directions))
         wide, high = room.width() / columns, room.height() / 3
@@ -75,7 +75,7 @@ class JogCross(FingerPanel):
         )
         low = (
             box.height() < _LOW * u and arrow[0] == 0
-        )  # too low for an arrow over its name: it stands beside
+        )  # Too low for an arrow above the name, so the arrow is next to the name.
         at = box.adjusted(0.12 * box.width(), 0, -0.62 * box.width(), 0) if low else box
         if arrow != (0, 0):
             draw_arrow(painter, at, arrow, "on_state" if moving else "accent")
@@ -89,7 +89,7 @@ class JogCross(FingerPanel):
         self.controls.append(self._holder(box, axis, sign))
 
     def _holder(self, box: QRectF, axis: str, sign: int) -> Control:
-        """Held from the touch until the finger comes up, or leaves the target."""
+        """Return the control of a target. It acts until the touch ends or leaves the target."""
         hold = self._hold
         source = f"finger {axis}{sign}"
 
@@ -109,7 +109,7 @@ CHORDS = (
 
 
 class HeldModel(PageModel, Protocol):
-    """What such a page asks of its model. ``active``: something is held, or may move by itself."""
+    """Interface of the page's model. ``active``: a key is held down, or the handwheel is selected."""
 
     @property
     def hold(self) -> HeldJog: ...
@@ -124,7 +124,10 @@ class HeldModel(PageModel, Protocol):
 
 
 class HeldKeysPage(ModelPage):
-    """The model decides what a press means; this knows whether it is one. ``pad`` is its cross."""
+    """A page with keys that act while they are held down. ``pad`` is its cross.
+
+    The page detects presses and releases. The model decides what they do.
+    """
 
     model: HeldModel
     pad: JogCross
@@ -135,12 +138,12 @@ class HeldKeysPage(ModelPage):
         self._arrows = {
             Key.__members__[f"Key_{each.key}"]: (each.axis, each.sign) for each in model.directions
         }
-        self._was_active = False  # the window, before anything was held
+        self._was_active = False  # Whether the window was active before a key was pressed.
 
     # --- keys ----------------------------------------------------------------------------------------
 
     def key_down(self, event: QKeyEvent) -> bool:
-        """The arrows are this page's; any other key ends what is held and then means what it means."""
+        """Handle a direction key. Any other key ends the motion and then has its usual function."""
         key, model = Key(event.key()), self.model
         if key not in self._arrows:
             if not event.isAutoRepeat():
@@ -160,11 +163,11 @@ class HeldKeysPage(ModelPage):
         return True
 
     def other_key(self, _event: QKeyEvent) -> bool:
-        """A key that is no direction; True takes it."""
+        """Handle a key that is not a direction. Return True if the key was handled."""
         return False
 
     def key_up(self, event: QKeyEvent) -> None:
-        """An arrow comes up, or the Shift of a rapid. Releases that a repeating key makes are none."""
+        """Handle the release of a direction key or Shift. Releases of a repeating key are ignored."""
         if event.isAutoRepeat():
             return
         key = Key(event.key())
@@ -174,18 +177,19 @@ class HeldKeysPage(ModelPage):
             self.model.hold.shift_released()
 
     def pressed(self) -> None:
-        """Whoever reaches for something else does not look at the slide."""
+        """End the motion because another key or touch acts."""
         self.model.hold.other_key()
 
     def let_go(self) -> None:
-        """The keyboard or the window is gone."""
+        """Release all keys and touches, because the window has lost the keyboard."""
         self.pad.let_go()
         self.model.let_go()
 
     def _has_keyboard(self) -> bool:
-        """Whether keys still come here: no dialog, no menu, no other window in front.
+        """Return whether keys still reach this page, and no dialog, menu or other window.
 
-        A screen without a window manager never becomes active; there only the loss of it counts.
+        Without a window manager, the window is never active. In this case, only a loss of the active state
+        counts.
         """
         active = self.window().isActiveWindow()
         if not self.model.active:
@@ -194,6 +198,6 @@ class HeldKeysPage(ModelPage):
         return covered is None and (active or not self._was_active)
 
     def let_go_if_held(self) -> None:
-        """Something lies in front that would take the release."""
+        """End the motion if something is active, because another window would get the release event."""
         if self.model.active:
             self.let_go()

@@ -1,7 +1,7 @@
-"""The handwheel as the Jog page asks for it, and buttons beside the slides that jog.
+"""The handwheel of the Jog page, and jog buttons at the machine.
 
-By hand it is selected with a key or a finger; a station with switches of its own selects by them, and what
-was taken away comes back only when the switch was elsewhere in between, or by the key.
+The axis of the handwheel is selected by key, by touch or by switches of the operator station. After the
+handwheel was switched off, the key selects it again. A switch must first be turned to another position.
 """
 
 from __future__ import annotations
@@ -28,41 +28,41 @@ from core.machine.station_rules import (
 )
 from core.message import Message
 
-FINE = 2  # of the steps: .001 in
-_LONG = 0  # .1 in is for keys
-_OF_FACTOR = {1: 3, 10: 2, 100: 1}  # times the smallest step
+FINE = 2  # Index of the step .001 in.
+_LONG = 0  # Index of the step .1 in, which is for keys only.
+_OF_FACTOR = {1: 3, 10: 2, 100: 1}  # Step index for each multiple of the smallest step.
 
-Choice = tuple[str, int]  # axis and number of the step
+Choice = tuple[str, int]  # Axis and step index.
 
 
 @dataclass(slots=True)
 class JogHandwheel:
-    """``choice`` is what the wheel shall move, None for nothing."""
+    """The handwheel. ``choice`` is the axis and step that it moves, or None."""
 
     machine: Machine
     hold: HeldJog
-    names: tuple[str, ...]  # axes that can be jogged, in their order
-    barred: Callable[[], str]  # why it moves nothing now; asked every frame
+    names: tuple[str, ...]  # Axes that can be jogged, in order.
+    barred: Callable[[], str]  # Returns why the handwheel is off now; called every frame.
     choice: Choice | None = None
     _by_hand: str = ""
-    _left: Choice | None = None  # the switches stood so when it was taken away
+    _left: Choice | None = None  # The switch positions when the handwheel was switched off.
     _asked: float = 0.0
     _posted: float = 0.0
     _looked: float = 0.0
 
     @property
     def there(self) -> bool:
-        """Whether the machine has one."""
+        """Whether the machine has a handwheel."""
         return WHEEL in self.machine.hardware.analog
 
     @property
     def counts(self) -> int:
-        """How many counts of the encoder are one click."""
+        """The number of encoder counts per click, or 0 without a handwheel."""
         return self.machine.hardware.analog[WHEEL].counts_per_click if self.there else 0
 
     @property
     def switched(self) -> bool:
-        """Whether switches beside it choose the axis."""
+        """Whether switches of the operator station select the axis."""
         return any(selector(name) in self.machine.inputs for name in self.names)
 
     @property
@@ -74,11 +74,11 @@ class JogHandwheel:
         return self.hold.post
 
     def next_axis(self) -> None:
-        """The key: the next axis, behind the last one nothing."""
+        """Select the next axis, or no axis after the last one."""
         self.choose(following(("", *self.names), self.choice[0] if self.choice else ""))
 
     def next_step(self) -> None:
-        """A button beside the wheel: the next of the steps that a click may have."""
+        """Select the next step for a click, by a button of the handwheel."""
         if any(name in self.machine.inputs for name in FACTORS):
             return
         fine = range(FINE - 1, FINE + 2)
@@ -87,7 +87,7 @@ class JogHandwheel:
         )
 
     def choose(self, axis: str) -> None:
-        """Select an axis by key or finger; an empty one lets the wheel go."""
+        """Select an axis by key or touch. An empty name switches the handwheel off."""
         self._left = None
         if not self.there:
             self.hold.say(tr("THIS MACHINE HAS NO HANDWHEEL"))
@@ -106,15 +106,15 @@ class JogHandwheel:
             self.hold.clear()
 
     def drop(self, why: str) -> None:
-        """The wheel moves nothing any more."""
+        """Switch the handwheel off, and show why."""
         self._by_hand = ""
         if self.choice is not None:
             self._left, self.choice = self.choice, None
             self._post(WheelOff())
-            self.hold.stop(why)  # which says it again when the slide rests
+            self.hold.stop(why)  # This shows the reason again when the axis is at rest.
 
     def look(self, snapshot: Snapshot) -> None:
-        """Once a frame: renew what is selected, or let it go."""
+        """Renew the selected handwheel, or switch it off; called once a frame."""
         now = self.hold.clock()
         away, self._looked = now - self._looked, now
         if not self.there:
@@ -127,15 +127,18 @@ class JogHandwheel:
         elif wanted != self.choice and self.choice is not None:
             axis = self._by_hand if wanted is not None else ""
             self.drop("")
-            self._by_hand, self._left = axis, None  # another step, or another axis at the switch
+            self._by_hand, self._left = axis, None  # The step or the switch has changed.
         elif self.choice is not None and now - self._asked > BEGINS and not snapshot.wheel:
-            why = snapshot.wheel_ended.upper()  # of the control
+            why = snapshot.wheel_ended.upper()  # Reason of the control.
             self.drop(tr(Message("HANDWHEEL IS OFF: {why}", why=why)) if why else "")
         elif wanted is not None and not self.barred():
             self._renew(wanted, now)
 
     def _wanted(self, snapshot: Snapshot) -> Choice | None:
-        """What key, finger or switches select; the step of the page where no switch chooses it."""
+        """Return the axis and step that key, touch or switches select, or None.
+
+        If no switch selects the step, the page's step applies.
+        """
         axis, step = self._by_hand, self._speeds.step
         if self.switched:
             on = [name for name in self.names if selector(name) in snapshot.inputs]
@@ -159,17 +162,17 @@ class JogHandwheel:
         self._post(Wheel(axis, self._speeds.distance(axis, self.hold.mode, step), self.hold.lease))
 
 
-_AWAY = 0.25  # s between two looks; what was pressed in a longer one is old
+_AWAY = 0.25  # Seconds between two updates. Presses during a longer interval are ignored.
 
 
 @dataclass(slots=True)
 class PendantJog:
-    """``buttons`` are the inputs that jog: axis and sign of each."""
+    """Jog buttons at the machine. ``buttons`` contains the axis and sign of each input that jogs."""
 
     machine: Machine
     hold: HeldJog
     wheel: JogHandwheel
-    names: tuple[str, ...]  # axes that can be jogged
+    names: tuple[str, ...]  # Axes that can be jogged.
     buttons: dict[str, tuple[str, int]] = field(default_factory=dict)
     _on: frozenset[str] = frozenset()
     _looked: float = -1e9
@@ -180,7 +183,7 @@ class PendantJog:
         self.buttons = {name: way for name, way in named.items() if name in self.machine.inputs}
 
     def look(self, snapshot: Snapshot) -> None:
-        """Once a frame: what went down and what came up."""
+        """Handle presses and releases of the buttons; called once a frame."""
         now, before, on = self.hold.clock(), self._on, snapshot.inputs
         away, self._looked, self._on = now - self._looked, now, on
         for name in self.buttons:

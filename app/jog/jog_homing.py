@@ -1,4 +1,4 @@
-"""Homing: which axes know where they are, and a question before any of them moves."""
+"""Homing from the Jog page: the state of each axis, and a question before an axis moves."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from core.message import Message
 
 
 class AxisState(StrEnum):
-    """Whether an axis knows its position."""
+    """Homing state of an axis."""
 
     HOMED = "HOMED"
     LOST = "NOT HOMED"
     LOOKING = "HOMING"
-    ABSOLUTE = "ABSOLUTE"  # its encoder knows without homing
+    ABSOLUTE = "ABSOLUTE"  # The encoder is absolute and needs no homing.
 
     @property
     def words(self) -> str:
-        """The state in the operator's language."""
+        """The translated name of the state."""
         words = {
             AxisState.HOMED: tr("HOMED"),
             AxisState.LOST: tr("NOT HOMED"),
@@ -35,7 +35,7 @@ class AxisState(StrEnum):
 
 @dataclass(slots=True)
 class HomingQuestion:
-    """The home key asks: Return homes all axes in their order, a letter one of them."""
+    """The question which axes to home. Enter homes all axes in order, a letter homes one axis."""
 
     machine: Machine
     desk: Desk
@@ -43,12 +43,12 @@ class HomingQuestion:
 
     @property
     def asking(self) -> bool:
-        """Whether the question stands, and is this one."""
+        """Whether this question is open."""
         return self._asked and self.desk.asked == "Enter"
 
     @property
     def axes(self) -> tuple[Axis, ...]:
-        """What there is to home, C only where the spindle is an axis."""
+        """The axes that can be homed. C of a lathe is included only if the spindle is an axis."""
         return tuple(
             a
             for a in self.machine.axes
@@ -56,7 +56,7 @@ class HomingQuestion:
         )
 
     def known(self, snapshot: Snapshot) -> dict[str, AxisState]:
-        """How it stands with every axis."""
+        """Return the homing state of every axis."""
         homed = dict(zip(snapshot.axes, snapshot.homed, strict=True))
         lost = sorted((a for a in self.axes if not homed[a.name]), key=lambda axis: axis.home_order)
         known = {a.name: AxisState.ABSOLUTE if a.absolute else AxisState.HOMED for a in self.axes}
@@ -66,13 +66,13 @@ class HomingQuestion:
         return known
 
     def lost(self, snapshot: Snapshot) -> list[str]:
-        """The axes that have to be homed, in their order."""
+        """Return the names of the axes that must be homed, in homing order."""
         known = self.known(snapshot)
         order = sorted(self.axes, key=lambda axis: axis.home_order)
         return [axis.name for axis in order if known[axis.name] in {AxisState.LOST, AxisState.LOOKING}]
 
     def key(self, snapshot: Snapshot, why_not: str) -> None:
-        """The home key asks which axes are to be homed, or says ``why_not``."""
+        """Handle the home key: ask which axes to home, or show ``why_not``."""
         lost = self.lost(snapshot)
         if why_not:
             self.desk.say(why_not)
@@ -86,7 +86,10 @@ class HomingQuestion:
             self._asked = True
 
     def answer(self, key: str, snapshot: Snapshot) -> bool:
-        """The letter of an axis while it is asked; any other key takes the question back."""
+        """Handle the letter of an axis while the question is open. Any other key cancels the question.
+
+        Return True if the key was an axis letter.
+        """
         if not self.asking:
             return False
         name, read = key.upper(), self.desk.read
@@ -100,7 +103,7 @@ class HomingQuestion:
         return False
 
     def one(self, name: str, snapshot: Snapshot, why_not: str) -> None:
-        """A finger on one axis: the question first, then that axis."""
+        """Handle a touch on one axis: ask first, then home this axis at a second touch."""
         if self.asking and not why_not:
             self.answer(name, snapshot)
         else:
@@ -112,7 +115,7 @@ class HomingQuestion:
         self.desk.post(Home(axis))
 
     def give_up(self) -> bool:
-        """Take the question back; False when none is asked."""
+        """Cancel the question. Return False if it was not open."""
         was, self._asked = self.asking, False
         if was:
             self.desk.clear()
@@ -120,7 +123,7 @@ class HomingQuestion:
 
 
 def _stands(snapshot: Snapshot) -> str:
-    """What goes before the question while a tool may stand in a part."""
+    """Return a warning before the question, if a tool may be in a part. Empty otherwise."""
     found = snapshot.interrupted
     if found is None:
         return ""

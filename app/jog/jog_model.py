@@ -1,4 +1,4 @@
-"""The model of the Jog page: what its keys do, and what may be done now."""
+"""The model of the Jog page: functions of its keys, and conditions for manual motion."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ from core.executor.snapshot import ACTIVE, Snapshot, State
 from core.machine.machine_model import Machine
 from core.message import Message
 
-LEASE = 0.25  # s: no jog is held longer without renewal, whatever the machine file says
+LEASE = 0.25  # Maximum lease in seconds, also if the machine file specifies a longer one.
 
-# Letters that ask something of the chosen tool, while nothing is asked.
+# Letters that ask for a value of the selected tool, while no question is open.
 LETTERS = {
     "t": TOOL,
     "x": TOUCH_X,
@@ -38,7 +38,7 @@ LETTERS = {
 
 @dataclass(slots=True)
 class JogModel:
-    """Hold, steps and speeds, homing, tool setting. The page draws it and hands the keys on."""
+    """The model of the Jog page, with jog, handwheel, homing, tool setting and manual functions."""
 
     desk: Desk
     machine: Machine
@@ -94,7 +94,10 @@ class JogModel:
         return self.desk.hands.clock()
 
     def barred(self) -> str:
-        """Why nothing is moved by hand now; empty when it may be."""
+        """Return why axes cannot be jogged now. Empty if they can.
+
+        An open homing question is canceled.
+        """
         state = self.desk.snapshot().state
         if self.desk.window.is_stop_held():
             return tr(STOP_HELD)
@@ -105,7 +108,7 @@ class JogModel:
         return why_no_jog(state)
 
     def _wheel_barred(self) -> str:
-        """As ``barred``, and takes nothing back."""
+        """Return why the handwheel cannot move an axis now. An open question is not canceled."""
         if self.tilt.on:
             return tr("HANDWHEEL MOVES ONLY MACHINE AXES. F5: TURN 3D-ROT OFF FIRST")
         if self.asked:
@@ -113,7 +116,7 @@ class JogModel:
         return why_no_jog(self.desk.snapshot().state)
 
     def look(self, snapshot: Snapshot) -> None:
-        """Renew what is held and follow the machine; called once a frame."""
+        """Update all parts and renew the lease of the jog; called once a frame."""
         self.tilt.look(snapshot)
         self.hold.look(snapshot)
         self.pendant.look(snapshot)
@@ -123,10 +126,11 @@ class JogModel:
         self.skim.look(snapshot)
         self.hand.look(snapshot)
         if self.tool.asked and (self.hand.chosen or self.hand.asked):
-            self.hand.take_back()  # a hand is at the workpiece: nothing is ready beside a question
+            # The operator may be at the workpiece, so no line stays prepared during a question.
+            self.hand.take_back()
 
     def prompt(self, snapshot: Snapshot) -> str:
-        """The page's own words on the prompt line."""
+        """Return the prompt of the page."""
         if self.tool.by_setter:
             return tr("ENTER: SAVE MEASURED VALUE   ESC: DISCARD")
         if self.tool.asked:
@@ -134,7 +138,7 @@ class JogModel:
         return self._prompt_of_work(snapshot) or self._prompt_of_jog(snapshot)
 
     def _prompt_of_work(self, snapshot: Snapshot) -> str:
-        """What is being done besides moving by hand; empty when nothing is."""
+        """Return the prompt for work other than jogging. Empty without such work."""
         hand = self.hand
         if hand.asked or hand.chosen or hand.under_way(snapshot):
             return hand.prompt(snapshot)
@@ -154,35 +158,35 @@ class JogModel:
             return tr("HOLD A KEY TO JOG IN TILTED X' Y' Z'. SHIFT: RAPID")
         return tr("HOLD KEY TO JOG. SHIFT: RAPID   TOUCH OFF: F8 TOOL, F9 PART")
 
-    # --- step and speed: any change ends what is held ------------------------------------------------
+    # --- step and speed: any change ends the jog -----------------------------------------------------
 
     def next_step(self) -> None:
-        """F2: another increment ends what is held."""
+        """Handle F2: select the next step, and end the jog."""
         self._another_step()
         self.speeds.next_step()
 
     def choose_step(self, step: int) -> None:
-        """A finger on one of the steps."""
+        """Select a touched step, and end the jog."""
         self._another_step()
         self.speeds.step, self.hold.rapid_armed = step, False
 
     def next_speed(self) -> None:
-        """F3: another speed ends what is held."""
+        """Handle F3: select the next speed, and end the jog."""
         self._another_speed()
         self.speeds.next_speed()
 
     def choose_speed(self, speed: int) -> None:
-        """A finger on one of the speeds."""
+        """Select a touched speed, and end the jog."""
         self._another_speed()
         self.speeds.speed, self.hold.rapid_armed = speed, False
 
     def arm(self) -> None:
-        """Select rapid for the next jog, if a finger starts it on this pad; any other jog cancels it."""
+        """Toggle rapid for the next jog by touch. Any other jog cancels it."""
         self._another_speed()
         self.hold.rapid_armed = not self.hold.rapid_armed
 
     def finger(self, source: str, axis: str, sign: int) -> None:
-        """A finger or the mouse goes down on a direction."""
+        """Handle a press on a direction by touch or mouse."""
         self.hold.press(source, axis, sign, rapid=self.hold.rapid_armed)
 
     def _another_step(self) -> None:
@@ -194,7 +198,7 @@ class JogModel:
     # --- keys ----------------------------------------------------------------------------------------
 
     def ask(self, what: str) -> None:
-        """A question of the tool; what is held ends."""
+        """Ask for a value of the tool, and end the jog."""
         self.hold.other_key()
         self.hand.take_back()
         self.skim.drop()
@@ -202,11 +206,11 @@ class JogModel:
 
     @property
     def on_mill(self) -> bool:
-        """Whether the machine is a mill: its tools and presets have pages of their own."""
+        """Whether the machine is a mill, which has separate pages for tools and presets."""
         return self.machine.kind == "mill"
 
     def turn_tilt(self) -> None:
-        """3D-ROT on or off; the handwheel is let go."""
+        """Toggle 3D-ROT, and switch the handwheel off."""
         self.wheel.drop("")
         self.tilt.key(why_no_jog(self.desk.snapshot().state))
 
@@ -214,27 +218,27 @@ class JogModel:
         self.hold.let_go(why)
 
     def press_hand(self, name: str) -> None:
-        """A finger on a function by hand; what is held ends."""
+        """Handle a touch on a manual function, and end the jog."""
         self.hold.other_key()
         self.hand.press(name)
 
     def ask_speed(self) -> None:
-        """A finger on the spindle speed."""
+        """Ask for the spindle speed, and end the jog."""
         self.hold.other_key()
         self.hand.ask_speed()
 
     def show_hand(self) -> None:
-        """A finger on BY HAND, or on the key that leads back."""
+        """Show or hide the manual functions, and end the jog."""
         self.hold.other_key()
         self.hand.toggle()
 
     def choose_master(self) -> None:
-        """The chosen tool becomes the master; what is held ends."""
+        """Ask whether the selected tool becomes the master, and end the jog."""
         self.hold.other_key()
         self.tool.master()
 
     def touch_at_setter(self) -> None:
-        """The key of the tool setter; what is held ends, and the handwheel is let go."""
+        """Start a touch-off at the tool setter. End the jog, and switch the handwheel off."""
         self.hold.other_key()
         self.wheel.drop("")
         self.home.give_up()
@@ -242,23 +246,23 @@ class JogModel:
 
     @property
     def wheel_drawn(self) -> bool:
-        """Whether the screen's own wheel moves something now: its station is the screen's."""
+        """Whether the handwheel on the screen moves an axis now. It exists only with a simulated station."""
         return self.wheel.choice is not None and self.desk.hands.station is not None
 
     def turn_wheel(self, clicks: int) -> None:
-        """The wheel on the screen is turned."""
+        """Turn the handwheel on the screen."""
         station = self.desk.hands.station
         if self.wheel_drawn and station is not None and not self.desk.window.late.refuses(Starting.HANDWHEEL):
             station.turn_handwheel(clicks * self.wheel.counts)
 
     def home_key(self) -> None:
-        """Home asks; home again homes all in their order."""
+        """Handle the home key, which asks which axes to home."""
         self.hold.let_go()
         self.wheel.drop("")
         self.home.key(self.desk.snapshot(), self._no_homing())
 
     def home_one(self, axis: str) -> None:
-        """A finger on one axis asks; again homes it."""
+        """Handle a touch on the homing target of one axis. A second touch homes the axis."""
         self.hold.let_go()
         self.wheel.drop("")
         self.home.one(axis, self.desk.snapshot(), self._no_homing())
@@ -270,12 +274,12 @@ class JogModel:
         return tr("AXES ARE STILL MOVING") if state is State.JOG else why_no_jog(state)
 
     def opened(self) -> None:
-        """The page comes up: what was changed on another is no news here."""
+        """Prepare for the open page: ignore earlier changes of offsets, and let Cycle Start run lines."""
         self.tool.history.opened()
         self.hand.opened()
 
     def typed(self, key: str) -> bool:
-        """A typed key; False leaves it to the window."""
+        """Handle a key. Return False to leave the key to the window."""
         if self.asked:
             return self.hand.typed(key) if self.hand.asked else self.tool.typed(key)
         if self.home.answer(key, self.desk.snapshot()):
@@ -297,14 +301,14 @@ class JogModel:
         return True
 
     def takes(self, key: str) -> bool:
-        """Whether a character is this page's."""
+        """Return whether this character has a function on this page."""
         own = {"v", "b"} if self.on_mill else {*LETTERS, "m", "v", "p", "b", "c"}
         if self.asked:
             return self.hand.takes(key) or self.tool.takes(key)
         return key.lower() in own
 
     def escape(self) -> bool:
-        """Esc ends a hold, takes a question or an entry back; False when the page may be left."""
+        """Handle Esc: end the jog, or cancel a question or entry. Return False if there was nothing to do."""
         if self.hold.held is not None:
             self.hold.let_go()
             return True
@@ -320,11 +324,11 @@ class JogModel:
 
     @property
     def active(self) -> bool:
-        """Whether something is held, or the handwheel selected."""
+        """Whether a key is held down or the handwheel is selected."""
         return self.hold.held is not None or self.wheel.choice is not None
 
     def let_go(self) -> None:
-        """Hands off: the keyboard, the window or the page is gone."""
+        """End the jog and the handwheel, because the page no longer gets key events."""
         self.hold.let_go(tr("JOG STOPPED: THIS PAGE NO LONGER HAS KEYBOARD FOCUS"))
         self.wheel.drop(tr("HANDWHEEL IS OFF: THIS PAGE NO LONGER HAS KEYBOARD FOCUS"))
         self.hold.rapid_armed = False
@@ -335,7 +339,7 @@ class JogModel:
             self.desk.post(JogStop())
 
     def leave(self) -> bool:
-        """Whether the page may go: nothing stays held, asked or half entered."""
+        """Return whether the page can close. If it can, end all motion, questions and entries."""
         self.hold.let_go()
         if not self.hand.leave():
             return False
@@ -352,7 +356,7 @@ class JogModel:
 
 
 def why_no_jog(state: State) -> str:
-    """Why nothing is moved by hand in this state; empty when it may be."""
+    """Return why manual motion is not possible in this state. Empty if it is possible."""
     words = {
         State.DISABLED: tr("DRIVES ARE OFF. PRESS D TO TURN THEM ON"),
         State.ESTOP: tr("E-STOP IS PRESSED. NO AXIS CAN MOVE"),
@@ -367,7 +371,10 @@ def why_no_jog(state: State) -> str:
 
 
 def jog_prompt(state: State, lost: list[str], wheel: str, step: int) -> str:
-    """What may be done now. ``lost`` axes are not homed, ``wheel`` is the axis of the handwheel."""
+    """Return the prompt for manual motion.
+
+    ``lost`` are the axes that are not homed. ``wheel`` is the axis of the handwheel, or empty.
+    """
     why = why_no_jog(state)
     if why:
         return why

@@ -1,4 +1,4 @@
-"""The jog pad: directions and C to hold; steps, speeds, homing. A slide moves while a finger is on one."""
+"""The jog pad: directions that move an axis while touched, with steps, speeds and homing."""
 
 from __future__ import annotations
 
@@ -26,13 +26,17 @@ from core.message import Message
 # --- rows of tiles ------------------------------------------------------------------------------------
 
 
-NAME = 8.4  # units: width of the row's name
-SHORT = 4  # letters: a longer word gets a wider tile
+NAME = 8.4  # Units: width of the row name.
+SHORT = 4  # Letters: a longer word gets a wider tile.
 
 
 @dataclass(frozen=True, slots=True)
 class Tiles:
-    """``name`` and the key that goes through the row; ``warn`` and ``alarmed`` colour what stands out."""
+    """A row of touch tiles.
+
+    ``name`` is the row name with its key. ``warn`` colors the selected tile as a warning, and ``alarmed`` are
+    tiles in the alarm color.
+    """
 
     name: tuple[str, str]
     words: tuple[str, ...]
@@ -43,7 +47,7 @@ class Tiles:
 
 
 def draw_tiles(painter: Painter, row: QRectF, tiles: Tiles) -> list[tuple[QRectF, Callable[[], None]]]:
-    """Draw the row; where each of its tiles stands and what it does."""
+    """Draw a row of tiles, and return the rectangle and action of each tile."""
     u, left = painter.look.u, row.x()
     if tiles.name[0]:
         left += NAME * u
@@ -66,7 +70,7 @@ def _name(painter: Painter, box: QRectF, name: tuple[str, str]) -> None:
 
 
 def _tile(painter: Painter, box: QRectF, word: str, tiles: Tiles, number: int) -> None:
-    """Filled when it is chosen, and in the colour of a warning when that has to be seen."""
+    """Draw one tile, filled if it is selected, and in a warning color if necessary."""
     ink, ground, line = "text", "key", "frame"
     if number in tiles.alarmed:
         ink = line = "alarm"
@@ -80,22 +84,22 @@ def _tile(painter: Painter, box: QRectF, word: str, tiles: Tiles, number: int) -
 # --- the drawn handwheel ------------------------------------------------------------------------------
 
 
-CLICK = 3.6  # degrees: a hundred clicks a turn
-_NOTCH = 120  # of the mouse's wheel, as Qt has it
+CLICK = 3.6  # Degrees per click: 100 clicks per revolution.
+_NOTCH = 120  # One notch of the mouse wheel in Qt's unit.
 _SPOKES = 24
 
 
 class Dial:
-    """``turned`` hears of whole clicks, clockwise positive."""
+    """The handwheel on the screen. ``turned`` gets the number of clicks, clockwise positive."""
 
     def __init__(self, turned: Callable[[int], None]) -> None:
         self._turned = turned
-        self._angle = 0.0  # as it is drawn, degrees
-        self._at = 0.0  # of the finger
-        self._rest = 0.0  # degrees that are no click yet
+        self._angle = 0.0  # Drawn angle in degrees.
+        self._at = 0.0  # Angle of the touch in degrees.
+        self._rest = 0.0  # Remaining degrees of an incomplete click.
 
     def control(self, box: QRectF) -> Control:
-        """What a finger does on it."""
+        """Return the control that turns the handwheel by touch."""
 
         def bearing(at: QPointF) -> float:
             away = at - box.center()
@@ -112,11 +116,11 @@ class Dial:
         return Control(box, down, along, name="HANDWHEEL", kind="slider")
 
     def notches(self, delta: int) -> None:
-        """The mouse's wheel, by Qt's figure; away from the hand is clockwise."""
+        """Turn the handwheel by the mouse wheel. ``delta`` is in Qt's unit; positive turns clockwise."""
         self._turn(CLICK * delta / _NOTCH)
 
     def draw(self, painter: Painter, box: QRectF, click: str) -> None:
-        """The rim with its marks where it stands, and how far a click goes."""
+        """Draw the handwheel at its present angle, with the distance per click."""
         size = 0.5 * min(box.width(), box.height()) - 0.4 * painter.look.u
         painter.setPen(painter.look.pen("accent", 0.24))
         painter.drawEllipse(box.center(), size, size)
@@ -130,20 +134,20 @@ class Dial:
 
     def _turn(self, degrees: float) -> None:
         self._rest += degrees
-        clicks = int(self._rest / CLICK)  # towards 0
+        clicks = int(self._rest / CLICK)  # Rounded toward 0.
         if clicks:
             self._rest -= clicks * CLICK
             self._angle += clicks * CLICK
             self._turned(clicks)
 
 
-ROW, HELD = 5.0, 9.4  # units, at least: a row of tiles, a target that is held
-CROSS = 3  # rows of the targets that are held
+ROW, HELD = 5.0, 9.4  # Minimum height in units of a row of tiles and of a jog target.
+CROSS = 3  # Rows of jog targets.
 DrawRow = Callable[[Painter, QRectF], None]
 
 
 class JogPad(JogCross):
-    """Draws the model; every target is as large as the room allows."""
+    """The jog pad with all its targets, which are as large as the room allows."""
 
     _shown: Shown[object] = Shown(None)
     _known: Shown[Mapping[str, AxisState]] = Shown({})
@@ -154,7 +158,7 @@ class JogPad(JogCross):
         self._dial = Dial(model.turn_wheel)
 
     def show_jog(self, snapshot: Snapshot) -> None:
-        """What is chosen, what is held, what knows its position."""
+        """Show the selected step and speed, the active target and the homing states."""
         model = self._model
         self._known = model.home.known(snapshot)
         held = model.hold.held
@@ -185,21 +189,21 @@ class JogPad(JogCross):
         self._middle(painter, middle)
 
     def _rows(self, room: QRectF) -> list[DrawRow]:
-        """Over the cross: steps and speeds, in one row where two would leave no fingertip to each."""
+        """Return the rows above the cross. Steps and speeds share one row if there is little height."""
         wheel: list[DrawRow] = [self._wheel] if self._model.wheel.there else []
         both: list[DrawRow] = [self._steps, self._speeds]
         needed = self.look.keys_high(len(both) + len(wheel) + 1 + CROSS) + 0.6 * self.look.u
         return [*(both if room.height() >= needed else [self._steps_and_speeds]), *wheel]
 
     def _tile_height(self, room: QRectF, rows: int) -> float:
-        """A fingertip, where that leaves enough for what is held by a finger."""
+        """Return the height of a tile row: a fingertip, if this leaves enough height for the jog targets."""
         u = self.look.u
         finger = self.look.row(ROW, 9.0, touch=True)
         left = room.height() - CROSS * (HELD * u + 0.6 * u) - u
         return max(min(finger, float(FINGER)), ROW * u, min(finger, left / rows - 0.6 * u))
 
     def _steps_and_speeds(self, painter: Painter, row: QRectF) -> None:
-        """As the keys F2 and F3 do: the next one of each, and RAPID."""
+        """Draw step and speed in one row, with the functions of F2 and F3, and RAPID."""
         model, mode = self._model, self._model.hold.mode
         step = model.speeds.step
         said = tr("CONT")
@@ -243,7 +247,7 @@ class JogPad(JogCross):
 
     @property
     def _turning(self) -> str:
-        """The axis that turns, while it is held or the handwheel has it: it has units of its own."""
+        """The rotary axis that is jogged or that the handwheel moves, else empty. It has its own units."""
         held, wheel = self._model.hold.held, self._model.wheel.choice
         axis = held.axis if held else wheel[0] if wheel else ""
         return axis if axis and self._model.machine.axis(axis).rotary else ""
@@ -254,7 +258,7 @@ class JogPad(JogCross):
         return f"{60 * model.speeds.velocity(self._turning, model.hold.mode, rapid=True):.0f}"
 
     def _wheel(self, painter: Painter, row: QRectF) -> None:
-        """Which axis the handwheel moves."""
+        """Draw the row that selects the handwheel axis."""
         wheel = self._model.wheel
         axis = wheel.choice[0] if wheel.choice else ""
         presses = [partial(wheel.choose, name) for name in ("", *wheel.names)]
@@ -263,7 +267,7 @@ class JogPad(JogCross):
         self._tiles(painter, row, Tiles((tr("HANDWHEEL"), "V"), words, presses, chosen, warn=bool(axis)))
 
     def wheelEvent(self, event: QWheelEvent) -> None:
-        """The mouse's wheel turns the one that is drawn."""
+        """Turn the handwheel on the screen by the mouse wheel."""
         if self._model.wheel_drawn:
             self._dial.notches(event.angleDelta().y())
             self.update()
@@ -295,7 +299,7 @@ class JogPad(JogCross):
             self.controls.append(pressed(box, press))
 
     def _middle(self, painter: Painter, box: QRectF) -> None:
-        """What an arrow does now, in figures."""
+        """Draw the present jog mode with its values in the middle of the cross."""
         model = self._model
         mode: Mode = model.hold.mode
         step = model.speeds.step

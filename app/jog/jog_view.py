@@ -1,4 +1,4 @@
-"""The Jog page: held moves at the left, tool setting or manual functions at the right, the question below."""
+"""The Jog page: jog pad at the left, tool setting or manual functions at the right, entry line below."""
 
 from __future__ import annotations
 
@@ -37,12 +37,12 @@ from app.screen.window_layout import FINGER
 from core.executor.snapshot import Snapshot
 from core.message import Message
 
-KEY = 4.5  # units: height of a key of the strip
-StepKey = tuple[str, str, Callable[[], object]]  # letter, words, what it does
+KEY = 4.5  # Units: height of a key in the strip.
+StepKey = tuple[str, str, Callable[[], object]]  # Letter, label and action.
 
 
 def draw_key(painter: Painter, box: QRectF, letter: str, words: str, *, chosen: bool, on: bool) -> None:
-    """A key with its letter: filled when what it switches is on, framed when it is chosen."""
+    """Draw a key with its letter, filled if its function is on, and framed if it is selected."""
     u = painter.look.u
     ground, ink = ("run", "on_state") if on else ("here" if chosen else "key", "text")
     painter.box(box, "lit" if chosen else "frame", 0.3 if chosen else 0.16, ground)
@@ -53,7 +53,10 @@ def draw_key(painter: Painter, box: QRectF, letter: str, words: str, *, chosen: 
 
 
 class HandPanel(FingerPanel):
-    """Each target chooses; both palms switch on. STOP acts at once, however late the finger is seen."""
+    """The panel of the manual functions. A touch selects a function; the start buttons run it.
+
+    STOP acts immediately, also as a late press.
+    """
 
     _shown: Shown[object] = Shown(None)
 
@@ -62,7 +65,7 @@ class HandPanel(FingerPanel):
         self._model = model
 
     def show_hand(self, snapshot: Snapshot) -> None:
-        """What is chosen, ready and on."""
+        """Show which function is selected, prepared or on."""
         hand = self._model.hand
         self._shown = (
             hand.chosen,
@@ -111,7 +114,7 @@ class HandPanel(FingerPanel):
             )
 
     def _spindle(self, painter: Painter, row: QRectF) -> None:
-        """What the spindle does now, and the key that stops it."""
+        """Draw the state of the spindle, and the key that stops it."""
         u, hand, snapshot = self.look.u, self._model.hand, self._model.desk.snapshot()
         words = tr("SPINDLE STOPPED")
         if hand.turns(snapshot):
@@ -137,12 +140,12 @@ class HandPanel(FingerPanel):
 
 
 def strip_keys(look: Look) -> float:
-    """Height of the keys of the strip, pixels: a fingertip, and room for their words on a large glass."""
+    """Return the height of the strip keys in pixels, at least a fingertip."""
     return max(float(FINGER), KEY * look.u)
 
 
 class HandStrip(FingerPanel):
-    """Under tool setting while nothing is asked: what leads to functions by hand and to the skim cut."""
+    """The strip below tool setting while no question is open, with keys for manual functions and skim cut."""
 
     _shown: Shown[object] = Shown(None)
     change, foot = Shown(""), Shown("")
@@ -152,7 +155,7 @@ class HandStrip(FingerPanel):
         self._model = model
 
     def show_strip(self, snapshot: Snapshot, change: str, foot: str) -> None:
-        """What can be pressed now, the last change, and what other keys do."""
+        """Show the available keys, the last change, and the hint for other keys."""
         skim, hand = self._model.skim, self._model.hand
         self.change, self.foot = change, foot
         self._shown = (skim.step, skim.axis, hand.shown, hand.turns(snapshot))
@@ -200,11 +203,12 @@ class HandStrip(FingerPanel):
         return (hand,) if model.on_mill else (hand, ("C", tr("SKIM CUT"), skim.begin))
 
 
-WIDE, ASKED, WORDS = 0.46, 12.0, 2.6  # share of the pad, height of the question and of a line, units
+# Width fraction of the pad; height of the entry line and of a text line in units.
+WIDE, ASKED, WORDS = 0.46, 12.0, 2.6
 
 
 class JogPage(HeldKeysPage):
-    """What is held is renewed from ``refresh``: a screen that stands still moves nothing for longer."""
+    """The Jog page. ``refresh`` renews the jog, so that a stall of the screen ends the motion."""
 
     NAME = page_table.JOG
     STARTS = True
@@ -243,19 +247,19 @@ class JogPage(HeldKeysPage):
         self.host.go(page_table.SECCMP)
 
     def labels(self) -> tuple[str, ...]:
-        """A mill touches off on the pages of tools and presets."""
+        """Return the key labels. A mill touches off on the pages of tools and presets."""
         labels = super().labels()
         return (*labels[:3], "", "3D-ROT", "", *labels[6:]) if self.model.on_mill else labels
 
     def other_key(self, event: QKeyEvent) -> bool:
-        """Home asks, and again homes."""
+        """Handle the Home key, which asks which axes to home."""
         if event.key() != Qt.Key.Key_Home or event.isAutoRepeat() or event.modifiers() & CHORDS:
             return False
         self.model.home_key()
         return True
 
     def key_actions(self) -> KeyActions:
-        """Steps, speeds, readout, touching off, undo."""
+        """Return the key actions: steps, speeds, readout, touch-off and undo."""
         model = self.model
         common: KeyActions = {
             "F2": model.next_step,
@@ -270,7 +274,7 @@ class JogPage(HeldKeysPage):
         return {**common, **touch, "F4": model.tool.undo}
 
     def barred(self) -> frozenset[str]:
-        """Return the keys of touching off, of undo and of the tilted plane while they would be refused."""
+        """Return the disabled keys of touch-off, undo and tilted plane."""
         model, snapshot = self.model, self.desk.snapshot()
         if model.on_mill:
             return frozenset() if model.tilt.turns(snapshot) else frozenset({"F5"})
@@ -282,22 +286,22 @@ class JogPage(HeldKeysPage):
         return frozenset(key for key, why in found.items() if why)
 
     def has_field(self) -> bool:
-        """A question about the tool, or the spindle speed."""
+        """Return whether a value of the tool or the spindle speed is being entered."""
         return self.model.asked
 
-    # --- as every page -------------------------------------------------------------------------------
+    # --- page ----------------------------------------------------------------------------------------
 
     def prompt(self) -> str:
-        """What the model has to say on the prompt line."""
+        """Return the prompt of the model."""
         return self.model.prompt(self.desk.snapshot())
 
     def leave(self) -> bool:
-        """Nothing stays held or half entered; not while a line is under way."""
+        """Release all keys, and return whether the page can close. It cannot while a line runs."""
         self.pad.let_go()
         return self.model.leave()
 
     def refresh(self, snapshot: Snapshot, _view: MachineStatus, _loaded: Loaded) -> None:
-        """Renew what is held, show what is so."""
+        """Update the model, which renews the jog, and show its state."""
         if not self._has_keyboard():
             self.let_go_if_held()
         self.model.look(snapshot)
@@ -319,7 +323,7 @@ class JogPage(HeldKeysPage):
         self._show_question(snapshot)
 
     def _show_question(self, snapshot: Snapshot) -> None:
-        """What is asked; while nothing is, what else can be opened here."""
+        """Show the open question, or the keys that are available without a question."""
         tool, hand = self.model.tool, self.model.hand
         if hand.asked:
             foot = tr("Enter: accept   Esc: cancel")
@@ -337,7 +341,7 @@ class JogPage(HeldKeysPage):
         self.strip.show_strip(snapshot, tool.history.last_in_words, foot)
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """Pad at the left; tool over question at the right."""
+        """Lay out the pad at the left, and the tool above the entry line at the right."""
         u, gap = self.look.u, max(4, round(0.7 * self.look.u))
         left = round(WIDE * self.width())
         for part in (self.pad, self.numbers):

@@ -1,7 +1,8 @@
-"""Tools touched off by a skim cut of their own (cut, retract, stop, measure, type), or at the tool setter.
+"""Touch-off of a tool by a skim cut (cut, retract, stop, measure, enter) or at the tool setter.
 
-Of a diameter X is kept from the cut to the answer, of a face Z: the slide goes away along the other axis.
-What counts is where the slide stood in the cut; has it moved since, that may be the place of another cut.
+After the cut of a diameter, X must not move until the size is entered, and after a face Z. The tool retracts
+along the other axis. The offset is calculated from the axis position during the cut. If this axis moves after
+the cut, the position may belong to another cut and is discarded.
 """
 
 from __future__ import annotations
@@ -25,52 +26,55 @@ from core.message import Message
 from core.ports import PROBE
 from core.store.store_rows import ToolRow
 
-LEAST_CUT = 0.25  # mm along the other axis with the spindle turning: less is no cut that can be measured
+# Minimum cut in mm along the other axis with the spindle turning. A shorter cut cannot be measured.
+LEAST_CUT = 0.25
 
 
 class CutStep(Enum):
-    """What is to be done next."""
+    """The next step of a skim cut."""
 
     OFF = auto()
-    AXIS = auto()  # a diameter or a face?
+    AXIS = auto()  # Choose a diameter or a face.
     CUT = auto()
-    AWAY = auto()  # retract along the other axis, stop the spindle
-    MEASURE = auto()  # the size is being typed
+    AWAY = auto()  # Retract along the other axis and stop the spindle.
+    MEASURE = auto()  # The size is being entered.
 
 
 @dataclass(slots=True)
 class SkimCut:
-    """Nothing is changed before the size is entered; Esc gives it up at any time."""
+    """A touch-off by a skim cut. Offsets change only when the size is entered. Esc cancels."""
 
     desk: Desk
     tool: ToolSetting
     step: CutStep = CutStep.OFF
-    what: str = ""  # TOUCH_X or TOUCH_Z
-    at: float = 0.0  # where the slide stood in the cut, machine mm, by its encoder
-    sent: float = 0.0  # and where it was sent: the cut pushes it away, and it springs back
-    way: float = 0.0  # mm gone along the other axis with the spindle turning, since this one stood still
-    spoilt: str = ""  # why the last cut counts no more
-    _stands: tuple[float, float] | None = field(default=None)  # where both slides stood when that began
+    what: str = ""  # =
+    at: float = 0.0  # Machine position of the axis during the cut in mm, by its encoder.
+    # Commanded position during the cut in mm. The cutting force deflects the axis, which then springs back.
+    sent: float = 0.0
+    way: float = 0.0  # Distance in mm along the other axis with the spindle turning, since this axis moved.
+    spoilt: str = ""  # Why the last cut is no longer valid.
+    # Positions of both axes at the beginning of this distance.
+    _stands: tuple[float, float] | None = field(default=None)
 
     @property
     def open(self) -> bool:
-        """Whether one is under way."""
+        """Whether a skim cut is in progress."""
         return self.step is not CutStep.OFF
 
     @property
     def axis(self) -> str:
-        """The axis that is kept."""
+        """The axis that is measured and must not move after the cut."""
         return TOUCHES[self.what].upper() if self.what else ""
 
     @property
     def other(self) -> str:
-        """The axis along which the tool cuts and goes away."""
+        """The axis along which the tool cuts and retracts."""
         return "Z" if self.axis == "X" else "X"
 
     # --- keys ----------------------------------------------------------------------------------------
 
     def begin(self) -> None:
-        """Ask for the axis, or say why no tool can be set now."""
+        """Ask for the axis, or show why no tool can be set now."""
         if self.open:
             return
         why = self.tool.barred(TOUCH_X, self.desk.snapshot())
@@ -81,7 +85,7 @@ class SkimCut:
         self.step = CutStep.AXIS
 
     def choose(self, what: str) -> None:
-        """A diameter is to be cut, or a face."""
+        """Select a diameter or a face as the cut."""
         why = self.tool.barred(what, self.desk.snapshot())
         if why:
             self.desk.say(why)
@@ -91,7 +95,7 @@ class SkimCut:
         self._anew(self.desk.snapshot())
 
     def made(self) -> None:
-        """The cut is made: from here on the place of the slide counts."""
+        """Finish the cut, and store the position of the axis."""
         snapshot = self.desk.snapshot()
         why = self._no_cut(snapshot)
         if why:
@@ -102,7 +106,7 @@ class SkimCut:
         self.sent, self.step, self.spoilt = self._place(snapshot), CutStep.AWAY, ""
 
     def _no_cut(self, snapshot: Snapshot) -> str:
-        """Why there is no cut to be measured yet; empty when there is."""
+        """Return why there is no cut to measure yet. Empty if there is one."""
         if snapshot.state is not State.IDLE:
             return tr("AXES ARE STILL MOVING. WAIT UNTIL THEY STOP")
         if self.way >= LEAST_CUT:
@@ -118,7 +122,7 @@ class SkimCut:
         )
 
     def typed(self, key: str) -> bool:
-        """A key; False leaves it to the page."""
+        """Handle a key. Return False to leave the key to the page."""
         if self.step is CutStep.AXIS and key.lower() in {"x", "z"}:
             self.choose(TOUCH_X if key.lower() == "x" else TOUCH_Z)
         elif self.step is CutStep.CUT and key == "Enter":
@@ -130,7 +134,7 @@ class SkimCut:
         return True
 
     def escape(self) -> bool:
-        """Esc gives it up; False when none is under way."""
+        """Handle Esc: cancel the skim cut. Return False if none is in progress."""
         was = self.open
         if was:
             self.drop()
@@ -138,7 +142,7 @@ class SkimCut:
         return was
 
     def drop(self) -> None:
-        """It is over, and has changed nothing."""
+        """End the skim cut without a change of offsets."""
         if self.step is CutStep.MEASURE:
             self.tool.close()
         self.step, self.what, self.spoilt = CutStep.OFF, "", ""
@@ -147,7 +151,7 @@ class SkimCut:
     # --- every frame ---------------------------------------------------------------------------------
 
     def look(self, snapshot: Snapshot) -> None:
-        """Follow slides and spindle."""
+        """Follow the axes and the spindle, and advance the skim cut; called once a frame."""
         if not self.open or self.step is CutStep.AXIS:
             return
         why = self._spoilt(snapshot)
@@ -160,14 +164,14 @@ class SkimCut:
             self._moved(snapshot)
         elif self.step is CutStep.AWAY:
             self._measure(snapshot)
-        elif not self.tool.asked:  # kept, or left as it was
+        elif not self.tool.asked:  # The value was saved or canceled.
             self.drop()
         elif self._turns(snapshot):
             self.tool.close()
             self.step = CutStep.AWAY
 
     def _spoilt(self, snapshot: Snapshot) -> str:
-        """Why it cannot go on; empty when it may."""
+        """Return why the skim cut cannot continue. Empty if it can."""
         if snapshot.state in {State.ESTOP, State.FAULT, State.DISABLED, State.HOME}:
             return tr("MACHINE STOPPED. SKIM CUT CANCELED. NOTHING CHANGED")
         if not snapshot.homed[snapshot.axes.index(self.axis)]:
@@ -175,7 +179,7 @@ class SkimCut:
         return ""
 
     def _follow(self, snapshot: Snapshot) -> None:
-        """How far the tool has gone along the other axis since this one moved last, the spindle turning."""
+        """Measure the distance along the other axis with the spindle turning, since this axis moved last."""
         if self._stands is None or abs(self._place(snapshot) - self._stands[0]) > MOVED:
             self._anew(snapshot)
         elif self._turns(snapshot):
@@ -187,7 +191,7 @@ class SkimCut:
         self.way, self._stands = 0.0, (self._place(snapshot), self._beside(snapshot))
 
     def _moved(self, snapshot: Snapshot) -> None:
-        """The place that was kept may be that of another cut now."""
+        """Discard the stored position, because the axis moved after the cut."""
         mode = self.tool.history.mode
         away = self._place(snapshot) - self.sent
         shown = length(2 * away if self.axis == "X" and mode.diameter else away, mode.metric)
@@ -199,7 +203,7 @@ class SkimCut:
         self.spoilt = tr(Message(words, axis=self.axis, away=shown))
 
     def _measure(self, snapshot: Snapshot) -> None:
-        """The spindle stands and so do the slides: the size may be taken."""
+        """Ask for the size when the spindle and the axes are at rest."""
         if snapshot.state is State.IDLE and not self._turns(snapshot):
             self.step = CutStep.MEASURE
             self.tool.measured(self.what, self.at)
@@ -214,10 +218,10 @@ class SkimCut:
     def _beside(self, snapshot: Snapshot) -> float:
         return snapshot.demand[snapshot.axes.index(self.other)]
 
-    # --- what is shown -------------------------------------------------------------------------------
+    # --- display -------------------------------------------------------------------------------------
 
     def words(self, snapshot: Snapshot) -> str:
-        """What is to be done next, and how."""
+        """Return the prompt for the next step."""
         if self.step is CutStep.AXIS:
             return tr("SKIM CUT. X: DIAMETER   Z: FACE   ESC: CANCEL")
         if self.step is CutStep.AWAY:
@@ -237,9 +241,9 @@ class SkimCut:
         return tr(Message(words, axis=self.axis, other=self.other))
 
 
-Way = tuple[str, int]  # axis and sign
+Way = tuple[str, int]  # Axis and sign.
 ALL: tuple[Way, ...] = (("X", -1), ("X", 1), ("Z", -1), ("Z", 1))
-CENTRE = 9  # the offset is that of the nose centre
+CENTRE = 9  # The offset refers to the nose center.
 _WAYS: dict[int, tuple[Way, ...]] = {
     1: (("X", 1), ("Z", 1)),
     2: (("X", 1), ("Z", -1)),
@@ -254,25 +258,31 @@ _WAYS: dict[int, tuple[Way, ...]] = {
 
 
 def ways_of(row: ToolRow | None) -> tuple[Way, ...]:
-    """Which ways this tool can be touched off; all of one that was never set, none of one without a tip."""
+    """Return the directions in which this tool can be touched off.
+
+    A tool that was never set allows all directions. A tool without a tip quadrant allows none.
+    """
     return ALL if row is None else _WAYS.get(row.quadrant, ())
 
 
 def stands_at(place: float, way: Way, model: SetterModel, row: ToolRow | None) -> float:
-    """Where the slide stands when this tip is on part zero, mm: it touched at ``place``."""
+    """Return the machine position in mm at which this tip is on part zero. The tip touched at ``place``."""
     axis, sign = way
     before = sign * row.nose_radius if row is not None and row.quadrant == CENTRE else 0.0
     return place - (model.face(axis, sign) - before)
 
 
 def way_word(way: Way) -> str:
-    """X−"""
+    """Return a direction as text, for example X−."""
     return f"{way[0]}{'+' if way[1] > 0 else '−'}"
 
 
 @dataclass(slots=True)
 class SetterTouch:
-    """``armed``: the next key that is held touches off. ``directions`` say which key that is."""
+    """Touch-off at the tool setter.
+
+    ``armed`` means that the next direction key starts a touch-off. ``directions`` contain the keys.
+    """
 
     desk: Desk
     machine: Machine
@@ -281,15 +291,15 @@ class SetterTouch:
     directions: tuple[JogDirection, ...]
     armed: bool = False
     _presses: int = 0
-    _seen: int | None = None  # number of the last touch-off that was looked at
+    _seen: int | None = None  # Number of the last touch-off that was processed.
 
     @property
     def model(self) -> SetterModel | None:
-        """The tool setter, where this machine has one with its input."""
+        """The tool setter from the machine file. None if the machine has no tool setter with an input."""
         return self.machine.hardware.table(SetterModel) if PROBE in self.machine.inputs else None
 
     def key(self) -> None:
-        """P: touch the chosen tool off, or no more."""
+        """Handle P: arm or cancel the touch-off of the selected tool."""
         if self.armed:
             self.drop()
         elif why := self._barred():
@@ -299,7 +309,7 @@ class SetterTouch:
             self.desk.clear()
 
     def drop(self) -> None:
-        """No key touches anything off any more."""
+        """Cancel the touch-off."""
         self.armed = False
 
     def _barred(self) -> str:
@@ -315,7 +325,7 @@ class SetterTouch:
         return ""
 
     def command(self, axis: str, sign: int, button: str) -> Command | str:
-        """What a press of this direction does: a touch-off, or why not."""
+        """Return the touch-off command for this direction, or the reason as text if it is not possible."""
         ways = ways_of(self.tool.row)
         if (axis, sign) not in ways:
             text = tr("TOUCH OFF T{number} ONLY IN DIRECTION {ways}")
@@ -325,7 +335,7 @@ class SetterTouch:
         return Touch(axis, sign, self.lease, self._presses, button)
 
     def look(self, snapshot: Snapshot) -> None:
-        """Once a frame: what a touch-off has found is asked to be kept, once the slide rests."""
+        """Ask whether to save the result of a touch-off, when the axis is at rest; called once a frame."""
         if self._seen is not None and snapshot.state is State.JOG:
             return
         touched = snapshot.touched
@@ -357,7 +367,7 @@ class SetterTouch:
         self.tool.found(TOUCH_X if touched.axis == "X" else TOUCH_Z, value, cause)
 
     def prompt(self, snapshot: Snapshot) -> str:
-        """What is done now, or which keys may be held; empty when nothing is touched off."""
+        """Return the prompt for the touch-off. Empty if no touch-off is armed."""
         if not self.armed:
             return ""
         words = {
@@ -381,7 +391,7 @@ class SetterTouch:
 
 @dataclass(slots=True)
 class HeldTouch(HeldJog):
-    """A held jog, and where ``setter`` is armed a held touch-off."""
+    """A continuous jog, or a touch-off while a key is held down if ``setter`` is armed."""
 
     setter: SetterTouch | None = None
     _asked: Command | None = field(default=None)

@@ -1,4 +1,4 @@
-"""3D-ROT: jog along the axes of the tilted plane in force, or along a tool that leans with its head."""
+"""Jog along the axes of the active tilted plane, or along the tool axis of a tilted head (3D-ROT)."""
 
 from __future__ import annotations
 
@@ -14,20 +14,23 @@ from core.interpreter.shared.working_plane import PlaneSystem
 from core.message import Message
 
 SLIDES = "XYZ"
-_ROTARY = "ABC"  # of Q120, Q121, Q122
-_THERE = 0.01  # degrees from the plane's angles that a rotary axis may stand
-_UPRIGHT = 1e-6  # of a unit vector: a tool that leans less stands upright
+_ROTARY = "ABC"  # Axes of Q120, Q121 and Q122.
+_THERE = 0.01  # Tolerance in degrees between a rotary axis and its plane angle.
+_UPRIGHT = 1e-6  # Tolerance of a unit vector within which a tool counts as upright.
 
 
 @dataclass(frozen=True, slots=True)
 class JogFrame:
-    """X Y Z of the keys as directions in the machine, the columns of ``axes``; ``words`` say whose."""
+    """The jog directions X, Y and Z in machine coordinates, as the columns of ``axes``.
+
+    ``words`` is the name of the frame.
+    """
 
     axes: Matrix
     words: str
 
     def direction(self, axis: str) -> Direction | None:
-        """Of a slide; a rotary axis turns as ever."""
+        """Return the machine direction of a linear axis. None for a rotary axis, which jogs as usual."""
         if axis not in SLIDES:
             return None
         x, y, z = (row[SLIDES.index(axis)] for row in self.axes)
@@ -35,9 +38,10 @@ class JogFrame:
 
 
 def jog_frame(machine: Kinematics | None, snapshot: Snapshot) -> JogFrame | str:
-    """The plane in force, once the rotary axes stand where it asks; without one a tool whose head leans.
+    """Return the frame for jogging, or the reason as text if there is no such frame.
 
-    Else why there is none.
+    The frame is the active tilted plane, if the rotary axes are at its angles. Without a plane, it is the
+    frame of a tilted head.
     """
     swivel = snapshot.swivel
     angles = dict(zip(snapshot.axes, snapshot.actual, strict=True))
@@ -57,27 +61,27 @@ def jog_frame(machine: Kinematics | None, snapshot: Snapshot) -> JogFrame | str:
 
 
 def _off(system: PlaneSystem, axis: Rotary, angle: float) -> bool:
-    """Whether a rotary axis stands elsewhere than the plane asks."""
+    """Return whether a rotary axis is not at the angle of the plane."""
     target = system.targets[_ROTARY.index(axis.name)]
     return abs(axis.travel(target, system.kinematics.shown(axis, angle))) > _THERE
 
 
 @dataclass(slots=True)
 class TiltedJog:
-    """Whether the keys move along a tilted frame, and which. Off whenever nothing is tilted any more.
+    """Jog in a tilted frame. It is switched off when the frame is lost.
 
-    ``let_go`` ends what is held, ``say`` tells why.
+    ``let_go`` ends the jog, and ``say`` shows the reason.
     """
 
     machine: Kinematics | None
     let_go: Callable[[str], None]
     say: Callable[[str], None]
     on: bool = False
-    frame: JogFrame | None = None  # that there is, on or off
-    why: str = ""  # there is none
+    frame: JogFrame | None = None  # The available frame, also while 3D-ROT is off.
+    why: str = ""  # Why no frame is available.
 
     def key(self, barred: str = "") -> None:
-        """On, or off again; refused where nothing is tilted."""
+        """Toggle 3D-ROT. Show the reason if this is not possible."""
         self.let_go("")
         if not self.on and self.frame is None:
             self.say(self.why)
@@ -88,15 +92,15 @@ class TiltedJog:
             self.say("")
 
     def turns(self, snapshot: Snapshot) -> bool:
-        """Return whether the key does something now."""
+        """Return whether the key has a function now."""
         return self.on or (self.frame is not None and snapshot.state in BY_HAND)
 
     def off(self) -> None:
-        """The page goes: the arrows move along the machine's axes when it comes back."""
+        """Switch 3D-ROT off, because the page closes."""
         self.on = False
 
     def look(self, snapshot: Snapshot) -> None:
-        """Once a frame."""
+        """Update the frame; called once a frame of the screen."""
         found = jog_frame(self.machine, snapshot)
         self.frame, self.why = (None, found) if isinstance(found, str) else (found, "")
         if self.on and self.frame is None:
@@ -106,5 +110,5 @@ class TiltedJog:
             self.say(why)
 
     def along(self, axis: str) -> Direction | None:
-        """The direction of this axis in the machine; None: the machine's own axis moves."""
+        """Return the machine direction of a jog of this axis, or None for the machine axis itself."""
         return self.frame.direction(axis) if self.on and self.frame is not None else None

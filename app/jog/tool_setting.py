@@ -1,4 +1,4 @@
-"""Tool setting: a tool is chosen, touched off where its tip stood, and its other fields are asked."""
+"""Tool setting on the Jog page: selection of a tool, touch-off, and entry of its other fields."""
 
 from __future__ import annotations
 
@@ -31,11 +31,11 @@ from core.tool_edges import edge_name, edge_number
 
 TOUCH_X, TOUCH_Z = "touch x", "touch z"
 TOUCHES = {TOUCH_X: "x", TOUCH_Z: "z"}
-MOVED = 0.005  # mm: more than this since the question was opened is no longer where the tip touched
+MOVED = 0.005  # Tolerance in mm. After a larger move, the axis is no longer where the tip touched.
 
 
 def touch_refusal(what: str, snapshot: Snapshot) -> str:
-    """Why nothing is touched off now; empty when it may be."""
+    """Return why an axis cannot be touched off now. Empty if it can."""
     axis = TOUCHES[what].upper()
     if not snapshot.homed[snapshot.axes.index(axis)]:
         return tr(Message("{axis} IS NOT HOMED AND ITS POSITION IS UNKNOWN. HOME IT FIRST", axis=axis))
@@ -45,46 +45,46 @@ def touch_refusal(what: str, snapshot: Snapshot) -> str:
 
 
 def slide(what: str, snapshot: Snapshot) -> float:
-    """Machine position of the touched axis, mm."""
+    """Return the machine position of the touched axis in mm."""
     return snapshot.tip["xz".index(TOUCHES[what])]
 
 
 @dataclass(slots=True)
 class TouchOff:
-    """One touch of one axis; ``at`` is the machine position when the question was opened, mm.
+    """One touch-off of one axis. ``at`` is the machine position at the touch in mm.
 
-    ``found`` is where the tip stands on part zero as the tool setter has found it, machine mm, and ``cause``
-    says how: then there is nothing to type, and the slide may have gone on.
+    ``found`` is the machine position in mm with the tip on part zero, as the tool setter measured it.
+    ``cause`` describes the measurement. Such a value needs no entry, and the axis may move afterwards.
     """
 
     what: str = ""
     at: float = 0.0
-    alone: bool = False  # of the master: the others stay
+    alone: bool = False  # Only this tool changes, although it is the master.
     found: float | None = None
     cause: str = ""
-    by_cut: bool = False  # what is typed was measured on a cut of the tool itself
+    by_cut: bool = False  # The entered size was measured on a skim cut.
 
     @property
     def name(self) -> str:
-        """The field of a tool that it sets."""
+        """The field of the tool that the touch-off sets."""
         return TOUCHES[self.what]
 
     def open(self, what: str, snapshot: Snapshot) -> None:
-        """The tip touches now: remember where the slide stands."""
+        """Store the present position of the axis as the touch."""
         self.what, self.at, self.alone = what, slide(what, snapshot), False
         self.found, self.cause, self.by_cut = None, "", False
 
     def cut(self, what: str, at: float) -> None:
-        """The tip has cut what is measured with the slide there."""
+        """Store the machine position of a skim cut in mm."""
         self.what, self.at, self.alone = what, at, False
         self.found, self.cause, self.by_cut = None, "", True
 
     def set(self, what: str, found: float, cause: str) -> None:
-        """The tool setter has found it. It stands at the machine: the master is set for itself."""
+        """Store a measurement of the tool setter. Other tools do not follow a master in this case."""
         self.what, self.found, self.cause, self.alone, self.by_cut = what, found, cause, True, False
 
     def place(self, text: str, mode: Mode) -> float:
-        """Where the tip stands on part zero, machine mm and X a radius. Raises EntryError."""
+        """Return the machine position in mm with the tip on part zero, X as a radius. Raises EntryError."""
         if self.found is not None:
             return self._within(self.found)
         typed = value_of(text) * (0.5 if self.what == TOUCH_X else 1.0)
@@ -98,9 +98,9 @@ class TouchOff:
         return place
 
     def save(self, number: int, text: str, history: OffsetHistory, new: NewTool) -> str:
-        """Save what was touched; the answer is why not. X and Z of a new tool are saved together.
+        """Save the touch-off. Return why it was rejected, or an empty text.
 
-        Raises EntryError for a text that is no value.
+        X and Z of a new tool are saved together. Raises EntryError for an invalid entry.
         """
         place, book, ask = self.place(text, history.mode), history.book, OffsetQuestions(history)
         if number in book.tools:
@@ -118,19 +118,22 @@ class TouchOff:
         return why
 
     def touch(self, place: float) -> Touch:
-        """Return the touch of this axis, with part zero at ``place``, machine mm."""
+        """Return the touch of this axis.
+
+        ``place`` is the machine position in mm with the tip on part zero.
+        """
         return Touch(place, None, self.alone) if self.name == "x" else Touch(None, place, self.alone)
 
     def _tip(self, place: float) -> float | None:
-        """Return X of the tip from part zero when it touched, mm; None if a touch did not measure X."""
+        """Return X of the tip relative to part zero at the touch in mm. None if X was not touched."""
         return self.at - place if self.name == "x" and self.found is None else None
 
     def moved(self, snapshot: Snapshot) -> bool:
-        """Whether the slide has left the place of the touch. Of a cut the skim cut itself knows."""
+        """Return whether the axis has moved since the touch. A skim cut checks this itself."""
         return self.found is None and not self.by_cut and abs(slide(self.what, snapshot) - self.at) > MOVED
 
     def _reason(self, text: str, mode: Mode) -> str:
-        """What the history says of it."""
+        """Return the text for the history."""
         if self.cause:
             return f"{self.cause}{tr(', this tool only') if self.alone else ''}"
         unit = "MM " if mode.metric else ""
@@ -141,14 +144,14 @@ class TouchOff:
         return f"{unit}{what} {text.strip()}{tr(', this tool only') if self.alone else ''}"
 
 
-TOOL = "tool"  # asked: its number
+TOOL = "tool"  # The question for the tool number.
 Pair = tuple[float, float]
-_AFTER = {"wear_x": "wear_z"}  # what is asked after an answer
+_AFTER = {"wear_x": "wear_z"}  # The question that follows an answer.
 
 
 @dataclass(slots=True)
 class ToolSetting:
-    """What is asked of the chosen tool, and what is typed."""
+    """The selected tool with the open question and the entered text."""
 
     desk: Desk
     book: OffsetBook
@@ -156,35 +159,36 @@ class ToolSetting:
     fields: ToolFields = field(init=False)
     touching: TouchOff = field(default_factory=TouchOff)
     number: int = 0
-    asked: str = ""  # a touch, "tool", a field of a tool, or nothing
+    asked: str = ""  # The open question: a touch, "tool", a field, or empty.
     text: str = ""
-    _active: int = -1  # the tool that was loaded at the last look
+    _active: int = -1  # The active tool at the last update.
 
     def __post_init__(self) -> None:
         self.history = OffsetHistory(self.desk, Kind.TOOL, keys="F8, F5")
         self.fields = ToolFields(self.history)
 
-    # --- what is shown -------------------------------------------------------------------------------
+    # --- display -------------------------------------------------------------------------------------
 
     @property
     def row(self) -> ToolRow | None:
-        """The chosen tool; None when it was never set."""
+        """The offset of the selected tool. None if the tool was never set."""
         return self.book.tools.get(self.number)
 
     @property
     def masters(self) -> bool:
-        """Whether the master is being touched."""
+        """Whether the master tool is being touched off."""
         return self.asked in TOUCHES and self.row is not None and self.row.master
 
     @property
     def by_setter(self) -> bool:
-        """Whether it is asked if what the tool setter has found is to be kept."""
+        """Whether the question is about a measurement of the tool setter."""
         return self.asked in TOUCHES and self.touching.found is not None
 
     def found(self, what: str, value: float, cause: str) -> None:
-        """Ask whether to keep what the tool setter has found, machine mm: the tip's place on part zero.
+        """Ask whether to save a measurement of the tool setter.
 
-        A suspicious value of a tool that is set is asked once, as every suspicious value.
+        ``value`` is the machine position in mm with the tip on part zero. A suspicious value is asked only
+        once, by the question for suspicious changes.
         """
         self.asked, self.text = what, ""
         self.touching.set(what, value, cause)
@@ -194,20 +198,23 @@ class ToolSetting:
             self._enter()
 
     def measured(self, what: str, at: float) -> None:
-        """A cut that was made with the slide there, machine mm, is to be measured: ask for its size."""
+        """Ask for the size of a skim cut. ``at`` is the machine position during the cut in mm."""
         self.desk.clear()
         self.asked, self.text = what, ""
         self.touching.cut(what, at)
 
     @property
     def moved(self) -> float | None:
-        """How far what was found is from what the tool had, with its wear, mm; None: it had nothing."""
+        """The measured position minus the present offset with wear in mm.
+
+        None without a measurement of the tool setter or without a present offset.
+        """
         if not self.by_setter or self.row is None or self.touching.found is None:
             return None
         return self.touching.found - self.row.offset["xz".index(self.touching.name)]
 
     def question(self) -> str:
-        """What is asked now; empty when nothing is."""
+        """Return the open question. Empty without a question."""
         name = edge_name(self.number)
         if self.asked == TOOL:
             return tr("TOOL NUMBER?")
@@ -226,7 +233,7 @@ class ToolSetting:
         return f"{name}  {word(self.asked)}?" if self.asked else ""
 
     def note(self) -> str:
-        """What has to be known before the answer is entered."""
+        """Return a note that the operator must read before answering. Empty without a note."""
         number, new = self.number, self.fields.new
         if self.masters and self.touching.alone:
             return tr(
@@ -249,7 +256,7 @@ class ToolSetting:
         return ""
 
     def old_to_new(self) -> str:
-        """What the answer would make of the tool, or else the last change."""
+        """Return the change that the entry would make, or else the last change."""
         if not self.asked or self.asked == TOOL:
             return self.history.last_in_words
         mode, name, row = self.history.mode, TOUCHES.get(self.asked, self.asked), self.row
@@ -261,24 +268,24 @@ class ToolSetting:
             apart = self._apart(name, mode)
             return f"{title}  {was}  →  {shown_value(name, value, mode)}{apart}{ends}"
         except EntryError:
-            return f"{title}  {was}  →  …"  # half a sum is no mistake yet
+            return f"{title}  {was}  →  …"  # An incomplete expression is not an error yet.
 
     def _apart(self, name: str, mode: Mode) -> str:
-        """How far what was found is from what it was, in the figures that are shown."""
+        """Return the difference between the measured and the present offset as text."""
         if self.moved is None:
             return ""
         shown = 2 * self.moved if name == "x" and mode.diameter else self.moved
         return f"   {tr('DIFFERENCE')} {signed(shown, mode.metric)}"
 
     def tip(self, snapshot: Snapshot) -> Pair | None:
-        """Where the tip of the chosen tool stands from part zero, mm; None when it was never set."""
+        """Return the position of the tip relative to part zero in mm. None if the tool was never set."""
         if self.row is None:
             return None
         x, z = self.row.offset
         return snapshot.tip[0] - x, snapshot.tip[1] - z
 
     def from_master(self) -> Pair | None:
-        """How far this tip stands from that of the master, mm; None without two such tools."""
+        """Return the offset of this tool minus the master's in mm. None unless both are set."""
         master = self.book.tools.get(self.book.master)
         if self.row is None or master is None:
             return None
@@ -288,7 +295,10 @@ class ToolSetting:
     # --- every frame ---------------------------------------------------------------------------------
 
     def look(self, snapshot: Snapshot) -> None:
-        """Follow the loaded tool until another is chosen; an entry in another unit is given up."""
+        """Select the active tool when it changes; called once a frame.
+
+        A change of the unit discards the entry.
+        """
         before = self.history.mode
         self.history.look(snapshot)
         if self.history.mode != before and self.asked:
@@ -307,7 +317,7 @@ class ToolSetting:
     # --- questions -----------------------------------------------------------------------------------
 
     def ask(self, what: str) -> None:
-        """Open a question; says why not."""
+        """Open a question, or show why this is not possible."""
         snapshot = self.desk.snapshot()
         why = "" if what == TOOL else self.barred(what, snapshot)
         if why:
@@ -321,7 +331,7 @@ class ToolSetting:
             self.touching.open(what, snapshot)
 
     def barred(self, what: str, snapshot: Snapshot) -> str:
-        """Why this is not asked of the tool now; empty when it may be."""
+        """Return why this question cannot be opened now. Empty if it can."""
         why = self.book.locked or refusal(snapshot, correction=what in CORRECTIONS[Kind.TOOL])
         if why or not self.number:
             return why or _which_tool()
@@ -334,20 +344,20 @@ class ToolSetting:
         return ""
 
     def close(self) -> None:
-        """Nothing is asked any more."""
+        """Close the question."""
         self.asked, self.text = "", ""
 
     def forget(self) -> None:
-        """Neither is anything half touched."""
+        """Close the question, and discard an incomplete new tool."""
         self.close()
         self.fields.new.drop()
 
     def takes(self, key: str) -> bool:
-        """Whether a character goes to the entry."""
+        """Return whether a character can be entered."""
         return self.asked == "remark" or (bool(self.asked) and not self.by_setter and key in CHARACTERS)
 
     def typed(self, key: str) -> bool:
-        """A key while something is asked; False when it means nothing in an entry."""
+        """Handle a key while a question is open. Return False if the key has no meaning in an entry."""
         if key == "Enter":
             self._enter()
         elif key in {"Back", "Delete"} or (len(key) == 1 and self.takes(key)):
@@ -368,7 +378,7 @@ class ToolSetting:
             self.desk.say(why)
 
     def _answer(self) -> str:
-        """Do what was answered; the answer is why not. Raises EntryError for a text that is no value."""
+        """Process the answer. Return why it was rejected, or an empty text. Raises EntryError."""
         if self.asked == TOOL:
             return self._tool()
         snapshot = self.desk.snapshot()
@@ -403,23 +413,23 @@ class ToolSetting:
         return why
 
     def master(self) -> None:
-        """The chosen tool becomes the master; being it already, none is."""
+        """Ask whether the selected tool becomes the master, or whether no tool is if it is the master now."""
         why = self.barred("master", self.desk.snapshot())
         self.close()
         self.history.answer(why or self.fields.master(self.number))
 
     def undo(self) -> None:
-        """Ask whether the last change of the chosen tool is taken back."""
+        """Ask whether the last change of the selected tool is undone."""
         self.close()
         self.history.answer(self.undo_barred() or OffsetQuestions(self.history).undo(Kind.TOOL, self.number))
 
     def undo_barred(self) -> str:
-        """Return why the last change of the chosen tool is not taken back now; empty when it may be."""
+        """Return why the last change of the selected tool cannot be undone now. Empty if it can."""
         why = self.book.locked or refusal(self.desk.snapshot(), correction=False)
         return why or ("" if self.number else _which_tool())
 
     def escape(self) -> bool:
-        """Close the question, forget half a tool; False when there was nothing."""
+        """Close the question, and discard an incomplete new tool. Return False if there was neither."""
         was = bool(self.asked or self.fields.new.number)
         if was and self.number:
             self.desk.say(tr(Message("T{number} NOT CHANGED", number=edge_number(self.number))))
@@ -432,7 +442,7 @@ def _which_tool() -> str:
 
 
 def _wear_that_ends(row: ToolRow | None, name: str, mode: Mode) -> str:
-    """The wear of the touched axis is in the new geometry and begins again at nought."""
+    """Return the text of the wear that a touch-off resets to zero, because the new geometry includes it."""
     if row is None or not getattr(row, name):
         return ""
     return (

@@ -1,4 +1,4 @@
-"""The right side of the Jog page: tool setting on a lathe; tool, preset, tip and 3D-ROT on a mill."""
+"""The right side of the Jog page: tool setting on a lathe, or tool, preset and 3D-ROT on a mill."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from core.executor.snapshot import Snapshot
 from core.message import Message, join_messages
 from core.tool_edges import edge_name
 
-# Field, and the key that asks for it.
+# Field, and the key that asks for its value.
 FIELDS = (
     ("x", "X"),
     ("z", "Z"),
@@ -36,7 +36,7 @@ _ASKS = {"x": TOUCH_X, "z": TOUCH_Z}
 
 
 class ToolPanel(Panel):
-    """Draws the model; every field is a target for a finger."""
+    """The panel of the tool setting. Every field is a touch target."""
 
     _shown: Shown[object] = Shown(None)
     _tip: Shown[tuple[float, float] | None] = Shown(None)
@@ -47,7 +47,7 @@ class ToolPanel(Panel):
         self._model = model
 
     def show_tool(self, snapshot: Snapshot) -> None:
-        """The tool of now, and where its tip stands."""
+        """Show the selected tool and the position of its tip."""
         tool = self._model.tool
         self._mode = tool.history.mode
         self._tip = tool.tip(snapshot)
@@ -55,12 +55,12 @@ class ToolPanel(Panel):
 
     @property
     def shown_mode(self) -> Mode:
-        """The unit of the readout above: a position is never shown in two units on one page."""
+        """The unit of the position display, so that the page never shows positions in two units."""
         return Mode(self._model.desk.settings.units.metric(self._mode.metric), self._mode.diameter)
 
     @property
     def tip_words(self) -> str:
-        """What the position of the tip counts from, and in which unit where that is not the panel's."""
+        """The heading of the tip position, with its unit if the unit differs from the panel's."""
         if self.shown_mode.metric == self._mode.metric:
             return tr("TIP POSITION FROM PART ZERO")
         return (
@@ -82,7 +82,7 @@ class ToolPanel(Panel):
         self._cells(painter, rest)
 
     def _head(self, painter: Painter, room: QRectF) -> None:
-        """Which tool, how its tip lies, where it stands."""
+        """Draw the tool number, the tip quadrant and the tip position."""
         u, tool = self.look.u, self._model.tool
         box = QRectF(room.x(), room.y(), 13 * u, room.height())
         self._target(painter, box, partial(self._model.ask, TOOL), lit=tool.asked == TOOL)
@@ -150,7 +150,7 @@ class ToolPanel(Panel):
         return shown_value(name, getattr(tool.row, name), mode) if tool.row else ""
 
     def _master(self) -> str:
-        """Which tool the others are relative to, and how far this one is from it."""
+        """Return the master tool, and the distance of this tool from the master."""
         tool, mode = self._model.tool, self._mode
         master = tool.book.master
         if not master:
@@ -174,12 +174,12 @@ class ToolPanel(Panel):
         painter.write(QRectF(box.x() + 0.9 * u, box.y() + 0.3 * u, 2.4 * u, 2.2 * u), key, 1.7, "accent")
 
 
-_PLACES = 4  # of the cosines of a direction
-_HIGH = 6.0  # units: a row
+_PLACES = 4  # Decimals of a direction cosine.
+_HIGH = 6.0  # Units: height of a row.
 
 
 class MillJogPanel(Panel):
-    """Draws the model; tool, preset and 3D-ROT are targets for a finger."""
+    """The panel of a mill. Tool, preset and 3D-ROT are touch targets."""
 
     _shown: Shown[object] = Shown(None)
     _tip: Shown[tuple[float, ...] | None] = Shown(None)
@@ -196,7 +196,7 @@ class MillJogPanel(Panel):
         self._model, self._tools, self._presets = model, tools, presets
 
     def show_mill(self, snapshot: Snapshot) -> None:
-        """The tool and the preset of now, where the tip stands, what is tilted."""
+        """Show the active tool and preset, the tip position and the tilted frame."""
         book, tilt, tool = self._model.desk.book, self._model.tilt, snapshot.modal.tool
         swivel = snapshot.swivel
         self._tip = swivel.system.place.point(_slides(snapshot)) if swivel is not None else None
@@ -279,7 +279,7 @@ class MillJogPanel(Panel):
         self.place(row, press)
 
     def _axes(self, painter: Painter, room: QRectF) -> None:
-        """Where the tip stands in the system in force, and where each key moves in the machine."""
+        """Draw the tip position in the active system, and the machine direction of each jog key."""
         u, tilt = self.look.u, self._model.tilt
         head = QRectF(room.x(), room.y(), room.width(), 2.2 * u)
         painter.write(head, tr("TIP POSITION"), 1.5, "soft")

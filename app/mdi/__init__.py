@@ -1,1 +1,1 @@
-"""MDI: one line at a time, proved before it may run."""
+"""MDI: entry of one line at a time, which is proved before it runs."""

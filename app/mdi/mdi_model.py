@@ -1,4 +1,4 @@
-"""MDI without Qt: a line is typed and completed, proved on a worker, made ready, and started by the palms."""
+"""The model of the MDI page: entry, completion, proof and preparation of one line, without Qt."""
 
 from __future__ import annotations
 
@@ -20,29 +20,30 @@ from core.message import Message
 from core.store.store_errors import StoreError
 
 KEY = "mdi"
-LONGEST = 120  # characters of a line
-KEPT = 100  # lines
+LONGEST = 120  # Maximum characters of a line.
+KEPT = 100  # Number of lines.
 
 
 @dataclass(slots=True)
 class MdiLine:
-    """One line with a cursor; arrows up and down go through the history, as in every shell."""
+    """The input line with a cursor and a history. Up and Down recall lines, as in a shell."""
 
     persistence: Persistence = field(default_factory=Persistence)
     text: str = ""
-    at: int = 0  # the cursor stands before this character
-    history: list[str] = field(default_factory=list)  # oldest first
+    at: int = 0  # The cursor is before this character.
+    history: list[str] = field(default_factory=list)  # Oldest line first.
     refused: dict[str, int] = field(
         default_factory=dict
-    )  # lines of it that do not run: column, from 1; 0: whole
-    back: int = 0  # how far up the history the text comes from, 0: it is being typed
+    )  # Rejected lines with the column of the error, counted from 1; 0: the whole line.
+    # Position of the recalled line in the history, counted from the newest; 0: the line is being typed.
+    back: int = 0
     _draft: str = ""
 
     def __post_init__(self) -> None:
         self.reload()
 
     def reload(self) -> None:
-        """Read the history that is kept; what is no list of lines is forgotten."""
+        """Read the stored history. Invalid entries are ignored."""
         try:
             kept = self.persistence.read_setting(KEY)
         except StoreError:
@@ -51,7 +52,7 @@ class MdiLine:
         self.history = [line for line in lines if isinstance(line, str)][-KEPT:]
 
     def type(self, key: str) -> bool:
-        """A character or an editing key; False when it means nothing here."""
+        """Handle a character or an editing key. Return False if the key has no meaning here."""
         match key:
             case "Back":
                 self._cut(self.at - 1)
@@ -69,12 +70,12 @@ class MdiLine:
         return True
 
     def put(self, text: str, at: int | None = None) -> None:
-        """Another text, the cursor there or at its end."""
+        """Set the text, and the cursor to ``at`` or to the end."""
         self.text = text
         self.at = len(text) if at is None else at
 
     def recall(self, back: int) -> None:
-        """Take up the line that stands so far up the history; 0: what was being typed."""
+        """Recall a line of the history, counted from the newest. 0 restores the typed text."""
         if not 0 <= back <= len(self.history):
             return
         if not self.back:
@@ -83,14 +84,14 @@ class MdiLine:
         self.put(self.history[-back] if back else self._draft)
 
     def done(self) -> None:
-        """The line has been started: it goes into the history, and an empty one begins."""
+        """Add the started line to the history, and begin an empty line."""
         self.refused.pop(self.text, None)
         self._remember()
         self.put("")
         self.back, self._draft = 0, ""
 
     def refuse(self, column: int) -> None:
-        """The line does not run: it stays to be mended, and stands in the history with its word marked."""
+        """Add a rejected line to the history with the column of its error. The text remains."""
         self._remember()
         self.refused[self.text] = column
         self.refused = {line: at for line, at in self.refused.items() if line in self.history}
@@ -99,7 +100,7 @@ class MdiLine:
     def _remember(self) -> None:
         if self.text.strip() and (not self.history or self.history[-1] != self.text):
             self.history = [*self.history, self.text][-KEPT:]
-            with suppress(StoreError):  # the desk says by itself that nothing is kept
+            with suppress(StoreError):  # TurnDesk shows the storage error elsewhere.
                 self.persistence.save_setting(KEY, self.history)
 
     def _cut(self, index: int) -> None:
@@ -107,12 +108,12 @@ class MdiLine:
             self.put(self.text[:index] + self.text[index + 1 :], index)
 
 
-CONTINUED = "~"  # a block of Klartext goes on in the next line
+CONTINUED = "~"  # A block of Klartext continues in the next line.
 
 
 @dataclass(slots=True)
 class LineCompletion:
-    """The same code help as the editor's, over one line. ``open``: the choices have the arrow keys."""
+    """Code help and completion for the input line. ``open`` is True while the choices use the arrow keys."""
 
     typing: MdiLine
     book: Callable[[], CodeBook]
@@ -120,14 +121,17 @@ class LineCompletion:
     open: bool = False
 
     def turn(self) -> None:
-        """Open the choices for what stands before the cursor, or close them."""
+        """Open the choices for the text before the cursor, or close them."""
         self.open = not self.open
         if self.open:
             self.codes.follow(self.book(), self.typing.text, self.typing.at + 1)
             self.codes.ask()
 
     def typed(self, key: str) -> bool:
-        """Tab opens the choices; open, arrows look through them, and any other key goes to the line."""
+        """Handle a key. Tab opens the choices. While they are open, arrow keys select a choice.
+
+        Return False to leave the key to the input line. Any other key closes the choices.
+        """
         if not self.open:
             if key == "Tab":
                 self.turn()
@@ -144,7 +148,7 @@ class LineCompletion:
         return self.open or key in ("Enter", "Tab")
 
     def take(self) -> None:
-        """The marked code into the line, in the place of what has been typed of it."""
+        """Insert the selected code in place of the typed part of the code."""
         self.open, chosen = False, self.codes.chosen
         if chosen is None:
             return
@@ -156,9 +160,10 @@ class LineCompletion:
 
 
 def _in_one_line(entry: Entry, room: int) -> str:
-    """What completion writes, its continued lines in one; the head alone where that is too long.
+    """Return the text that completion inserts, with continuation lines joined into one line.
 
-    Empty where not even the head fits.
+    If this text is longer than ``room``, return only the code, or an empty text if the code is too long as
+    well.
     """
     lines = entry.written.splitlines()
     joined = len(lines) == 1 or all(line.rstrip().endswith(CONTINUED) for line in lines[:-1])
@@ -169,7 +174,7 @@ def _in_one_line(entry: Entry, room: int) -> str:
 
 @dataclass(slots=True)
 class MdiModel:
-    """The model behind the MDI page. ``say`` answers on the prompt line, ``book`` has the codes."""
+    """The model of the MDI page. ``say`` shows a message, and ``book`` returns the codes."""
 
     prove: ProveLine
     post: Callable[[Command], None]
@@ -189,20 +194,20 @@ class MdiModel:
     # --- page ----------------------------------------------------------------------------------------
 
     def opens(self) -> bool:
-        """Whether MDI may be opened now; says why not."""
+        """Return whether MDI can be opened now. If not, show the reason."""
         if why := mdi_barred(self.snapshot()):
             self.say(why)
         return not why
 
     def opened(self) -> None:
-        """From now on Cycle Start begins lines, and no program."""
+        """Prepare for the open page: Cycle Start runs lines and no program."""
         self.open = True
         self.typing.reload()
         self.completion.open = False
         self.line.take_back()
 
     def leave(self) -> bool:
-        """Whether it may be left; the spindle stays on, and Cycle Start begins programs again."""
+        """Return whether the page can close. The spindle remains on, and Cycle Start runs programs again."""
         if not self.open:
             return True
         if self.snapshot().state in CYCLE:
@@ -213,22 +218,22 @@ class MdiModel:
         return True
 
     def close(self) -> None:
-        """End the thread that proves."""
+        """End the worker that proves lines."""
         self.line.close()
 
     # --- keys ----------------------------------------------------------------------------------------
 
     def takes(self, key: str) -> bool:
-        """Whether a character is text now: the line has the whole keyboard, or none of it."""
+        """Return whether this character is text input now."""
         return len(key) == 1 and self.has_keyboard
 
     @property
     def has_keyboard(self) -> bool:
-        """Whether the line takes what is typed: also with the drives off, but not while one is under way."""
+        """Whether the line accepts input. It does so while the drives are off, but not while a line runs."""
         return self.snapshot().state in {State.IDLE, State.DISABLED, State.ESTOP, State.FAULT}
 
     def typed(self, key: str) -> bool:
-        """A key that was pressed; False leaves it to the window."""
+        """Handle a key. Return False to leave the key to the window."""
         if not self.has_keyboard:
             return False
         before = self.typing.text
@@ -243,7 +248,7 @@ class MdiModel:
         return taken
 
     def enter(self) -> None:
-        """Have the line proved, from the state and the place of now."""
+        """Prove the line from the present machine state, or show why this is not possible."""
         snapshot = self.snapshot()
         self.clear()
         if snapshot.state is not State.IDLE:
@@ -255,29 +260,32 @@ class MdiModel:
         self.line.ask(self.typing.text, snapshot, self._failed)
 
     def complete(self) -> None:
-        """Complete what is typed, or look up the code at the cursor; again: back to the history."""
+        """Toggle the choices for the typed text or the code at the cursor."""
         if self.has_keyboard:
             self.clear()
             self.completion.turn()
 
     def take_code(self) -> None:
-        """Write the marked code into the line."""
+        """Insert the selected code in the line."""
         self.completion.take()
         self.clear()
         self.line.take_back()
 
     def recall(self, back: int) -> None:
-        """Take up the line that stands so far up the history."""
+        """Recall a line of the history, counted from the newest."""
         self.typing.recall(back)
         self.clear()
         self.line.take_back()
 
     def escape(self) -> bool:
-        """Close the codes, take a ready line back, then what is typed; False when there was neither."""
+        """Close the choices, cancel a prepared line, or clear the text.
+
+        Return False if there was nothing to do.
+        """
         under_way = self.snapshot().state in prompt_line.UNDER_WAY
         if self.completion.open:
             self.completion.open = False
-            return not under_way  # a list comes not before the hold
+            return not under_way  # Closing the list does not delay feed hold.
         begun = self.line.ready or self.typing.text or self.line.busy
         if under_way or not begun:
             return False
@@ -287,21 +295,21 @@ class MdiModel:
         return True
 
     def stop_spindle(self) -> None:
-        """Stop the spindle that an M03 has left on."""
+        """Stop the spindle, which a line may have left on."""
         self.clear()
         self.post(SpindleStop())
 
     # --- every frame ---------------------------------------------------------------------------------
 
     def look(self, snapshot: Snapshot) -> None:
-        """Take up what the worker has found; a line that was started goes into the history."""
+        """Accept the proof of the line; called once a frame. A started line is added to the history."""
         if self.open:
             self.line.keep(snapshot)
         if self.line.look(snapshot):
             self.typing.done()
 
     def prompt(self, snapshot: Snapshot, start: str) -> str:
-        """What can be done now; ``start`` names what starts a cycle here."""
+        """Return the prompt. ``start`` is the instruction for starting a cycle."""
         if snapshot.state is State.DISABLED:
             return tr("DRIVES ARE OFF. F5: DRIVES ON. YOU CAN STILL TYPE A LINE")
         if snapshot.state is not State.IDLE:
@@ -311,7 +319,7 @@ class MdiModel:
         return self._of_the_line(start)
 
     def _of_the_line(self, start: str) -> str:
-        """How far the line is."""
+        """Return the prompt for the present state of the line."""
         if self.line.busy:
             return tr("CHECKING THE LINE FOR ERRORS")
         if self.line.errors:
@@ -321,7 +329,7 @@ class MdiModel:
         return tr("TYPE A LINE   ENTER: PROVE   F1: EXIT, SPINDLE UNCHANGED")
 
     def barred(self) -> str:
-        """Why the palms start nothing now; empty when they may."""
+        """Return why the start buttons have no effect now. Empty if they can start a line."""
         if self.snapshot().state is State.IDLE and self.line.ready is None:
             return tr("NO LINE IS READY. TYPE A LINE AND PRESS ENTER")
         return ""

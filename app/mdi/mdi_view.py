@@ -1,4 +1,4 @@
-"""F4 MDI: one line at a time, proved before it may run, with what is in force beside it."""
+"""The MDI page (F4): the input line, its history, and the modal state."""
 
 from __future__ import annotations
 
@@ -34,7 +34,10 @@ from core.language.diagnostics import Diagnostic, Severity
 
 
 class LinePanel(Panel):
-    """The text, its cursor, the findings of its proof, whether it would start. A finger asks for letters."""
+    """The input line with its cursor, the findings of its proof, and a mark when the line is prepared.
+
+    A touch toggles the letter keyboard.
+    """
 
     text, at = Shown(""), Shown(0)
     found: Shown[tuple[Diagnostic, ...]] = Shown(())
@@ -46,7 +49,7 @@ class LinePanel(Panel):
 
     @property
     def message(self) -> str:
-        """The first finding: an error before a warning."""
+        """The first finding, errors before warnings."""
         return f"{self._first.message} {self._first.hint}".strip() if self._first else ""
 
     @property
@@ -89,20 +92,21 @@ class LinePanel(Panel):
 # --- history ------------------------------------------------------------------------------------------
 
 
-ROW = 3.4  # units
+ROW = 3.4  # Units.
 
 
 class HistoryPanel(RowPanel):
-    """``back`` is how far up the line stands that was taken up, 0: none."""
+    """The history of lines. ``back`` is the position of the recalled line, 0 for none."""
 
-    lines: Shown[tuple[str, ...]] = Shown(())  # oldest first
+    lines: Shown[tuple[str, ...]] = Shown(())  # Oldest line first.
     back = Shown(0)
-    refused: Shown[tuple[tuple[str, int], ...]] = Shown(())  # lines that do not run, and where
+    refused: Shown[tuple[tuple[str, int], ...]] = Shown(())  # Rejected lines with the column of the error.
 
     def __init__(self, look: Look, choose: Callable[[int], None], parent: QWidget) -> None:
         super().__init__(look, parent)
         self._choose = choose
-        self._placed: object = None  # what was shown when the list last went to its end, or to the mark
+        # What was shown when the list last scrolled to its end or to the selection.
+        self._placed: object = None
 
     def draw(self, painter: Painter) -> None:
         self.frame(painter, tr("HISTORY  ·  UP AND DOWN ARROWS"))
@@ -125,7 +129,7 @@ class HistoryPanel(RowPanel):
             painter.write(empty, tr("No lines run yet."), 2.0, "soft", bold=False)
 
     def _refused(self, painter: Painter, row: QRectF, text: str, column: int) -> None:
-        """A line that does not run: the word in question is underlined, and it says so at the right."""
+        """Underline the rejected word of a line, and write REJECTED at the right."""
         u = self.look.u
         metrics = QFontMetricsF(self.look.font(2.2))
         start = max(0, column - 1)
@@ -136,14 +140,14 @@ class HistoryPanel(RowPanel):
         painter.write(row, tr("REJECTED"), 1.5, "alarm", at=RIGHT)
 
 
-# --- what is in force ---------------------------------------------------------------------------------
+# --- modal state --------------------------------------------------------------------------------------
 
 
-SHARE = 0.4  # of a row for its label
+SHARE = 0.4  # Fraction of a row for its label.
 
 
 class ModalPanel(Panel):
-    """All rows at once, as large as the room lets them be."""
+    """All rows of the modal state, as large as the room allows."""
 
     rows: Shown[tuple[ModalRow, ...]] = Shown(())
 
@@ -159,11 +163,11 @@ class ModalPanel(Panel):
             painter.write(box.adjusted(left, 0, 0, 0), row.value, size, "text")
 
 
-LINE, STATE = 15.6, 46.0  # units: height of the line, width of what is in force
+LINE, STATE = 15.6, 46.0  # Units: height of the line, width of the modal state.
 
 
 class MdiPage(ModelPage):
-    """At rest, keys are text; while a line is under way the letters are the keys they are everywhere."""
+    """The MDI page. At rest, keys are text input. While a line runs, letters have their usual functions."""
 
     NAME = page_table.MDI
     LABELS = ("MENU", "AUTO", "CODES", "READOUT", "DRIVES", "RESET", "ALARMS", "SPN STOP", "SECCMP", "SCOPE")
@@ -182,7 +186,7 @@ class MdiPage(ModelPage):
         self.inforce = ModalPanel(self.look, self)
 
     def key_actions(self) -> KeyActions:
-        """Keys of this page alone."""
+        """Return the key actions of this page."""
         return {
             "F2": partial(self.host.go, page_table.AUTOMATIC),
             "F3": self.model.complete,
@@ -196,7 +200,7 @@ class MdiPage(ModelPage):
         }
 
     def barred(self) -> frozenset[str]:
-        """Return DRIVES and RESET while they would be refused."""
+        """Return the keys DRIVES and RESET while they would be rejected."""
         state = self.desk.snapshot().state
         found = {"F5": state in {State.ESTOP, State.FAULT}, "F6": state in MOVING}
         return frozenset(key for key, refused in found.items() if refused)
@@ -206,28 +210,28 @@ class MdiPage(ModelPage):
             self.model.recall(back)
 
     def _other_hand(self) -> None:
-        """A finger on the line: letters to touch in the place of the history, or the history again."""
+        """Show the letter keyboard in place of the history, or the history again."""
         self.letters.setVisible(self.letters.isHidden())
         self.letters.raise_()
 
     def has_field(self) -> bool:
-        """The line, while none is under way."""
+        """Return whether the input line accepts text, which is so while no line runs."""
         return self.model.has_keyboard
 
     def prompt(self) -> str:
-        """What the model has to say on the prompt line."""
+        """Return the prompt of the model."""
         return self.model.prompt(self.desk.snapshot(), self.desk.start_words)
 
     def opens(self) -> bool:
-        """Not while a program is under way."""
+        """Return whether the page can be opened, which is not possible while a program runs."""
         return self.model.opens()
 
     def leave(self) -> bool:
-        """Not while a line is under way."""
+        """Return whether the page can close, which is not possible while a line runs."""
         return self.model.leave()
 
     def refresh(self, snapshot: Snapshot, _view: MachineStatus, loaded: Loaded) -> None:
-        """The line, what was found, and the state of this instant."""
+        """Show the line, its findings and the modal state of this instant."""
         model, typing = self.model, self.model.typing
         model.look(snapshot)
         running = snapshot.state in CYCLE and snapshot.starts is Starts.LINE
@@ -245,7 +249,7 @@ class MdiPage(ModelPage):
         self.inforce.rows = rows_of(point, self.desk.machine.language)
 
     def _show_first_move(self, snapshot: Snapshot, loaded: Loaded) -> None:
-        """A line that is ready and moves is drawn over the program's path, in the place of the history."""
+        """Draw the first move of a prepared line over the program's path, in place of the history."""
         legs = drawn(self.model.line.first_move)
         if legs:
             self.path.show_picture(loaded.picture)
@@ -255,11 +259,11 @@ class MdiPage(ModelPage):
         self.path.setVisible(bool(legs))
 
     def dress(self) -> None:
-        """Other colours are in force."""
+        """Redraw the path in the present colors."""
         self.path.restart()
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """The line over the history, what is in force at their right."""
+        """Lay out the line above the history, and the modal state at their right."""
         u = self.look.u
         gap, high, state = max(4, round(0.7 * u)), round(LINE * u), round(STATE * u)
         wide = self.width() - state - gap

@@ -1,4 +1,4 @@
-"""A table of offsets that is entered cell by cell: a cell is chosen, typed over and saved. mm and degrees."""
+"""Base class of offset tables that the operator edits cell by cell, in mm and degrees."""
 
 from __future__ import annotations
 
@@ -25,47 +25,53 @@ _LEAFS = {"Page up": -10, "Page down": 10}
 
 
 class CellTable(OffsetTable):
-    """The cell that is chosen, and what is typed over it. A text takes letters once Return has opened it."""
+    """A table with a selected cell and the text that is entered for it.
 
-    numbers: ClassVar[range]  # of the rows
+    A text cell accepts letters after Enter has opened it.
+    """
+
+    numbers: ClassVar[range]  # Numbers of the rows.
 
     def __init__(self, desk: Desk) -> None:
         super().__init__(desk)
         self.row = self.column = 0
-        self.writing = False  # a text is open
+        self.writing = False  # A text is being edited.
 
-    # --- what is shown -------------------------------------------------------------------------------
+    # --- display -------------------------------------------------------------------------------------
 
     @property
     def is_writing(self) -> bool:
-        """Whether a text is open."""
+        """Whether a text cell is being edited."""
         return self.writing
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """What the columns are called inside."""
+        """The field names of the columns."""
         return tuple(FIELDS[self.kind])
 
     @property
     @abstractmethod
     def title(self) -> str:
-        """What the table is, and its units."""
+        """The title of the table, with its units."""
 
     @property
     def words(self) -> tuple[str, ...]:
-        """What stands over the columns."""
+        """The column heads."""
         return tuple(self.field_of(name).word for name in self.columns)
 
     @abstractmethod
     def in_force(self, snapshot: Snapshot) -> int:
-        """The number of the row that the machine goes by now; 0: none."""
+        """Return the number of the row that the machine uses now, or 0."""
 
     def field_of(self, name: str) -> Field:
-        """What a column takes."""
+        """Return the field definition of a column."""
         return FIELDS[self.kind][name]
 
     def value_at(self, number: int, name: str) -> Value:
-        """A cell as it is saved; that of a row that was never set, or cannot be read."""
+        """Return the saved value of a cell.
+
+        A row that was never set gives 0 or an empty text. Unreadable offsets give ``UNKNOWN``.
+        """
         row = self.book.of(self.kind).get(number)
         if self.book.unread:
             return UNKNOWN
@@ -73,70 +79,73 @@ class CellTable(OffsetTable):
         return empty if row is None else getattr(row, name)
 
     def tone_at(self, _number: int, _name: str) -> Tone:
-        """How urgent a cell is."""
+        """Return the tone of a cell, which shows its urgency."""
         return Tone.OFF
 
     @property
     def number(self) -> int:
-        """The number of the chosen row."""
+        """The number of the selected row."""
         return self.numbers[self.row]
 
     @property
     def chosen(self) -> int | None:
-        """Undo refers to the chosen row."""
+        """The number of the selected row, to which undo applies."""
         return self.number
 
     @property
     def name(self) -> str:
-        """The field of the chosen column."""
+        """The field name of the selected column."""
         return self.columns[self.column]
 
     @property
     def field(self) -> Field:
-        """What the chosen column takes."""
+        """The field definition of the selected column."""
         return self.field_of(self.name)
 
     @property
     def which(self) -> str:
-        """What the chosen row is called."""
+        """The displayed name of the selected row."""
         return f"{LETTERS[self.kind]}{self.number}"
 
     @property
     def stored(self) -> Row | None:
-        """The chosen row as it is saved; None where it was never set."""
+        """The saved values of the selected row. None if the row was never set."""
         return self.book.of(self.kind).get(self.number)
 
     @property
     def question(self) -> str:
-        """What is asked for the chosen cell."""
+        """The prompt for the selected cell, with its unit."""
         units = {Sort.METRIC: ", MM", Sort.ANGLE: tr(", DEGREES"), Sort.MINUTES: tr(", MINUTES")}
         return f"{self.which}  {self.field.word}{units.get(self.field.sort, '')}?"
 
     @property
     def value_before(self) -> Value:
-        """The chosen cell as it is saved."""
+        """The saved value of the selected cell."""
         return self.value_at(self.number, self.name)
 
     @property
     def old_to_new(self) -> str:
-        """The change that is being entered, or else the last one."""
+        """The change that is being entered, or else the last change."""
         if not self.text.strip():
             return self.history.last_in_words
         try:
             new = self._value(self.text)
         except EntryError:
-            return ""  # half a sum is no mistake yet
+            return ""  # An incomplete expression is not an error yet.
         before, after = (cell_text(self.field, value) for value in (self.value_before, new))
         return f"{self.which} {self.field.word}   {before}  →  {after}"
 
     def hint(self, _snapshot: Snapshot) -> str:
-        """How a value is entered and another cell chosen."""
+        """Return how to enter a value and select another cell."""
         if self.writing:
             return tr("TYPE THE TEXT. ENTER: SAVE   ESC: CANCEL")
         return tr("ENTER A NUMBER OR EXPRESSION   ARROWS, TAB: OTHER CELL")
 
     def barred(self, snapshot: Snapshot, *, correction: bool = False) -> str:
-        """Nothing here is a correction: what says where zero or a tip is changes between cycles only."""
+        """Return why this table cannot be changed now. Empty if it can.
+
+        A change moves a zero point or a tip, so it is possible only between cycles.
+        """
         if snapshot.state in UNDER_WAY - {State.JOG, State.HOME} and not self.book.locked:
             return tr("PROGRAM RUNNING. CHANGE THIS TABLE ONLY BETWEEN CYCLES")
         return self.book.locked or refusal(snapshot, correction=correction)
@@ -144,7 +153,10 @@ class CellTable(OffsetTable):
     # --- keys ----------------------------------------------------------------------------------------
 
     def takes(self, key: str) -> bool:
-        """Figures and signs are typed, C clears the table where it does; an open text takes everything."""
+        """Return whether a character can be entered.
+
+        These are the characters of numbers, C if it clears the table, or any character in an open text.
+        """
         return (
             (self.writing and len(key) == 1)
             or key in CHARACTERS
@@ -152,11 +164,11 @@ class CellTable(OffsetTable):
         )
 
     def typed(self, key: str) -> bool:
-        """Of an open text every character is its own."""
+        """Handle a key. While a text is open, every character belongs to the text."""
         return self.enter_key(key) if self.writing else super().typed(key)
 
     def enter_key(self, key: str) -> bool:
-        """Arrows go from cell to cell, Return saves what is typed."""
+        """Handle a key of the table: arrow keys select a cell, and Enter saves the entered value."""
         if self.writing and (len(key) == 1 or key in {"Back", "Delete"}):
             self.text = edited(self.text, key, int(self.field.high))
             return True
@@ -175,13 +187,13 @@ class CellTable(OffsetTable):
         return True
 
     def move(self, rows: int, columns: int) -> None:
-        """Another cell; what was typed and not entered is forgotten."""
+        """Select another cell by rows and columns. A value that was not entered is discarded."""
         wide = len(self.columns)
         at = (self.row * wide + self.column + rows * wide + columns) % (len(self.numbers) * wide)
         self.choose(at // wide, at % wide)
 
     def choose(self, row: int, column: int) -> None:
-        """The cell that a finger touched; a text opens when it is touched again."""
+        """Select a touched cell. A second touch opens a text or toggles a flag."""
         again = (row, column) == (self.row, self.column)
         self.row, self.column, self.text, self.writing = row, column, "", False
         if again and self.field.sort is Sort.TEXT:
@@ -190,17 +202,17 @@ class CellTable(OffsetTable):
             self._turn()
 
     def take_back(self) -> bool:
-        """Forget what is typed; False when nothing was."""
+        """Discard the entered text. Return False if nothing was entered."""
         typed = bool(self.text) or self.writing
         self.drop()
         return typed
 
     def drop(self) -> None:
-        """Forget what is typed."""
+        """Discard the entered text."""
         self.text, self.writing = "", False
 
     def enter(self) -> None:
-        """Return saves what is typed, opens a text, or goes on to the next cell."""
+        """Handle Enter: save the entered value, open a text, toggle a flag, or select the next cell."""
         if self.writing:
             self.save(self.text.strip, "")
         elif self.field.sort is Sort.TEXT:
@@ -213,7 +225,7 @@ class CellTable(OffsetTable):
             self.move(0, 1)
 
     def _turn(self) -> None:
-        """A yes or no is the other one."""
+        """Toggle a flag and save it."""
         on = not self.value_before
         self.save(lambda: on, "1" if on else "0")
 
@@ -232,7 +244,7 @@ class CellTable(OffsetTable):
         return int(value) if self.field.sort in {Sort.WHOLE, Sort.FLAG} else value
 
     def checked(self, value: float) -> float:
-        """The value, where it is one that is kept. Raises EntryError."""
+        """Return the rounded value if it is in the range of the field. Raises EntryError otherwise."""
         field = self.field
         if field.takes(value):
             return round(value, 10)
@@ -248,9 +260,10 @@ class CellTable(OffsetTable):
         typed: str,
         also: Callable[[Value], Mapping[str, Value]] = lambda _new: {},
     ) -> bool:
-        """Save the chosen cell, unless something is wrong with it; that is said, and the text stays.
+        """Save the selected cell, and return whether this succeeded. A rejected text remains for correction.
 
-        ``also`` are other fields of the row that follow its new value.
+        ``typed`` is recorded in the history. ``also`` returns other fields of the row that depend on the new
+        value.
         """
         if why := self.barred(self.desk.snapshot()):
             self.desk.say(why)
@@ -271,7 +284,7 @@ class CellTable(OffsetTable):
         return True
 
     def keep(self, values: Mapping[str, Value], why: str) -> str:
-        """Have fields of the chosen row kept; answers why not, or nothing."""
+        """Save fields of the selected row. Return why this was rejected, or an empty text."""
         return self.questions.change(self.kind, self.number, values, why)
 
     def _reason(self, typed: str) -> str:

@@ -1,4 +1,4 @@
-"""Tables that are entered cell by cell: zero offsets of a lathe, tools and presets of a mill."""
+"""Views of tables that are edited cell by cell: zero offsets of a lathe, tools and presets of a mill."""
 
 from __future__ import annotations
 
@@ -25,20 +25,20 @@ from core.executor.snapshot import Snapshot
 from core.production.tool_life import ToolLife
 from core.store.store_rows import Row
 
-HEAD, HIGH = 4.0, 8.0  # units: the line of words at most, and a row
-_NAME = 0.07  # share of the width for the number
+HEAD, HIGH = 4.0, 8.0  # Units: maximum height of the head line, and height of a row.
+_NAME = 0.07  # Fraction of the width for the row number.
 
 
 class CellPanel(RowPanel):
-    """Each cell is a target for a finger. The chosen one is filled, the row in force has a bar.
+    """A table whose cells are touch targets. The selected cell is filled, and the active row has a bar.
 
-    Beside the pad of a small screen stand as many columns as are wide enough, the chosen one among them.
+    On a small screen with the number pad, only the columns that fit are shown, including the selected one.
     """
 
     stored: Shown[Mapping[int, Row]] = Shown({})
-    lives: Shown[Mapping[int, ToolLife]] = Shown({})  # of the tools of a mill
+    lives: Shown[Mapping[int, ToolLife]] = Shown({})  # Tool life of a mill's tools.
     cell = Shown((0, 0))
-    in_force = Shown(0)  # number of a row; 0: none
+    in_force = Shown(0)  # Number of the active row, or 0.
 
     def __init__(self, look: Look, table: CellTable, parent: QWidget) -> None:
         super().__init__(look, parent)
@@ -61,7 +61,7 @@ class CellPanel(RowPanel):
             self._row(painter, row.adjusted(0, 0, 0, -0.5 * u), number)
 
     def _cells(self, row: QRectF) -> Iterator[tuple[int, QRectF]]:
-        """The columns that there is room for, and where they stand in this row."""
+        """Yield the visible columns with their rectangles in this row."""
         room, gap = row.width() * (1.0 - _NAME), 0.5 * self.look.u
         shown = self._in_sight(room * min(self._wide) / (FINGER + gap))
         one = room / sum(self._wide[column] for column in shown)
@@ -72,7 +72,10 @@ class CellPanel(RowPanel):
             left += wide
 
     def _in_sight(self, room: float) -> range:
-        """From the first column on, or so that the chosen one is the last; ``room`` in shares."""
+        """Return the visible columns, from the first one, or so that the selected one is the last.
+
+        ``room`` is in the units of the column widths.
+        """
         first, end, used = 0, 0, 0.0
         while end < len(self._wide) and (used + self._wide[end] <= room or end <= self.cell[1]):
             used, end = used + self._wide[end], end + 1
@@ -111,18 +114,19 @@ class CellPanel(RowPanel):
                 raw=text,
             )
             spot = cell.united(box.adjusted(0, 0, cell.left() - box.right(), 0)) if nth == 0 else cell
-            # The number is part of the first cell: pressing it chooses the row.
+            # The number belongs to the first cell, so that touching the number selects the row.
             words = f"{_LETTER[self._kind]}{number} {self._words[column]}"
             self.place(spot, partial(self._choose, row, column), words, kind="row", on=here)
 
 
-_WIDE = {"name": 1.5, "remark": 2.0, "length": 1.25, "teeth": 0.92, "point": 0.92, "stops": 0.92}  # columns
+# Relative widths of columns.
+_WIDE = {"name": 1.5, "remark": 2.0, "length": 1.25, "teeth": 0.92, "point": 0.92, "stops": 0.92}
 _TEXTS = frozenset({"name", "remark"})
 _LETTER = {ZeroOffsets.kind: "G", MillTools.kind: "T", Presets.kind: ""}
 
 
 class CellTablePage(OffsetPage):
-    """What the three pages have in common: F2 touches off, and no effect is drawn of these tables."""
+    """Base class of the three pages. F2 touches off. These pages do not draw the effect of a change."""
 
     model: CellTable
     table: CellPanel
@@ -131,14 +135,15 @@ class CellTablePage(OffsetPage):
         super().__init__(host, parent, model)
         self.table = CellPanel(self.look, model, self)
         if not model.own_key:
-            self.pad.own = ("Tab", "→")  # to the next cell, also one that the pad has taken the room of
+            # Selects the next cell, even if the pad leaves no room for its column.
+            self.pad.own = ("Tab", "→")
 
     def key_actions(self) -> KeyActions:
-        """The other tables of this machine; F6 and F10 are none of its keys."""
+        """Return the actions of the keys, without F6 and F10."""
         return {key: act for key, act in super().key_actions().items() if key not in {"F6", "F10"}}
 
     def refresh(self, snapshot: Snapshot, status: MachineStatus, loaded: Loaded) -> None:
-        """The table as it is now."""
+        """Show the present state of the table."""
         super().refresh(snapshot, status, loaded)
         model = self.model
         self.table.stored, self.table.cell = model.book.of(model.kind), (model.row, model.column)
@@ -146,7 +151,7 @@ class CellTablePage(OffsetPage):
 
 
 class ZeroOffsetsPage(CellTablePage):
-    """G54 to G59: a row each, X, Z and C."""
+    """The page of the zero offsets G54 to G59, with one row for each."""
 
     NAME = page_table.ZERO
     LABELS = ("MENU", "SET POS.", "", "UNDO", "HISTORY", "", "ALARMS", "TOOLS", "SECCMP", "")
@@ -156,20 +161,20 @@ class ZeroOffsetsPage(CellTablePage):
         super().__init__(host, parent, ZeroOffsets(host.desk))
 
     def labels(self) -> tuple[str, ...]:
-        """A SINUMERIK lathe has no secondary offsets."""
+        """Return the key labels. A SINUMERIK lathe has no secondary offsets."""
         return (*self.LABELS[:8], "", "") if self.desk.machine.language == "sinumerik" else self.LABELS
 
     def barred_by(self) -> dict[str, object]:
-        """Return also why the position of the machine is not taken."""
+        """Return the reasons why keys are disabled, including F2 for setting the position."""
         return {**super().barred_by(), "F2": self.model.here_barred()}
 
     def key_actions(self) -> KeyActions:
-        """The position of the machine."""
+        """Return the key actions, including F2 for setting the position."""
         return {**super().key_actions(), "F2": self.model.here}
 
 
 class MillToolsPage(CellTablePage):
-    """TOOL.T: a row a tool."""
+    """The tool table of a mill (TOOL.T), with one row for each tool."""
 
     NAME = page_table.MILL_TOOLS
     LABELS = ("MENU", "TOUCH L", "", "UNDO", "HISTORY", "", "ALARMS", "", "PRESETS", "")
@@ -179,22 +184,22 @@ class MillToolsPage(CellTablePage):
         super().__init__(host, parent, MillTools(host.desk))
 
     def barred_by(self) -> dict[str, object]:
-        """Return also why no length is touched off."""
+        """Return the reasons why keys are disabled, including F2 for touching off the length."""
         return {**super().barred_by(), "F2": self.model.here_barred()}
 
     def key_actions(self) -> KeyActions:
-        """The length of a tool whose tip touches."""
+        """Return the key actions, including F2 for touching off the length."""
         rest = {key: act for key, act in super().key_actions().items() if key not in {"F8", "F9"}}
         return {**rest, "F2": self.model.here, "F9": partial(self._go, page_table.PRESETS)}
 
     def refresh(self, snapshot: Snapshot, status: MachineStatus, loaded: Loaded) -> None:
-        """What the tools have cut counts on while the page is open."""
+        """Show the present table and the tool life, which changes while the page is open."""
         super().refresh(snapshot, status, loaded)
         self.table.lives = self.model.lives.lives()
 
 
 class PresetsPage(CellTablePage):
-    """The workpiece's zero, a row each."""
+    """The page of the presets of a mill, with one row for each."""
 
     NAME = page_table.PRESETS
     LABELS = ("MENU", "TOUCH", "ACTIVATE", "UNDO", "HISTORY", "", "ALARMS", "TOOLS", "", "")
@@ -204,12 +209,12 @@ class PresetsPage(CellTablePage):
         super().__init__(host, parent, Presets(host.desk))
 
     def barred_by(self) -> dict[str, object]:
-        """Return also why the workpiece is not touched off, and why no preset comes into force."""
+        """Return the reasons why keys are disabled, including F2 for touching off and F3 for activating."""
         model = self.model
         return {**super().barred_by(), "F2": model.here_barred(), "F3": model.activate_barred()}
 
     def key_actions(self) -> KeyActions:
-        """Where the tip touches the workpiece, and which preset is in force."""
+        """Return the key actions, including F2 for touching off and F3 for activating a preset."""
         rest = {key: act for key, act in super().key_actions().items() if key not in {"F8", "F9"}}
         own = {"F2": self.model.here, "F3": self.model.activate}
         return {**rest, **own, "F8": partial(self._go, page_table.MILL_TOOLS)}

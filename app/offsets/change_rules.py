@@ -1,9 +1,10 @@
-"""The rules on changes of offsets, for screen and command line: which are doubtful, and which act each is.
+"""Rules for changes of offsets, for the screen and the command line.
 
-The rule compares the new value with the value in use. Its limits are TurnDesk's own. They are larger than
-the usual correction of a size between two parts and smaller than most slips of a digit, a sign or a decimal
-point. Datums (G54 to G59, presets) are not questioned, because each new setup moves them by any distance;
-the proof checks the resulting path against the travel.
+They define which changes are suspicious, and which access right each change needs. A rule compares the new
+value with the value in use. The limits are larger than the usual size correction between two parts, and
+smaller than most errors of a digit, a sign or a decimal point. Zero offsets and presets are not checked,
+because each new setup moves them by any distance. The proof checks the resulting path against the axis
+travel.
 """
 
 from __future__ import annotations
@@ -17,24 +18,25 @@ from core.machine.machine_model import Machine
 from core.store.offsets.touch_off import Touch
 from core.store.store_rows import FIELDS, Kind, MillRow, Row, SecondaryRow, ToolRow, Value, with_fields
 
-LARGE_MM = 0.5  # geometry: about .02 in
-LARGE_CORRECTION_MM = 0.254  # wear: .010 in as it is entered, X on the diameter; a slipped .002 is .020
-_NEAR = 1e-6  # mm: rounding
+LARGE_MM = 0.5  # Geometry: about .02 in.
+# Wear: .010 in as entered, X on the diameter. A misplaced decimal point turns .002 into .020.
+LARGE_CORRECTION_MM = 0.254
+_NEAR = 1e-6  # Rounding tolerance in mm.
 
-Travel = Mapping[str, tuple[float, float]]  # of x and z, mm from home
+Travel = Mapping[str, tuple[float, float]]  # Travel of x and z in mm from home.
 
 
 class Doubt(StrEnum):
-    """Why a change is questioned; the most serious doubt first."""
+    """The reason why a change is suspicious. The most serious reason comes first."""
 
-    TRAVEL = "travel"  # the tip could not reach part zero
-    SIDE = "side"  # the tool would work on the other side of the part
-    LARGE = "large"  # far from the value in use
-    MASTER = "master"  # other tools will follow this tool
+    TRAVEL = "travel"  # The tip cannot reach part zero.
+    SIDE = "side"  # The tool would cut on the other side of the part.
+    LARGE = "large"  # The value differs much from the value in use.
+    MASTER = "master"  # Other tools will follow this tool.
 
 
 class Suspicion(NamedTuple):
-    """One questionable field of one offset: its value before (None: not set) and after, mm."""
+    """One suspicious field of an offset, with its old value (None: not set) and new value in mm."""
 
     doubt: Doubt
     number: int
@@ -44,9 +46,9 @@ class Suspicion(NamedTuple):
 
 
 def travel_of(machine: Machine | None) -> Travel:
-    """Return the travel of the axes that the tool offsets of a lathe refer to; none for a mill.
+    """Return the travel of X and Z of a lathe in mm. Empty for a mill or without a machine.
 
-    The length of a mill's tool is no machine position, so it is not compared with the travel.
+    The tool length of a mill is not a machine position, so it is not compared with the travel.
     """
     if machine is None or machine.kind != "lathe":
         return {}
@@ -56,9 +58,9 @@ def travel_of(machine: Machine | None) -> Travel:
 def suspicions_of(
     kind: Kind, table: Mapping[int, Row], changes: Mapping[int, Mapping[str, Value]], travel: Travel
 ) -> tuple[Suspicion, ...]:
-    """Return what is questionable about setting these fields of rows of a table.
+    """Return the suspicious fields if these fields of table rows are set.
 
-    Rows with a value out of its range are left out: the store refuses them.
+    Rows with a value out of its range are omitted, because the store rejects them.
     """
     new = {n: row for n, values in changes.items() if (row := _changed(kind, table.get(n), values))}
     found = [
@@ -69,7 +71,7 @@ def suspicions_of(
 
 
 def _changed(kind: Kind, old: Row | None, values: Mapping[str, Value]) -> Row | None:
-    """Return the row with these values; None if it is not questioned or a value is out of its range."""
+    """Return the row with these values. None if its kind is not checked or a value is out of its range."""
     fields = FIELDS[kind]
     if not all(name in fields and fields[name].takes(value) for name, value in values.items()):
         return None
@@ -83,7 +85,7 @@ def _changed(kind: Kind, old: Row | None, values: Mapping[str, Value]) -> Row | 
 
 
 def suspicions(number: int, old: Row | None, new: Row, travel: Travel) -> tuple[Suspicion, ...]:
-    """Return what is questionable about replacing ``old`` by ``new``, the most serious doubt first."""
+    """Return the suspicious fields if ``new`` replaces ``old``, the most serious first."""
     found: list[Suspicion] = []
     if isinstance(new, ToolRow):
         found = list(_of_tool(number, old if isinstance(old, ToolRow) else None, new, travel))
@@ -105,7 +107,7 @@ def _of_tool(number: int, old: ToolRow | None, new: ToolRow, travel: Travel) -> 
         yield Suspicion(Doubt.SIDE, number, "x", old.x, new.x)
     for at, name in enumerate("xz"):
         before, after = getattr(old, name), getattr(new, name)
-        # A touch-off includes the wear in the new geometry: the tip moves by the difference of the sums.
+        # A touch-off includes the wear in the new geometry, so the tip moves by the difference of the sums.
         if before != after and abs(new.offset[at] - old.offset[at]) > LARGE_MM + _NEAR:
             yield Suspicion(Doubt.LARGE, number, name, before, after)
     worn = tuple(f"wear_{name}" for name in "xz" if getattr(old, name) == getattr(new, name))
@@ -113,7 +115,7 @@ def _of_tool(number: int, old: ToolRow | None, new: ToolRow, travel: Travel) -> 
 
 
 def _of_mill(number: int, old: MillRow, new: MillRow) -> Iterator[Suspicion]:
-    measured = tuple(name for name in ("length", "radius", "corner") if getattr(old, name))  # 0: not entered
+    measured = tuple(name for name in ("length", "radius", "corner") if getattr(old, name))  # 0: not entered.
     yield from _moved(number, old, new, measured, LARGE_MM)
     yield from _of_corrections(number, old, new, ("dl", "dr", "dr2"), doubled="")
 
@@ -130,7 +132,7 @@ def _beyond(number: int, old: ToolRow | None, new: ToolRow, travel: Travel) -> I
 def _of_corrections(
     number: int, old: Row, new: Row, names: tuple[str, ...], doubled: str
 ) -> Iterator[Suspicion]:
-    """``doubled`` is the field that is entered as a diameter."""
+    """Yield suspicious corrections. ``doubled`` is the field that is entered as a diameter."""
     for name in names:
         limit = LARGE_CORRECTION_MM / (2.0 if name == doubled else 1.0)
         yield from _moved(number, old, new, (name,), limit)
@@ -144,7 +146,7 @@ def _moved(number: int, old: Row, new: Row, names: tuple[str, ...], limit: float
 
 
 def _new_masters(table: Mapping[int, Row], new: Mapping[int, Row]) -> Iterator[Suspicion]:
-    """Yield the rows that become the master while the table already has tools that will follow."""
+    """Yield the rows that become the master while the table contains tools that will follow."""
     for number, row in new.items():
         old = table.get(number)
         was = isinstance(old, ToolRow) and old.master
@@ -152,25 +154,25 @@ def _new_masters(table: Mapping[int, Row], new: Mapping[int, Row]) -> Iterator[S
             yield Suspicion(Doubt.MASTER, number, "master", False, True)
 
 
-# --- several tools at once -------------------------------------------------------------------------------
+# --- several tools ---------------------------------------------------------------------------------------
 
 
 def touched(tools: Mapping[int, ToolRow], number: int, touch: Touch) -> ToolRow:
-    """Return the row of the tool after this touch-off, as the store will save it."""
+    """Return the row of a tool after this touch-off, as the store will save it."""
     geometry = {name: value for name, value in (("x", touch.x), ("z", touch.z)) if value is not None}
     values: dict[str, Value] = {**geometry, **{f"wear_{name}": 0.0 for name in geometry}}
     return with_fields(tools.get(number, ToolRow()), values)
 
 
 def followers(tools: Iterable[int], master: int) -> tuple[int, ...]:
-    """Return the tools that follow when this tool is the master and is touched off."""
+    """Return the tools that follow if this tool is the master and is touched off."""
     return tuple(number for number in sorted(tools) if number != master)
 
 
 def of_followers(
     tools: Mapping[int, ToolRow], master: int, new: ToolRow, travel: Travel
 ) -> tuple[Suspicion, ...]:
-    """Return the followers that a touch-off of the master would move beyond the travel."""
+    """Return the followers that a touch-off of the master would move outside the travel."""
     old = tools[master]
     x, z = (after - before for before, after in zip(old.offset, new.offset, strict=True))
     found: list[Suspicion] = []
@@ -183,7 +185,7 @@ def of_followers(
 def described(
     found: tuple[Suspicion, ...], name: Callable[[Suspicion], str], reason: Callable[[Suspicion], str]
 ) -> str:
-    """Return one text for all suspicions: each field once, with the most serious reason of its doubts."""
+    """Return one text for all suspicions. Each field appears once, with its most serious reason."""
     fields: dict[tuple[int, str], Suspicion] = {}
     for each in found:
         fields.setdefault((each.number, each.name), each)
@@ -207,6 +209,9 @@ _ACTS = {
 
 
 def act_of(kind: Kind, fields: Collection[str] = ()) -> Act:
-    """What it is to change these fields; without fields: to clear, or to take a change back."""
+    """Return the access right that is needed to change these fields.
+
+    Without fields, return the right to clear the table or to undo a change.
+    """
     only = CORRECTIONS.get(kind, frozenset())
     return Act.WEAR if fields and only.issuperset(fields) else _ACTS[kind]

@@ -1,4 +1,4 @@
-"""Tools in a mill: touching off by the machine's own chain, and tool life in the tool table."""
+"""Touch-off on a mill with the machine's kinematics, and tool life for the tool table."""
 
 from __future__ import annotations
 
@@ -16,28 +16,30 @@ from core.message import Message
 from core.production.tool_life import ToolLife
 
 _HERE: Vector = (0.0, 0.0, 0.0)
-_UPRIGHT = 1e-6  # of a unit vector: a tool that leans less stands upright
+_UPRIGHT = 1e-6  # Tolerance of a unit vector within which a tool counts as upright.
 
 
 @dataclass(slots=True)
 class MillTouch:
-    """A desk's mill. ``machine`` is its chain as the machine file has it; None: it has none."""
+    """Calculates positions on a mill. ``machine`` is the kinematics from the machine file, or None."""
 
     desk: Desk
     machine: Kinematics | None
 
     def close(self) -> None:
-        """Nothing of it runs."""
+        """Do nothing, because nothing runs in the background."""
 
     @classmethod
     def of(cls, desk: Desk) -> MillTouch:
-        """That of this desk."""
+        """Return the object attached to TurnDesk, or one without kinematics."""
         found = desk.pages.find(cls)
         return found if found is not None else cls(desk, None)
 
     def tip(self, zeros: Mapping[str, float]) -> Vector | str:
-        """Where the tip of the tool in the spindle touches, in the machine with the rotary axes at ``zeros``,
-        mm; or why nobody knows."""
+        """Return the machine position of the tip of the tool in the spindle in mm, or why it is unknown.
+
+        The position is calculated for the rotary axes at ``zeros``.
+        """
         stands = self._stands()
         if isinstance(stands, str):
             return stands
@@ -51,8 +53,10 @@ class MillTouch:
         return bare.at_zeros(replace(bare, origin=_HERE).place(angles, tool_length=length).point(slides))
 
     def moved(self, spot: Vector, before: Mapping[str, float], after: Mapping[str, float]) -> Vector:
-        """Where a point of the workpiece lies in the machine with the rotary axes at ``after``, mm; ``spot``
-        is where it lies with them at ``before``."""
+        """Return the machine position in mm of a workpiece point with the rotary axes at ``after``.
+
+        ``spot`` is the machine position of the same point with the rotary axes at ``before``.
+        """
         if self.machine is None:
             return spot
         first, last = (
@@ -63,17 +67,20 @@ class MillTouch:
 
     @property
     def rotary_axes(self) -> tuple[str, ...]:
-        """The names of the rotary axes, in the order of A B C."""
+        """The names of the rotary axes in alphabetical order."""
         return tuple(sorted(axis.name for axis in self.machine.rotaries)) if self.machine else ()
 
     def angle(self, name: str) -> float | str:
-        """Where a rotary axis stands, degrees in the machine; or why nobody knows."""
+        """Return the machine position of a rotary axis in degrees, or why it is unknown."""
         stands = self._stands()
         return stands if isinstance(stands, str) else stands[1][name]
 
     def nose_height(self) -> float | str:
-        """How high the spindle's nose stands over the zero of the preset in force, mm: L of a tool whose tip
-        touches there; or why nobody knows."""
+        """Return the height of the spindle nose above the zero of the preset in force in mm.
+
+        A tool whose tip touches this zero has this length L. If the height is unknown, return the reason as
+        text.
+        """
         stands = self._stands()
         if isinstance(stands, str):
             return stands
@@ -83,7 +90,10 @@ class MillTouch:
         return machine.place(angles).point(slides)[2]
 
     def _stands(self) -> tuple[Kinematics, dict[str, float], Vector] | str:
-        """The chain with the preset in force, the angles, the slides; or why they are not known."""
+        """Return the kinematics with the preset in force, the rotary angles and the linear axis positions.
+
+        If they are unknown, return the reason as text.
+        """
         snapshot, book = self.desk.snapshot(), self.desk.book
         if self.machine is None:
             return tr("CANNOT TOUCH OFF: THE MILL'S MACHINE FILE HAS NO [kinematics] TABLE")
@@ -111,17 +121,20 @@ def _none() -> Mapping[int, ToolLife]:
 
 @dataclass(slots=True)
 class MillLives:
-    """``lives`` by tool, the same object while nothing changes; ``set_used`` a tool's cutting seconds, 0 of a
-    fresh tool."""
+    """Access to the tool life of a mill's tools.
+
+    ``lives`` returns the tool life by tool number, and returns the same object while nothing changes.
+    ``set_used`` sets the cutting seconds of a tool, 0 for a new tool.
+    """
 
     lives: Callable[[], Mapping[int, ToolLife]] = _none
     set_used: Callable[[int, float], None] = lambda _number, _seconds: None
 
     def close(self) -> None:
-        """Nothing of it runs."""
+        """Do nothing, because nothing runs in the background."""
 
     @classmethod
     def of(cls, desk: Desk) -> MillLives:
-        """Those of this desk; a desk that counts nothing has none."""
+        """Return the object attached to TurnDesk, or one without tools."""
         found = desk.pages.find(cls)
         return found if found is not None else cls()

@@ -1,4 +1,4 @@
-"""The offsets as the desk sees them: the present values, and changes that are saved without waiting."""
+"""The present offsets of TurnDesk, and changes that are saved without waiting."""
 
 from __future__ import annotations
 
@@ -63,35 +63,37 @@ def rows_of_store(store: Store) -> OffsetRows:
 
 @dataclass(slots=True)
 class OffsetBook:
-    """Tool, secondary and zero offsets and tool shapes by number, mm and degrees, X a radius.
+    """Offsets and tool shapes by number, in mm and degrees, with X as a radius.
 
-    A change that the level in force allows is posted to the store's writer and shown when it is on the disk;
-    ``poll`` is called once a frame. Without ``store`` nothing can be changed, and ``locked`` says why.
+    A change that the access level permits is posted to the store's writer. It is shown when it is on the
+    disk. ``poll`` is called once a frame. Without ``store``, nothing can be changed, and ``locked`` gives the
+    reason.
     """
 
     store: Store | None = None
     locked: str = ""
     tools: dict[int, ToolRow] = field(default_factory=dict)
     secondary: dict[int, SecondaryRow] = field(default_factory=dict)
-    zero: dict[int, ZeroRow] = field(default_factory=dict)  # by the number of its G code
+    zero: dict[int, ZeroRow] = field(default_factory=dict)  # By the number of the G code.
     shapes: dict[int, ShapeRow] = field(default_factory=dict)
     mill_tools: dict[int, MillRow] = field(default_factory=dict)
     presets: dict[int, PresetRow] = field(default_factory=dict)
-    preset: int = 0  # the one in force on a mill; 0: that of the machine file
-    access: Access = field(default_factory=Access)  # who changes, and whether he may
-    unread: bool = False  # whether there are offsets that cannot be read
-    at: int = 1  # the tool that the pages of tools stand at
-    changes: int = 0  # how many were saved
+    preset: int = 0  # The preset in force on a mill; 0: the preset of the machine file.
+    access: Access = field(default_factory=Access)  # The signed-in user and the permitted changes.
+    unread: bool = False  # True if offsets cannot be read.
+    at: int = 1  # The tool that the tool pages have selected.
+    changes: int = 0  # Number of saved changes.
     _saving: Future[Any] | None = None
-    _reopened: tuple[Store | None, str, OffsetRows | None] | None = None  # by another thread, for a poll
+    # Set by another thread and read by ``poll``.
+    _reopened: tuple[Store | None, str, OffsetRows | None] | None = None
 
     def __post_init__(self) -> None:
         self.read()
 
-    # --- what there is -------------------------------------------------------------------------------
+    # --- present values ------------------------------------------------------------------------------
 
     def of(self, kind: Kind) -> Mapping[int, Row]:
-        """The offsets of one kind, by number."""
+        """Return the offsets of one kind, by number."""
         tables: dict[Kind, Mapping[int, Row]] = {
             Kind.TOOL: self.tools,
             Kind.SECONDARY: self.secondary,
@@ -104,20 +106,20 @@ class OffsetBook:
 
     @property
     def master(self) -> int:
-        """The tool that the others are relative to; 0: none."""
+        """The number of the master tool, or 0 without a master."""
         return next((number for number, row in self.tools.items() if row.master), 0)
 
     def history(self, kind: Kind, limit: int = 200) -> tuple[Change, ...]:
-        """The last changes, newest first; none where there is no store to remember them."""
+        """Return the last changes, newest first. Empty without a store."""
         return () if self.store is None else self.store.offsets.table(kind).read_history(limit)
 
     def read(self) -> None:
-        """Take the values of the store; it answers at once, also while it is being written."""
+        """Read the values of the store. This returns at once, even while the store is being written."""
         if self.store is not None:
             self.show(rows_of_store(self.store))
 
     def show(self, rows: OffsetRows) -> None:
-        """Take these values; without a store they can be looked at, and not changed."""
+        """Use these values. Without a store, they can be shown but not changed."""
         self.tools, self.secondary, self.zero = dict(rows.tools), dict(rows.secondary), dict(rows.zero)
         self.shapes, self.mill_tools, self.presets = (
             dict(rows.shapes),
@@ -131,29 +133,29 @@ class OffsetBook:
             self.tools, self.secondary, self.zero, self.shapes, self.mill_tools, self.presets, self.preset
         )
 
-    # --- changes: each answers why not, or nothing ----------------------------------------------------
+    # --- changes: each returns why it was rejected, or an empty text ----------------------------------
 
     def change(self, kind: Kind, number: int, values: Mapping[str, Value], why: str) -> str:
-        """Save some fields of an offset and keep the rest."""
+        """Save some fields of an offset, and leave the other fields unchanged."""
         return self._post(
             act_of(kind, values),
             lambda store, who: store.offsets.table(kind).change_row(number, why, values, who=who),
         )
 
     def touch_off(self, number: int, touch: Touch, why: str) -> str:
-        """Set a tool by what it touched; with the master all others follow."""
+        """Set a tool by a touch-off. If the tool is the master, all other tools follow."""
         return self._post(
             Act.TOOLS, lambda store, who: store.offsets.tools.touch_off(number, touch, why, who=who)
         )
 
     def choose_master(self, number: int, why: str) -> str:
-        """Make this tool the master; 0: no tool is."""
+        """Make this tool the master. 0 means that no tool is the master."""
         return self._post(
             Act.TOOLS, lambda store, who: store.offsets.tools.choose_master(number, why, who=who)
         )
 
     def choose_preset(self, number: int) -> str:
-        """Another preset is in force; 0: that of the machine file."""
+        """Activate another preset. 0 is the preset of the machine file."""
         before = self.preset
 
         def choose(store: Store, _who: str) -> Future[None]:
@@ -165,29 +167,32 @@ class OffsetBook:
         return self._post(Act.PRESETS, choose)
 
     def remove_shape(self, number: int, why: str) -> str:
-        """A tool without a shape again."""
+        """Delete the shape of a tool."""
         return self._post(
             Act.SHAPES, lambda store, who: store.offsets.shapes.remove_row(number, why, who=who)
         )
 
     def clear(self, kind: Kind, why: str) -> str:
-        """All offsets of this kind at once."""
+        """Delete all offsets of this kind."""
         return self._post(
             act_of(kind), lambda store, who: store.offsets.table(kind).remove_all_rows(why, who=who)
         )
 
     def undoable(self, kind: Kind, number: int | None) -> tuple[Change, ...]:
-        """Return what undo would take back; None: the last step of the table. Raises StoreError."""
+        """Return the changes of the last step that undo would reverse. Raises StoreError.
+
+        ``number`` is a row, or None for the last step of the whole table.
+        """
         return () if self.store is None else self.store.offsets.table(kind).find_undoable(number)
 
     def undo(self, kind: Kind, number: int | None, step: int) -> str:
-        """Take exactly this step back."""
+        """Undo exactly this step."""
         return self._post(
             act_of(kind), lambda store, who: store.offsets.table(kind).undo_step(number, step, who=who)
         )
 
     def barred(self, act: Act) -> str:
-        """Return why this change cannot be posted now; empty if it can."""
+        """Return why this change cannot be posted now. Empty if it can."""
         if self.store is None or self.busy:
             return self.locked or SAVING
         return self.access.refusal(act)
@@ -205,11 +210,11 @@ class OffsetBook:
 
     @property
     def busy(self) -> bool:
-        """Whether a change is on its way to the disk."""
+        """Whether a change is being saved."""
         return self._saving is not None
 
     def poll(self) -> str:
-        """Look whether the change is on the disk; the answer is what went wrong, or nothing."""
+        """Check whether the change has been saved. Return the error, or an empty text."""
         if self._reopened is not None:
             return self._turn_to(*self._reopened)
         saving = self._saving
@@ -222,9 +227,10 @@ class OffsetBook:
         return self._read_or_why() or (str(error) if error is not None else "")
 
     def reopen(self, store: Store | None, trouble: str, rows: OffsetRows | None = None) -> None:
-        """Another store is in the place of the one before; None: ``trouble`` says why. From any thread.
+        """Use another store from the next poll on. Any thread may call this.
 
-        ``rows``: what another TurnDesk, which has the store, has set.
+        If ``store`` is None, ``trouble`` gives the reason. ``rows`` are the offsets that another TurnDesk,
+        which owns the store, has set.
         """
         self._reopened = store, trouble, rows
 

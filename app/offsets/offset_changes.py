@@ -1,7 +1,7 @@
-"""Changes of offsets: asked before they take effect where suspicious, remembered, and taken back.
+"""Changes of offsets: confirmation of suspicious changes, history and undo.
 
-Every page changes offsets through this class. A question names the old and the new value; Y changes the
-offset, N and Esc leave it as it is.
+Every page changes offsets through these classes. A question shows the old and the new value. Y changes the
+offset, and N and Esc leave it unchanged.
 """
 
 from __future__ import annotations
@@ -49,10 +49,10 @@ LETTERS = {
 
 
 def refusal(snapshot: Snapshot, *, correction: bool) -> str:
-    """Why nothing may be changed now; empty when it may.
+    """Return why offsets cannot be changed now. Empty if they can.
 
-    A correction (wear, secondary offset) may be entered while parts run: the part under way keeps the
-    offsets that it was proved with. What says where a tip is waits until no program is under way.
+    A correction (wear, secondary offset) may be entered while parts run, because the present part uses the
+    offsets that it was proved with. A change of a tip position must wait until no program is running.
     """
     if snapshot.state in {State.JOG, State.HOME}:
         return tr("AXES ARE MOVING. WAIT UNTIL THEY STOP TO CHANGE OFFSETS")
@@ -62,7 +62,7 @@ def refusal(snapshot: Snapshot, *, correction: bool) -> str:
 
 
 def counts_from(snapshot: Snapshot) -> str:
-    """What a change entered now will count for; empty between cycles."""
+    """Return from when a change that is entered now applies. Empty between cycles."""
     if snapshot.state not in UNDER_WAY:
         return ""
     if snapshot.cycle_repeat:
@@ -71,7 +71,7 @@ def counts_from(snapshot: Snapshot) -> str:
 
 
 def _behind_saved(snapshot: Snapshot) -> str:
-    """What the message says behind SAVED while parts run."""
+    """Return the text that follows SAVED in a message while parts run."""
     if snapshot.state not in UNDER_WAY:
         return ""
     if snapshot.cycle_repeat:
@@ -81,17 +81,17 @@ def _behind_saved(snapshot: Snapshot) -> str:
 
 @dataclass(slots=True)
 class OffsetHistory:
-    """Of the table ``kind``; every page that changes it looks once a frame."""
+    """The history of the table ``kind``. Every page that changes the table calls ``look`` once a frame."""
 
     desk: Desk
     kind: Kind
-    mode: Mode = field(default_factory=Mode)  # of the control, as it was looked at last
-    keys: str = "F5"  # that show the history from the page
-    last: tuple[Change, ...] = ()  # the changes of the last step that was saved while the page was open
-    listed: tuple[Change, ...] | None = None  # the history while it is looked at
+    mode: Mode = field(default_factory=Mode)  # Mode of the control at the last update.
+    keys: str = "F5"  # Keys that show the history on the page.
+    last: tuple[Change, ...] = ()  # Changes of the last step that was saved while the page was open.
+    listed: tuple[Change, ...] | None = None  # The history while it is shown, else None.
     _seen: int = 0
-    _newest: int = 0  # id of the newest change that was read
-    _asked_of: tuple[int, int | None] | None = None  # changes of the book, and row, that ``_undoable`` is of
+    _newest: int = 0  # Id of the newest change that was read.
+    _asked_of: tuple[int, int | None] | None = None  # Change count and row for which ``_undoable`` is valid.
     _undoable: bool = True
 
     def __post_init__(self) -> None:
@@ -99,22 +99,22 @@ class OffsetHistory:
 
     @property
     def book(self) -> OffsetBook:
-        """The offsets as they are saved."""
+        """The saved offsets."""
         return self.desk.book
 
     def opened(self) -> None:
-        """The page comes up: what was changed elsewhere is no news here."""
+        """Ignore the changes that were made before the page opened."""
         self._seen, self.last = self.book.changes, ()
         self._newest = max((change.id for change in self._read(1)), default=0)
 
     def look(self, snapshot: Snapshot) -> None:
-        """Once a frame: follow the control's unit, and say what has been saved since."""
+        """Update the unit of the control, and report newly saved changes; called once a frame."""
         self.mode = Mode(snapshot.modal.metric, snapshot.reads_diameter)
         if self.book.changes == self._seen:
             return
         self._seen = self.book.changes
         changes = self._read()
-        # What was saved may have been of another table: the tip of a tool, entered on the page of its shape.
+        # The change may belong to another table, for example a tip entered on the page of the tool shape.
         fresh = bool(changes) and changes[0].id != self._newest
         self._newest = changes[0].id if changes else 0
         self.last = tuple(change for change in changes if fresh and change.step == changes[0].step)
@@ -136,7 +136,11 @@ class OffsetHistory:
         return edge_name(change.number) if letter == "T" else f"{letter}{change.number}"
 
     def in_words(self, change: Change) -> tuple[str, str, str, str]:
-        """Of one change: when (local time), which, from → to in the control's unit, why and by whom."""
+        """Return the texts of one change.
+
+        They are the local time, the offset, its values from → to in the control's unit, and the reason with
+        the user.
+        """
         at = local_time(change.at)
         who = "" if change.who == "operator" else f" ({change.who})"
         which = self._named(change)
@@ -144,7 +148,7 @@ class OffsetHistory:
 
     @property
     def last_in_words(self) -> str:
-        """The last change in one line; empty when nothing has changed here yet."""
+        """The last change in one line. Empty if nothing has changed while the page was open."""
         if len(self.last) == 1:
             _at, which, change, _why = self.in_words(self.last[0])
             return f"{which}   {change}"
@@ -159,20 +163,20 @@ class OffsetHistory:
         )
 
     def toggle(self) -> None:
-        """The history instead of the table, or the table again."""
+        """Show the history in place of the table, or the table again."""
         self.listed = None if self.listed is not None else self._read()
 
     def undoable(self, number: int | None) -> bool:
-        """Return whether a change of this row can be taken back. It asks the store once per change."""
+        """Return whether a change of this row can be undone. The result is cached until the next change."""
         key = self.book.changes, number
         if self._asked_of != key:
             self._asked_of, self._undoable = key, True
-            with suppress(StoreError):  # undo itself reports it
+            with suppress(StoreError):  # ``undo`` itself reports the error.
                 self._undoable = bool(self.book.undoable(self.kind, number))
         return self._undoable
 
     def answer(self, why: str) -> None:
-        """Say why not, where there is a reason."""
+        """Show a reason why something was rejected. An empty text shows nothing."""
         if why:
             self.desk.say(why)
 
@@ -184,19 +188,19 @@ class OffsetHistory:
             return ()
 
 
-_MOST_NAMES = 6  # followers that a question lists by name
+_MOST_NAMES = 6  # Followers that a question lists by name.
 
 
 @dataclass(frozen=True, slots=True)
 class OffsetQuestions:
-    """Changes of the offsets of one page. Each method returns why it refused, or an empty string."""
+    """Changes of offsets with confirmation. Each method returns why it was rejected, or an empty text."""
 
     history: OffsetHistory
 
     # --- values --------------------------------------------------------------------------------------
 
     def change(self, kind: Kind, number: int, values: Mapping[str, Value], why: str) -> str:
-        """Save some fields of an offset; ask first if a value is suspicious."""
+        """Save some fields of an offset. Ask first if a value is suspicious."""
         book = self.history.book
         table = book.of(kind)
         return self._if_meant(
@@ -208,9 +212,9 @@ class OffsetQuestions:
         )
 
     def touch_off(self, number: int, touch: Touch, why: str, tip: float | None = None) -> str:
-        """Set a tool by a touch-off; ask first if the result is suspicious.
+        """Set a tool by a touch-off. Ask first if the result is suspicious.
 
-        ``tip`` is X of the tip from part zero by this touch (mm, a radius), None if X was not measured so.
+        ``tip`` is X of the tip relative to part zero in mm as a radius, or None if X was not touched.
         """
         book = self.history.book
         tools = book.tools
@@ -224,7 +228,7 @@ class OffsetQuestions:
         )
 
     def doubts(self, number: int, touch: Touch, tip: float | None = None) -> tuple[Suspicion, ...]:
-        """Return what is questionable about this touch-off."""
+        """Return the suspicious fields of this touch-off."""
         tools, travel = self.history.book.tools, self._travel()
         old, new = tools.get(number), touched(tools, number, touch)
         found = suspicions(number, old, new, travel)
@@ -235,13 +239,13 @@ class OffsetQuestions:
         return found
 
     def _that_follow(self, number: int, touch: Touch) -> str:
-        """Return the names of the tools that this touch-off moves too; empty if it moves no other tool."""
+        """Return the names of the tools that follow this touch-off. Empty if no other tool moves."""
         tools = self.history.book.tools
         moves_all = number in tools and tools[number].master and not touch.alone
         return follower_names(tools, number) if moves_all else ""
 
     def _other_side(self, number: int, tip: float, new_x: float) -> bool:
-        """Return whether the tool would touch on the other side of the part than before."""
+        """Return whether the tool would touch the other side of the part than before."""
         book = self.history.book
         old, shape = book.tools.get(number), book.shapes.get(number)
         if old is not None:
@@ -260,7 +264,10 @@ class OffsetQuestions:
         unchanged: Callable[[], bool],
         others: str = "",
     ) -> str:
-        """Save at once, or after Y if there are suspicions and nothing has changed meanwhile."""
+        """Save at once, or after Y if there are suspicions.
+
+        The change is rejected if the offsets have changed since the question.
+        """
         history = self.history
         if (why := history.book.barred(act)) or not found:
             return why or save()
@@ -273,13 +280,13 @@ class OffsetQuestions:
         return ""
 
     def _named(self, kind: Kind, each: Suspicion) -> str:
-        """T1 X Ø +0.50000 → −1.20000"""
+        """Return the text of a change, for example T1 X Ø +0.50000 → −1.20000."""
         title, shown = self._display(kind, each.name)
         old = not_set() if each.old is None else shown(each.old)
         return f"{_row_name(kind, each.number)} {title} {old} → {shown(each.new)}"
 
     def _display(self, kind: Kind, name: str) -> tuple[str, Callable[[Value], str]]:
-        """Return the title of a field, and how its values are shown."""
+        """Return the title of a field, and the function that formats its values."""
         mode = self.history.mode
         if kind is Kind.TOOL:
             return heading(name, mode), lambda value: shown_value(name, value, mode)
@@ -291,7 +298,7 @@ class OffsetQuestions:
     # --- the master ----------------------------------------------------------------------------------
 
     def choose_master(self, number: int) -> str:
-        """Ask whether this tool becomes the master, or no tool if it is the master; name the followers."""
+        """Ask whether this tool becomes the master, or no tool if it is the master. Name the followers."""
         book = self.history.book
         tools, before = book.tools, book.master
         if why := book.barred(Act.TOOLS):
@@ -329,9 +336,9 @@ class OffsetQuestions:
     # --- undo ----------------------------------------------------------------------------------------
 
     def undo(self, kind: Kind, number: int | None, done: str = "") -> str:
-        """Ask whether the last change of this row is taken back; None: the last change of the table.
+        """Ask whether the last change of this row is undone. None means the last change of the table.
 
-        ``done`` is reported after Y by a page that does not watch the table.
+        ``done`` is shown after Y by a page that does not watch the table.
         """
         book = self.history.book
         if why := book.barred(act_of(kind)):
@@ -385,11 +392,11 @@ def _table_or_row(kind: Kind, number: int | None) -> str:
 
 
 def follower_names(tools: Mapping[int, ToolRow], master: int) -> str:
-    """Return the names of the tools that follow this master, the first few of many."""
+    """Return the names of the tools that follow this master, shortened if there are many."""
     return ", ".join(_short([edge_name(number) for number in followers(tools, master)]))
 
 
 def _short(names: list[str]) -> list[str]:
-    """Return the first names, and how many more there are."""
+    """Return the first names and the number of the others."""
     more = len(names) - _MOST_NAMES
     return names if more <= 0 else [*names[:_MOST_NAMES], tr(Message("{count} MORE", count=more))]

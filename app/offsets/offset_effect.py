@@ -1,7 +1,7 @@
-"""What a change of offsets does to the path: the loaded program drawn with the offsets before and after.
+"""Effect of a change of offsets on the path: the loaded program drawn with the old and new offsets.
 
-A tool whose offset changes moves its real tip, so both pictures stand in the frame of the offsets before:
-there the path after lies beside the path before by as much as the tip will.
+A changed tool offset moves the real tip. Both paths are therefore drawn in the frame of the old offsets, so
+that their distance equals the distance that the tip will move.
 """
 
 from __future__ import annotations
@@ -27,41 +27,42 @@ if TYPE_CHECKING:
     from app.path.path_picture import Picture
     from core.proving.other_offsets import OtherPart
 
-    # The job with the offsets before and after; None: the program makes no part.
+    # Arguments: the job with old and new offsets. Returns None if the program makes no part.
     ComparePart = Callable[[Job, Job, Watch], OtherPart | None]
 
-NOUGHT = 1e-9  # mm
+NOUGHT = 1e-9  # Millimeters.
 R = TypeVar("R", ToolRow, SecondaryRow)
 
 
 @dataclass(frozen=True, slots=True)
 class Tables:
-    """Both tables of offsets, as the interpreter gets them."""
+    """Tool offsets and secondary offsets, as the interpreter uses them."""
 
     tools: Mapping[int, ToolOffset] = field(default_factory=dict)
     secondary: Mapping[int, SecondaryOffset] = field(default_factory=dict)
 
 
-# Job, the tools in whose frame it is drawn, and whether anybody still wants it.
+# Arguments: job, tools that define the frame of the drawing, and progress function.
 Draw = Callable[[Job, Mapping[int, ToolOffset], Watch], "Picture"]
 
 
 @dataclass(frozen=True, slots=True)
 class Compared:
-    """Two pictures in one frame."""
+    """Two paths in one frame, with the old and the new offsets."""
 
     before: Picture
     after: Picture
-    furthest: float = 0.0  # mm between two points of the same number; infinite where the paths differ in kind
+    # Largest distance of corresponding points in mm; inf if the paths have different moves.
+    furthest: float = 0.0
 
     @property
     def same(self) -> bool:
-        """Whether the change does nothing to this program."""
+        """Whether the change has no effect on this program."""
         return self.furthest <= NOUGHT
 
 
 def compared(before: Picture, after: Picture) -> Compared:
-    """The pair, and how far the paths lie apart."""
+    """Return both paths with their largest distance."""
     if len(before.z) != len(after.z) or not np.array_equal(before.stroke, after.stroke):
         return Compared(before, after, float("inf"))
     if not len(before.z):
@@ -72,10 +73,10 @@ def compared(before: Picture, after: Picture) -> Compared:
 
 @dataclass(slots=True)
 class Effect:
-    """Draws on a worker; the screen only looks at ``now``, ``busy`` and ``trouble``."""
+    """Draws the paths on a worker. The screen reads only ``now``, ``part``, ``busy`` and ``trouble``."""
 
     draw: Draw
-    compare: ComparePart | None = None  # None: nobody compares parts here
+    compare: ComparePart | None = None  # None: parts cannot be compared.
     now: Compared | None = None
     part: OtherPart | None = None
     trouble: str = ""
@@ -83,12 +84,12 @@ class Effect:
 
     @property
     def busy(self) -> bool:
-        """Whether the worker is still at it; what went wrong there is ``trouble`` afterwards."""
+        """Whether the worker is still drawing. After an error, ``trouble`` gives the reason."""
         self.worker.poll()
         return self.worker.busy
 
     def ask(self, job: Job, before: Tables, after: Tables) -> None:
-        """Draw this program both ways; what was being drawn before is given up."""
+        """Draw this program with the old and new offsets. A drawing in progress is canceled."""
 
         def pair(watch: Watch) -> Compared:
             return compared(*(self.draw(_with(job, each), before.tools, watch) for each in (before, after)))
@@ -97,7 +98,7 @@ class Effect:
         self.worker.ask(pair, self._drawn, self._failed)
 
     def ask_part(self, compare: ComparePart, job: Job, before: Tables, after: Tables) -> None:
-        """Compare the part both ways; what was being made before is given up."""
+        """Compare the part with the old and new offsets. Work in progress is canceled."""
         self.part, self.trouble = None, ""
         work = partial(compare, _with(job, before), _with(job, after))
         self.worker.ask(work, self._compared, self._failed)
@@ -113,12 +114,12 @@ class Effect:
         self.trouble = why
 
     def forget(self) -> None:
-        """Give up what is being drawn, and forget what was drawn."""
+        """Cancel the drawing in progress, and discard the results."""
         self.worker.give_up()
         self.now, self.part, self.trouble = None, None, ""
 
     def close(self) -> None:
-        """Give up whatever is being drawn and end the worker."""
+        """Cancel the drawing in progress, and end the worker."""
         self.worker.close()
 
 
@@ -126,26 +127,26 @@ def _with(job: Job, tables: Tables) -> Job:
     return replace(job, setup=replace(job.setup, tools=tables.tools, secondary=tables.secondary))
 
 
-# --- on the page -------------------------------------------------------------------------------------------
+# --- display on the page -----------------------------------------------------------------------------------
 
 
 @dataclass(slots=True)
 class EffectDisplay:
-    """The whole path with the place of the greatest change, that place, the part, then the table again."""
+    """The views of the effect: whole path, close-up of the largest change, part features, then the table."""
 
     table: OffsetTable
     open: bool = False
-    near: bool = False  # the place of the greatest change, so near that it is seen
-    of_part: bool = False  # what it does to the part, feature by feature
+    near: bool = False  # Close-up of the largest change.
+    of_part: bool = False  # Effect on the features of the part.
     _asked: tuple[Tables, Tables] | None = None
 
     @property
     def effect(self) -> Effect | None:
-        """The worker that draws; None where nothing is drawn."""
+        """The worker that draws, or None if effects cannot be drawn."""
         return self.table.desk.pages.find(Effect)
 
     def turn(self) -> None:
-        """F6: the next of whole path, greatest change, part, table."""
+        """Handle F6: show the next view."""
         if not self.open:
             self._open()
         elif self.of_part or self.pictures is None or self.pictures.same:
@@ -167,7 +168,7 @@ class EffectDisplay:
             self.of_part = True
 
     def barred(self) -> str:
-        """Return why no effect can be shown now; empty when one can, or is shown."""
+        """Return why no effect can be shown now. Empty if it can be, or is shown."""
         if self.open:
             return ""
         if self.effect is None or self.table.desk.session.now.job is None:
@@ -186,7 +187,10 @@ class EffectDisplay:
         self.open, self.near, self.of_part, self._asked = True, False, False, pair
 
     def _pair(self) -> tuple[Tables, Tables] | None:
-        """Before and after: of the entry, where it would change something, else of the last change."""
+        """Return the old and new offsets, or None if there is no change to show.
+
+        The change is that of the present entry if it changes a value, else the last change.
+        """
         book, last = self.table.book, self.table.history.last
         tools, secondary = self.table.proposed()
         now = _tables(book.tools, book.secondary)
@@ -207,13 +211,13 @@ class EffectDisplay:
 
     @property
     def pictures(self) -> Compared | None:
-        """What to draw now; None while the worker is at it."""
+        """The paths to draw now. None while the worker is drawing."""
         effect = self.effect
         return None if not self.open or effect is None or effect.busy else effect.now
 
     @property
     def part(self) -> OtherPart | None:
-        """The part with the offsets before and after; None while the worker is at it."""
+        """The part with the old and new offsets. None while the worker is calculating."""
         effect = self.effect
         return None if not self.of_part or effect is None or effect.busy else effect.part
 
@@ -237,7 +241,7 @@ class EffectDisplay:
 
     @property
     def words(self) -> str:
-        """What the picture is, for the prompt line."""
+        """The text of the prompt line that describes the view."""
         effect = self.effect
         return self._words_of_part(effect) if self.of_part and effect is not None else self._words_of_path()
 
@@ -267,7 +271,7 @@ def _tables(tools: Mapping[int, ToolRow], secondary: Mapping[int, SecondaryRow])
 
 
 def _before(rows: Mapping[int, R], changes: tuple[Change, ...], kind: type[R]) -> dict[int, R]:
-    """The rows as they were before these changes."""
+    """Return the rows as they were before these changes."""
     undone = dict(rows)
     for change in changes:
         undone.pop(change.number, None)

@@ -1,6 +1,6 @@
-"""Tables of offsets that the operator changes: what all have in common, and the fields of a tool.
+"""Base class of the offset tables that the operator edits, and entry of the fields of a tool.
 
-A page shows the table, the line that is typed under it, the history, and what a change does to the path.
+A page shows the table, the entry line below it, the history, and the effect of a change on the path.
 """
 
 from __future__ import annotations
@@ -26,13 +26,13 @@ Proposed = tuple[Mapping[int, ToolRow], Mapping[int, SecondaryRow]]
 
 
 class OffsetTable(ABC):
-    """One of the three tables; each has its own way to enter a value. The page only draws."""
+    """Base class of the models of offset pages. Each subclass has its own entry method."""
 
     kind: ClassVar[Kind]
-    clears: ClassVar[str] = ""  # what C asks before it clears the whole table; empty: C is no key here
-    own_key: str = ""  # a letter that does something on this page, for the pad of a finger
-    why_cleared: ClassVar[str] = ""  # in the history
-    text: str = ""  # what is typed as the answer
+    clears: ClassVar[str] = ""  # Question before C clears the whole table; empty if C has no function.
+    own_key: str = ""  # A letter with a function on this page, for the number pad.
+    why_cleared: ClassVar[str] = ""  # Reason for the history.
+    text: str = ""  # The entered text.
 
     def __init__(self, desk: Desk) -> None:
         self.desk = desk
@@ -40,7 +40,7 @@ class OffsetTable(ABC):
 
     @property
     def book(self) -> OffsetBook:
-        """The offsets as they are saved."""
+        """The saved offsets."""
         return self.desk.book
 
     @property
@@ -50,89 +50,89 @@ class OffsetTable(ABC):
 
     @property
     def questions(self) -> OffsetQuestions:
-        """The changes that are asked before they take effect."""
+        """The changes that are confirmed before they take effect."""
         return OffsetQuestions(self.history)
 
     @property
     def chosen(self) -> int | None:
-        """The number of the chosen row, which undo refers to; None if no row is chosen."""
+        """The number of the selected row, to which undo applies. None if no row is selected."""
         return None
 
-    # --- what each table has of its own --------------------------------------------------------------
+    # --- members that each table defines -------------------------------------------------------------
 
     @property
     def heading(self) -> str:
-        """Which offset is being entered, where the question does not say it."""
+        """The name of the offset that is being entered, if the question does not contain it."""
         return ""
 
     @property
     @abstractmethod
     def question(self) -> str:
-        """What the operator is asked to type now."""
+        """The question that the operator must answer now."""
 
     @property
     def is_writing(self) -> bool:
-        """Whether a text is open, which takes letters."""
+        """Whether a text that accepts letters is being edited."""
         return False
 
     @property
     def entered(self) -> str:
-        """What is typed, as the entry shows it."""
+        """The entered text, as the entry line shows it."""
         return self.text
 
     @property
     @abstractmethod
     def old_to_new(self) -> str:
-        """The change that is being entered, or else the last one."""
+        """The change that is being entered, or else the last change."""
 
     @property
     @abstractmethod
     def foot(self) -> str:
-        """What can be done beside answering."""
+        """The hint about other keys."""
 
     @abstractmethod
     def hint(self, snapshot: Snapshot) -> str:
-        """How a value is entered, or from when it will count, for the prompt line."""
+        """Return how a value is entered, or from when it will apply, for the prompt line."""
 
     @abstractmethod
     def takes(self, key: str) -> bool:
-        """Whether a character goes to the entry."""
+        """Return whether a character can be entered."""
 
     @abstractmethod
     def enter_key(self, key: str) -> bool:
-        """A key of the entry; False when it means nothing here."""
+        """Handle a key of the entry. Return False if the key has no meaning here."""
 
     @abstractmethod
     def take_back(self) -> bool:
-        """Forget what is being entered and say so; False when there was nothing."""
+        """Discard the entry and show this. Return False if nothing was entered."""
 
     @abstractmethod
     def drop(self) -> None:
-        """Forget what is being entered."""
+        """Discard the entry."""
 
     def proposed(self) -> Proposed:
-        """Tool and secondary offsets as they would be with what is being entered."""
+        """Return the tool and secondary offsets as they would be with the present entry."""
         return self.book.tools, self.book.secondary
 
-    # --- when something may change: each says why not, or nothing -------------------------------------
+    # --- conditions: each returns the reason for a refusal, or an empty text --------------------------
 
     @property
     def corrects(self) -> bool:
-        """Whether what is being entered is a correction, which may be made while parts run."""
+        """Whether the entry is a correction, which may be made while parts run."""
         return True
 
     def barred(self, snapshot: Snapshot, *, correction: bool) -> str:
-        """Why nothing may be changed now."""
+        """Return why the table cannot be changed now. Empty if it can."""
         return self.book.locked or refusal(snapshot, correction=correction)
 
     def undo_barred(self) -> str:
-        """Why the last change is not taken back now."""
+        """Return why the last change cannot be undone now. Empty if it can."""
         return self.barred(self.desk.snapshot(), correction=self.kind is Kind.SECONDARY)
 
     # --- the page ------------------------------------------------------------------------------------
 
     def prompt(self, snapshot: Snapshot) -> str:
-        """The page's own words on the prompt line."""
+        """Return the page's prompt."""
         if why := self.barred(snapshot, correction=self.corrects):
             return why
         if self.history.listed is not None:
@@ -140,28 +140,28 @@ class OffsetTable(ABC):
         return self.hint(snapshot)
 
     def look(self, snapshot: Snapshot) -> None:
-        """Once a frame: follow the control's unit, and see what has been saved."""
+        """Update the unit of the control, and report saved changes; called once a frame."""
         self.history.look(snapshot)
 
     def typed(self, key: str) -> bool:
-        """A typed key; False leaves it to the window."""
+        """Handle a key. Return False to leave the key to the window."""
         if key in {"c", "C"} and self.clears:
             self.clear()
             return True
         return self.enter_key(key)
 
     def type_text(self, key: str, longest: int = LONGEST) -> None:
-        """A character more, or less."""
+        """Edit the entered text by one key."""
         self.text = edited(self.text, key, longest)
 
     def undo(self) -> None:
-        """Drop what is being entered; if nothing is, ask about undoing the last change of the chosen row."""
+        """Discard the entry, or else ask whether the last change of the selected row is undone."""
         why = self.undo_barred()
         if why or not self.take_back():
             self.history.answer(why or self.questions.undo(self.kind, self.chosen))
 
     def clear(self) -> None:
-        """C: clear the whole table, after asking."""
+        """Handle C: clear the whole table after the operator confirms."""
         if why := self.barred(self.desk.snapshot(), correction=False):
             self.desk.say(why)
         else:
@@ -172,7 +172,7 @@ class OffsetTable(ABC):
         self.history.answer(why or self.book.clear(self.kind, self.why_cleared))
 
     def escape(self) -> bool:
-        """Esc closes the history, keeps the offsets, takes an entry back; False when the page may be left."""
+        """Handle Esc: close the history, a question or the entry. Return False if nothing was open."""
         if self.history.listed is not None:
             self.history.listed = None
         elif self.desk.asked:
@@ -182,11 +182,11 @@ class OffsetTable(ABC):
         return True
 
     def opened(self) -> None:
-        """The page comes up: what was changed on another is no news here."""
+        """Ignore the changes that were made before the page opened."""
         self.history.opened()
 
     def leave(self) -> None:
-        """The page goes: nothing stays half entered."""
+        """Discard unfinished entries before the page closes."""
         self.drop()
         self.desk.clear()
         self.history.listed = None
@@ -194,14 +194,17 @@ class OffsetTable(ABC):
 
 @dataclass(slots=True)
 class NewTool:
-    """X or Z alone of a tool that was never set: half an offset would run into the part, so it waits."""
+    """X or Z of a tool that is not set yet. It is saved only with the other value.
+
+    A tool with half an offset could run into the part.
+    """
 
     number: int = 0
     values: dict[str, Value] = field(default_factory=dict)
-    tip: float | None = None  # X of the tip from part zero when it was touched, mm
+    tip: float | None = None  # X of the tip relative to part zero at the touch-off in mm.
 
     def add(self, number: int, name: str, value: Value) -> dict[str, Value]:
-        """One of the two; answers what there is of this tool now."""
+        """Add one of the two values, and return the values that are known."""
         if number != self.number:
             self.drop()
         self.values = {**self.values, name: value}
@@ -209,29 +212,35 @@ class NewTool:
         return self.values
 
     def drop(self) -> None:
-        """It is not to be set after all."""
+        """Discard the values."""
         self.number, self.values, self.tip = 0, {}, None
 
     @property
     def missing(self) -> str:
-        """The axis that is still to come."""
+        """The axis whose value is still missing."""
         return "x" if "z" in self.values else "z"
 
 
 @dataclass(slots=True)
 class ToolFields:
-    """Saves single fields of tools, for F8 and the Jog page. Each answer is why not, or nothing."""
+    """Saves single fields of tools, for F8 and the Jog page.
+
+    Each method returns why it was rejected, or an empty text.
+    """
 
     history: OffsetHistory
     new: NewTool = field(default_factory=NewTool)
 
     def never_set(self, number: int) -> str:
-        """Why a tool that nobody has set has no fields."""
+        """Return the message that this tool is not set."""
         text = tr("T{number} IS NOT SET. TYPE X AND Z, OR TOUCH OFF ON THE JOG PAGE")
         return tr(Message(text, number=edge_number(number)))
 
     def save(self, number: int, name: str, text: str, *, adding: bool = False) -> str:
-        """Set a field to what is typed, or add that to it. Raises EntryError for a text that is no value."""
+        """Set a field to the entered value, or add the value to it.
+
+        Raises EntryError for an invalid value.
+        """
         mode, row = self.history.mode, self.history.book.tools.get(number)
         if row is None:
             return self._first(number, name, value_typed(name, text, mode))
@@ -243,7 +252,7 @@ class ToolFields:
         return OffsetQuestions(self.history).change(Kind.TOOL, number, {name: value}, typed)
 
     def _first(self, number: int, name: str, value: Value) -> str:
-        """X and Z of a tool that was never set are saved together."""
+        """Save X and Z of a new tool when both are known."""
         if name not in {"x", "z"}:
             return self.never_set(number)
         values = self.new.add(number, name, value)
@@ -257,31 +266,34 @@ class ToolFields:
         return why
 
     def master(self, number: int) -> str:
-        """Ask whether this tool becomes the master; or, if it is the master, whether no tool is."""
+        """Ask whether this tool becomes the master, or whether no tool is if it is the master now."""
         if number not in self.history.book.tools:
             return self.never_set(number)
         return OffsetQuestions(self.history).choose_master(number)
 
 
 class ToolEntry(OffsetTable):
-    """One field under the cursor, and what is typed there. A text takes letters once Return has opened it."""
+    """A tool table with a field under the cursor and its entered text.
 
-    to_write: ClassVar[str]  # what a letter is answered with before
-    writing = False  # a text is open
+    A text field accepts letters after Enter has opened it.
+    """
+
+    to_write: ClassVar[str]  # Message for a letter before the text is open.
+    writing = False  # A text is being edited.
 
     @property
     def number(self) -> int:
-        """The tool at which the pages of tools stand."""
+        """The tool that the tool pages have selected."""
         return self.book.at
 
     @property
     def chosen(self) -> int | None:
-        """Undo refers to this tool."""
+        """The selected tool, to which undo applies."""
         return self.number
 
     @property
     def tool(self) -> ToolRow | None:
-        """Its offset; None when it was never set."""
+        """The offset of the selected tool. None if the tool was never set."""
         return self.book.tools.get(self.number)
 
     @property
@@ -292,15 +304,15 @@ class ToolEntry(OffsetTable):
     @property
     @abstractmethod
     def value_before(self) -> str:
-        """The field as it is, without what is typed."""
+        """The saved value of the field as text."""
 
     def cell_barred(self) -> str:
-        """Why the field under the cursor may not be changed now; empty when it may."""
+        """Return why the field under the cursor cannot be changed now. Empty if it can."""
         return self.barred(self.desk.snapshot(), correction=self.corrects)
 
     @property
     def is_text(self) -> bool:
-        """Whether the field takes any text, which Return opens."""
+        """Whether the field accepts any text, which Enter opens."""
         field = TOOL_FIELDS[self.name]
         return field.sort is Sort.TEXT and not field.choices
 
@@ -311,21 +323,21 @@ class ToolEntry(OffsetTable):
 
     @property
     def old_to_new(self) -> str:
-        """The field before and after what is typed, or else the last change."""
+        """The field's old and entered value, or else the last change."""
         if not (self.text or self.writing):
             return self.history.last_in_words
         try:
             new = shown_value(self.name, value_typed(self.name, self.text, self.mode), self.mode)
         except EntryError:
-            new = "…"  # half a sum is no mistake yet
+            new = "…"  # An incomplete expression is not an error yet.
         return f"{self.value_before}  →  {new}"
 
     def takes(self, key: str) -> bool:
-        """Figures and signs; every character while a text is written."""
+        """Return whether a character can be entered: number characters, or any character in an open text."""
         return self.writing or key in CHARACTERS
 
     def enter_key(self, key: str) -> bool:
-        """Return sets what is typed; the page goes from field to field before."""
+        """Handle Enter and text keys. Subclasses handle the keys that move the cursor."""
         if key == "Enter":
             self.enter()
         elif key in {"Back", "Delete"}:
@@ -338,7 +350,7 @@ class ToolEntry(OffsetTable):
 
     @abstractmethod
     def enter(self) -> None:
-        """Return on the field."""
+        """Handle Enter on the field."""
 
     def _add(self, key: str) -> None:
         if self.is_text and not self.writing:
@@ -349,13 +361,13 @@ class ToolEntry(OffsetTable):
         self.type_text(key, int(TOOL_FIELDS[self.name].high) if self.writing else LONGEST)
 
     def left_open(self) -> bool:
-        """Whether something is typed and not entered, which keeps the cursor where it is; that is said."""
+        """Return whether an unfinished entry prevents moving the cursor, and show this."""
         if self.text or self.writing:
             self.desk.say(tr("ENTER: SET   ESC: CANCEL"))
         return bool(self.text or self.writing)
 
     def store(self, save: Callable[[], str]) -> bool:
-        """Save the field; what is refused is said, and the text stays to be mended."""
+        """Save the field with ``save``. Show why it was rejected; the text then remains for correction."""
         barred = self.cell_barred()
         try:
             why = barred or save()
@@ -370,11 +382,11 @@ class ToolEntry(OffsetTable):
 
     @property
     def entering(self) -> bool:
-        """Whether there is anything that Esc takes back."""
+        """Whether there is an entry that Esc can discard."""
         return bool(self.text or self.writing)
 
     def take_back(self) -> bool:
-        """What is typed or chosen, or an open text."""
+        """Discard the entry or close an open text. Return False if there is neither."""
         if not self.entering:
             return False
         self.drop()
@@ -382,5 +394,5 @@ class ToolEntry(OffsetTable):
         return True
 
     def drop(self) -> None:
-        """Forget what is typed or chosen."""
+        """Discard the entry."""
         self.text, self.writing = "", False

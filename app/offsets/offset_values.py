@@ -1,6 +1,7 @@
-"""How offsets are typed and written: unit, diameter, range, sign.
+"""Input and display formats of offsets: unit, diameter, range and sign.
 
-Inch with 5 places, metric with 4; zero offsets in mm and degrees with 3. Stored are mm, X a radius, degrees.
+Inches have 5 decimals and mm have 4. Zero offsets have 3 decimals in mm and degrees. Stored values are in mm
+and degrees, with X as a radius.
 """
 
 from __future__ import annotations
@@ -27,70 +28,73 @@ from core.store.store_rows import (
     ZeroRow,
 )
 
-TOOL_FIELDS = {**FIELDS[Kind.TOOL], **FIELDS[Kind.SHAPE]}  # of a tool: of its offset and of its shape
+TOOL_FIELDS = {**FIELDS[Kind.TOOL], **FIELDS[Kind.SHAPE]}  # Fields of a tool's offset and of its shape.
 ZERO_PLACES = 3
 
 
 @dataclass(frozen=True, slots=True)
 class Mode:
-    """The control's unit and whether X is a diameter, from one snapshot."""
+    """The control's unit, and whether X is a diameter, from one snapshot."""
 
     metric: bool = False
     diameter: bool = False
 
     @property
     def unit(self) -> float:
-        """Millimetres in one unit of an entry."""
+        """The number of millimeters in one unit of an entry."""
         return 1.0 if self.metric else MM_PER_INCH
 
     @property
     def name(self) -> str:
-        """The unit as messages name it."""
+        """The name of the unit in messages."""
         return "mm" if self.metric else "in"
 
 
-UNKNOWN = "?"  # in the place of a figure that could not be read
+UNKNOWN = "?"  # Replaces a value that could not be read.
 
 
 def not_set(*, unread: bool = False) -> str:
-    """Return the word for an offset without values: it was never entered, or it could not be read."""
+    """Return the text for an offset that was never entered, or that could not be read."""
     return tr("unreadable") if unread else tr("not set")
 
 
 def signed(mm: float, metric: bool) -> str:
-    """A length with its sign, also a plus: an offset without one reads like a dimension."""
+    """Return a length in mm as text with a sign, also a plus, because an offset differs from a dimension."""
     figure = formats.length(mm, metric)
     return figure if figure.startswith(MINUS) else f"+{figure}"
 
 
 def signed_zero_offset(value: float) -> str:
-    """A value of G54 to G59, mm or degrees, with its sign."""
+    """Return a zero offset in mm or degrees as text with a sign."""
     figure = formats.fixed(value, ZERO_PLACES)
     return figure if value < 0 and figure[:1] not in "0123456789" else f"+{figure}"
 
 
 def to_mm(value: float, metric: bool) -> float:
-    """A typed length in mm; rounded in its own unit, so that it comes back as it was entered."""
+    """Return an entered length in mm, rounded in its own unit so that it is displayed as entered."""
     return round(value, 10) * (1.0 if metric else MM_PER_INCH)
 
 
 def added(mm: float, value: float, metric: bool) -> float:
-    """``mm`` and a typed correction: summed in the unit of the entry, so that .0005 ten times is .005."""
+    """Return ``mm`` plus an entered correction in mm.
+
+    The sum is rounded in the unit of the entry, so that ten times .0005 is .005.
+    """
     unit = 1.0 if metric else MM_PER_INCH
     return round(mm / unit + value, 10) * unit
 
 
 def out_of_range(field: str, value: str, unit: str, low: float, high: float) -> str:
-    """Why a value is not kept, said in the unit of the entry."""
+    """Return the message for a value out of its range, in the unit of the entry."""
     text = tr("{field} would become {value} {unit}; allowed range is {low}…{high}")
     return tr(Message(text, field=field, value=value, unit=unit, low=f"{low:g}", high=f"{high:g}"))
 
 
-# --- an offset in one line -------------------------------------------------------------------------------
+# =
 
 
 def in_words(offset: Row | None, mode: Mode) -> str:
-    """A tool's X as the control has it, that of the others as the radius that is stored."""
+    """Return an offset in one line. X of a tool follows the control's mode; other X values are radii."""
     if offset is None:
         return not_set()
     if isinstance(offset, ToolRow):
@@ -107,7 +111,7 @@ def in_words(offset: Row | None, mode: Mode) -> str:
 
 
 def stated_fields(row: MillRow | PresetRow) -> str:
-    """Of a mill's tool or preset: the fields that say something, by the control's own words."""
+    """Return the fields of a mill's tool or preset that have values, with the control's names."""
     fields = FIELDS[Kind.MILL_TOOL if isinstance(row, MillRow) else Kind.PRESET]
     values: tuple[Value, ...] = tuple(row)
     told = [
@@ -119,7 +123,7 @@ def stated_fields(row: MillRow | PresetRow) -> str:
 
 
 def cell_text(field: Field, value: Value) -> str:
-    """A value as a table of a mill shows it: mm, degrees, minutes."""
+    """Return a value as text in mm, degrees or minutes, for a table of a mill."""
     if isinstance(value, str):
         return value
     if field.sort is Sort.FLAG:
@@ -135,7 +139,7 @@ def _pair(x: float, z: float, metric: bool, diameter: bool) -> str:
 
 
 def _more(tool: ToolRow, mode: Mode) -> str:
-    """What else there is of a tool, as far as it is anything."""
+    """Return the other values of a tool, if they are set."""
     parts = [f"  R {formats.length(tool.nose_radius, mode.metric)}"]
     if tool.wear_x or tool.wear_z:
         parts.append(f"  {tr('WEAR')} {_pair(tool.wear_x, tool.wear_z, mode.metric, True)}")
@@ -147,7 +151,7 @@ def _more(tool: ToolRow, mode: Mode) -> str:
 
 
 def _shape_in_words(shape: ShapeRow, mode: Mode) -> str:
-    """The kind, and whatever else is stated."""
+    """Return the kind and hand of a tool shape, and its specified values."""
     stated = [
         f"{word(name)} {shown_value(name, value, mode)}"
         for name, value in shape._asdict().items()
@@ -157,7 +161,10 @@ def _shape_in_words(shape: ShapeRow, mode: Mode) -> str:
 
 
 def from_to(old: Row | None, new: Row | None, mode: Mode) -> str:
-    """An offset before and after; of a tool that was and stays set only the fields that changed."""
+    """Return an offset before and after a change.
+
+    For a tool that is set before and after, only the changed fields are included.
+    """
     if not (isinstance(old, ToolRow | ShapeRow) and isinstance(new, ToolRow | ShapeRow)):
         return f"{in_words(old, mode)}  →  {in_words(new, mode)}"
     changed = [name for name in old._fields if getattr(old, name) != getattr(new, name)]
@@ -176,7 +183,7 @@ def _in_change(name: str, row: ToolRow | ShapeRow, mode: Mode) -> str:
 
 
 def value_typed(name: str, text: str, mode: Mode) -> Value:
-    """What a field becomes by a typed text, mm. Raises EntryError with the reason."""
+    """Return the field value for an entered text, in mm for lengths. Raises EntryError with the reason."""
     field = TOOL_FIELDS[name]
     if field.sort is Sort.TEXT:
         value: Value = text.strip()
@@ -191,7 +198,7 @@ def value_typed(name: str, text: str, mode: Mode) -> Value:
 
 
 def value_added(name: str, old: ToolRow, text: str, mode: Mode) -> Value:
-    """What a length becomes when the text is added to it, mm. Raises EntryError with the reason."""
+    """Return the length in mm after adding an entered text. Raises EntryError with the reason."""
     field, before = TOOL_FIELDS[name], getattr(old, name)
     if field.sort is not Sort.LENGTH:
         raise EntryError(
@@ -215,15 +222,16 @@ def _taken(field: Field, value: Value, mode: Mode) -> Value:
 
 
 def _doubled(name: str, mode: Mode) -> float:
-    """What a typed X is more than the radius that is kept.
+    """Return the factor between an entered X and the stored radius.
 
-    Wear comes from measured diameters, and between two parts the control is back in radius: it is always Ø.
+    Wear is always a diameter, because it is measured on the part. The control's mode may be radius between
+    two parts.
     """
     return 2.0 if name == "wear_x" or (name == "x" and mode.diameter) else 1.0
 
 
 def shown_value(name: str, value: Value, mode: Mode) -> str:
-    """A field as the operator reads it."""
+    """Return a field value as text for the operator."""
     field = TOOL_FIELDS[name]
     if field.choices:
         return choice_word(str(value))
@@ -239,14 +247,14 @@ def shown_value(name: str, value: Value, mode: Mode) -> str:
 
 
 def marked(name: str, mode: Mode) -> str:
-    """Ø or R where a field is an X, nothing elsewhere."""
+    """Return Ø or R for a field that is an X value, else an empty text."""
     if name not in {"x", "wear_x"}:
         return ""
     return "Ø" if _doubled(name, mode) > 1.0 else "R"
 
 
 def word(name: str) -> str:
-    """What the screen calls a field."""
+    """Return the translated name of a field."""
     words = {
         "x": tr("X"),
         "z": tr("Z"),
@@ -275,7 +283,7 @@ def word(name: str) -> str:
 
 
 def choice_word(value: str) -> str:
-    """What the screen calls a kind or a hand of tools."""
+    """Return the translated name of a tool kind or hand."""
     words = {
         "turning": tr("TURNING"),
         "boring": tr("BORING"),
@@ -296,6 +304,6 @@ def choice_word(value: str) -> str:
 
 
 def heading(name: str, mode: Mode) -> str:
-    """What the screen calls a field, with Ø or R at an X."""
+    """Return the translated name of a field, with Ø or R for an X value."""
     mark = marked(name, mode)
     return f"{word(name)} {mark}" if mark else word(name)

@@ -1,8 +1,9 @@
-"""The offsets file that a person writes: [tool.1] and [secondary.1] in inches, [zero.54] in mm and degrees.
+"""The offsets file that users write.
 
-It is part of an export. A tools file has the shapes of tools under the same [tool.1], which may stand in the
-offsets file too: lengths in inches, angles in degrees, outlines (holder, profile) as texts in mm. Further
-cutting edges of a tool are [tool.1.d2] to [tool.1.d9]. Every mistake is named at once.
+[tool.1] and [secondary.1] are in inches, and [zero.54] is in mm and degrees. The file is part of an export. A
+tools file contains the tool shapes in the same tables [tool.1], which are also allowed in the offsets file.
+Lengths are in inches, angles in degrees, and outlines (holder, profile) are texts in mm. Further cutting
+edges of a tool are [tool.1.d2] to [tool.1.d9]. All mistakes of a file are reported together.
 """
 
 from __future__ import annotations
@@ -49,14 +50,14 @@ _EXPECTED = {
 }
 TOOL_KEYS: Mapping[str, Field] = {**FIELDS[Kind.TOOL], **FIELDS[Kind.SHAPE]}
 _EDGE_KEYS = frozenset(f"d{edge}" for edge in EDGES[1:])
-ALIASES = {"tip": "quadrant"}  # what a tool sheet calls it
+ALIASES = {"tip": "quadrant"}  # Name of the field in tool data sheets.
 
 
 def read_rows(path: Path) -> tuple[dict[int, ToolRow], dict[int, SecondaryRow], dict[int, ZeroRow]]:
-    """Tool, secondary and zero offsets of the file as the store keeps them; a missing key is 0 or empty.
+    """Return the tool, secondary and zero offsets of a file as rows of the store.
 
-    A tool with a shape, and neither X nor Z, has no offset: nobody has said where its tip is. Raises
-    CommandError naming every mistake.
+    A missing key is 0 or empty. A tool with a shape but without X and Z has no offset, because its tip
+    position is not specified. Raises CommandError with all mistakes.
     """
     data = read_toml(path)
     mistakes = _unknown_tables(data)
@@ -95,7 +96,7 @@ def read_rows(path: Path) -> tuple[dict[int, ToolRow], dict[int, SecondaryRow], 
 
 
 def read_shape_rows(path: Path) -> dict[int, ShapeRow]:
-    """The tool shapes of the file as the store keeps them. Raises CommandError naming every mistake."""
+    """Return the tool shapes of a file as rows of the store. Raises CommandError with all mistakes."""
     data = read_toml(path)
     mistakes = _unknown_tables(data)
     shapes = _tools(data, mistakes).shapes
@@ -104,10 +105,10 @@ def read_shape_rows(path: Path) -> dict[int, ShapeRow]:
 
 
 def read_tool_shapes(path: Path) -> dict[int, ToolShape]:
-    """The tools of the file that have a shape, mm, with nose radius and tip of the same table.
+    """Return the tools of a file that have a shape, in mm, with the nose radius and tip of the same table.
 
-    Lengths are inches in the file, as in an offsets file; outlines of holder and profile are texts in mm.
-    Raises CommandError naming every mistake.
+    Lengths are in inches in the file. Outlines of holder and profile are texts in mm. Raises CommandError
+    with all mistakes.
     """
     data = read_toml(path)
     mistakes = _unknown_tables(data)
@@ -125,7 +126,7 @@ def _unknown_tables(data: dict[str, object]) -> list[CodedError]:
 
 
 class _Tools(NamedTuple):
-    """The file's tools: whatever stands with offsets, those of which a place is stated, and the shapes."""
+    """The tools of a file: all offsets, the offsets with a specified position, and the shapes."""
 
     rows: dict[int, ToolRow]
     placed: dict[int, ToolRow]
@@ -230,7 +231,7 @@ def _table(
 
 
 def _edges(entry: dict[str, object]) -> dict[str, object]:
-    """The further cutting edges of a tool, [tool.1.d2] to [tool.1.d9], by their keys."""
+    """Return the further cutting edges of a tool, [tool.1.d2] to [tool.1.d9], by their keys."""
     return {key: value for key, value in entry.items() if key in _EDGE_KEYS}
 
 
@@ -261,7 +262,7 @@ def _values(entry: dict[str, object], kind: Kind, name: str, mistakes: list[Code
 
 
 def _mistake(where: str, field: Field, value: object) -> CodedError | None:
-    """Return the mistake of a value of the file, or None if the value is accepted."""
+    """Return the mistake in a value of the file, or None if the value is valid."""
     if not _fits(field, value):
         return CodedError(
             Message("{place} must be {expected}", place=where, expected=_EXPECTED[field.sort]), "wrong-type"
@@ -274,7 +275,7 @@ def _mistake(where: str, field: Field, value: object) -> CodedError | None:
 
 
 def _fits(field: Field, value: object) -> bool:
-    """Whether TOML gave the sort of value that this field is."""
+    """Return whether the TOML type of a value matches the field."""
     if isinstance(value, bool):
         return field.sort is Sort.FLAG
     if isinstance(value, str):
@@ -289,14 +290,14 @@ def _kept(field: Field, value: object) -> Value:
 
 
 def shown(value: object) -> str:
-    """A value as a sentence repeats it."""
+    """Return a value as text for an error message."""
     return f"{value:g}" if isinstance(value, int | float) else repr(value)
 
 
 def out_of_range(name: str, field: Field, value: Value, entered: object) -> str:
-    """Return what is wrong with a value (lengths in mm), or an empty text; NaN is out of every range.
+    """Return the message for a value out of its range, or an empty text. Lengths are in mm.
 
-    The text has the name of the value and the value as it was entered.
+    NaN is always out of range. ``entered`` is the value as it is in the file.
     """
     if field.takes(value):
         return ""

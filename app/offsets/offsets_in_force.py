@@ -1,4 +1,4 @@
-"""From the rows of the store to what the interpreter counts with, on lathes and mills."""
+"""Conversion of stored offset rows to the values that the interpreter uses, for lathes and mills."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ if TYPE_CHECKING:
     from core.geometry.rotary_axes import DatumPreset
 
 
-PRESET = "preset"  # the setting that keeps which one is in force
+PRESET = "preset"  # Setting with the number of the preset in force.
 
 
-R_PARAMETERS = "r-parameters"  # the setting that keeps those that have a value, by their number as text
+R_PARAMETERS = "r-parameters"  # Setting with the R parameters that have a value, by their number as text.
 
 
 def r_parameters(kept: object) -> dict[int, float]:
-    """R parameters as the setting keeps them; what is none is left out."""
+    """Return the R parameters from the stored setting. Invalid entries are ignored."""
     from core.language.sinumerik.sinumerik_words import MOST_R
 
     pairs = kept.items() if isinstance(kept, dict) else ()
@@ -32,23 +32,23 @@ def r_parameters(kept: object) -> dict[int, float]:
 
 
 def preset_of(kept: object, presets: Mapping[int, PresetRow]) -> int:
-    """The number of the preset in force; one that is not in the table is none."""
+    """Return the number of the preset in force. A preset that is not in the table gives 0."""
     return kept if isinstance(kept, int) and kept in presets else 0
 
 
 def tool_offsets(rows: Mapping[int, ToolRow]) -> dict[int, ToolOffset]:
-    """Of the tools: geometry and wear together."""
+    """Return the tool offsets as sums of geometry and wear."""
     return {n: ToolOffset(*row.offset, row.nose_radius, row.quadrant, row.remark) for n, row in rows.items()}
 
 
 def secondary_offsets(rows: Mapping[int, SecondaryRow]) -> dict[int, SecondaryOffset]:
-    """X, Z and nose radius of the secondary offsets."""
+    """Return X, Z and nose radius of the secondary offsets."""
     return {n: SecondaryOffset(*row) for n, row in rows.items()}
 
 
 @dataclass(frozen=True, slots=True)
 class MillOffsets:
-    """The tables by number, and which preset is in force; 0: that of the machine file."""
+    """The offset tables of a mill by number, and the preset in force, or 0 for that of the machine file."""
 
     tools: Mapping[int, MillRow] = field(default_factory=dict)
     presets: Mapping[int, PresetRow] = field(default_factory=dict)
@@ -56,10 +56,10 @@ class MillOffsets:
 
 
 def with_mill(setup: Setup, offsets: MillOffsets) -> Setup:
-    """The circumstances with the tables of a mill; those of a lathe are left alone.
+    """Return the job setup with the tables of a mill. The setup of a lathe is returned unchanged.
 
-    Only what the tool table shows counts: rows of a lathe's offsets, which a store may have too, do not.
-    ``setup.kinematics`` must be as the machine file has it.
+    Only the tools of the mill's table are used, and not a lathe's offsets in the same store.
+    ``setup.kinematics`` must be as in the machine file.
     """
     machine = setup.kinematics
     if machine is None:
@@ -81,24 +81,27 @@ def with_mill(setup: Setup, offsets: MillOffsets) -> Setup:
 
 
 def rows_of(tools: Mapping[int, ToolRow]) -> dict[int, MillRow]:
-    """Tools of an offsets file as rows of a mill's table: Z is the length, the remark the name."""
+    """Return the tools of an offsets file as rows of a mill's tool table.
+
+    Z is the length, the remark is the name.
+    """
     return {number: MillRow(row.remark, row.z + row.wear_z, row.nose_radius) for number, row in tools.items()}
 
 
 def datum_of(row: PresetRow) -> DatumPreset:
-    """A row of the preset table as it is reckoned with."""
+    """Return a row of the preset table as a datum preset for calculations."""
     from core.geometry.rotary_axes import DatumPreset
 
     return DatumPreset((row.x, row.y, row.z), row.rotation, tuple(zeros_of(row).items()))
 
 
 def zeros_of(row: PresetRow) -> dict[str, float]:
-    """Where the rotary axes read 0, by name, degrees in the machine."""
+    """Return the machine positions in degrees at which the rotary axes read 0, by name."""
     return {"A": row.a, "B": row.b, "C": row.c}
 
 
 def _offset(row: MillRow) -> ToolOffset:
-    """Length and radius with what they are off by."""
+    """Return the length and radius of a tool with its oversizes."""
     return ToolOffset(z=row.length + row.dl, nose_radius=max(row.radius + row.dr, 0.0), name=row.name)
 
 

@@ -1,7 +1,7 @@
-"""What the pages of tool, secondary and zero offsets show in common.
+"""Common parts of the pages of tool, secondary and zero offsets.
 
-A table over the line that is typed, a pad of keys for fingers at their right; in the place of the table the
-history, or the path before and after a change.
+A page has a table above the entry line, with a number pad for touch at the right. The history or the effect
+of a change on the path replaces the table.
 """
 
 from __future__ import annotations
@@ -30,13 +30,13 @@ from app.screen.sheet_panel import RowPanel, SheetPanel
 from app.screen.window_layout import FINGER
 from core.executor.snapshot import Snapshot
 
-PAD, ASKED = 28.4, 12.4  # units: width of the pad, height of the line that is typed
-ROW = 5.2  # units: a change of the history
-NEAR = 0.06  # of the width: how far apart the greatest change is shown from near
+PAD, ASKED = 28.4, 12.4  # Units: width of the pad, height of the entry line.
+ROW = 5.2  # Units: height of one change in the history.
+NEAR = 0.06  # Distance of the two paths in the close-up, as a fraction of the width.
 
 
 class EffectView(PathView):
-    """Two pictures of the loaded program; the model says which."""
+    """Shows the two paths of the loaded program that the model selects."""
 
     def __init__(self, look: Look, model: EffectDisplay, parent: QWidget) -> None:
         super().__init__(look, parent)
@@ -45,7 +45,7 @@ class EffectView(PathView):
         self.hide()
 
     def show_effect(self) -> None:
-        """What is drawn now, and draw on."""
+        """Show the paths that are ready, and continue drawing."""
         pair = self._model.pictures
         self.show_compared(pair.before if pair else None, pair.after if pair else None)
         if pair is not None and self._model.near != self._near:
@@ -54,7 +54,7 @@ class EffectView(PathView):
         self.advance()
 
     def _go_near(self, apart: float) -> None:
-        """So near to the greatest change that both paths are seen beside each other."""
+        """Zoom to the largest change, so that both paths are visible side by side."""
         frame = self.view
         if frame is not None and math.isfinite(apart) and apart > 0.0:
             factor = NEAR * self.width() / (apart * frame.scale)
@@ -65,7 +65,7 @@ Entry = tuple[str, str, str, str]
 
 
 class HistoryList(RowPanel):
-    """Newest on top, two lines each."""
+    """The list of changes, newest first, with two lines for each change."""
 
     title = "HISTORY  ·  NEWEST FIRST"
 
@@ -97,7 +97,7 @@ class HistoryList(RowPanel):
 
 
 class OffsetPage(ModelPage):
-    """A table, its history and what a change does to the path: one of them is seen."""
+    """A page with an offset table, its history and the effect of a change. One of them is visible."""
 
     model: OffsetTable
     table: Panel
@@ -118,24 +118,24 @@ class OffsetPage(ModelPage):
         self.asked.installEventFilter(self)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
-        """A finger on the table brings the keys for fingers, one on the entry takes them away and back."""
+        """Show the number pad at a touch on the table. A touch on the entry line toggles the pad."""
         if event.type() == QEvent.Type.MouseButtonPress:
             self.show_pad(watched is not self.asked or self.pad.isHidden())
         return super().eventFilter(watched, event)
 
     def show_pad(self, shown: bool) -> None:
-        """The keys for fingers, or the whole width for the table."""
+        """Show or hide the number pad. Without the pad, the table uses the full width."""
         if shown is self.pad.isHidden():
             self.pad.setVisible(shown)
             self._lay_out()
 
     def opened(self) -> None:
-        """The page comes up; a finger on its table brings the keys for fingers."""
+        """Inform the model that the page has opened, and let a touch on the table show the number pad."""
         super().opened()
         self.table.installEventFilter(self)
 
     def key_actions(self) -> KeyActions:
-        """Undo, history, effect, and the other tables."""
+        """Return the key actions: undo, history, effect, and the other tables."""
         around = self.effect.look_keys() if self.effect_model.open else {}
         zero = {"F10": partial(self._go, page_table.ZERO)} if self.labels()[9] else {}
         return {
@@ -149,16 +149,16 @@ class OffsetPage(ModelPage):
         }
 
     def barred(self) -> frozenset[str]:
-        """Return the keys of the table that would be refused now."""
+        """Return the keys of the table that are disabled now."""
         return frozenset(key for key, why in self.barred_by().items() if why)
 
     def barred_by(self) -> dict[str, object]:
-        """Return what speaks against each key now; empty where nothing does."""
+        """Return the reason for each disabled key, empty if the key is enabled."""
         nothing = not self.model.text and not self.model.history.undoable(self.model.chosen)
         return {"F4": self.model.undo_barred() or nothing, "F6": self.effect_model.barred()}
 
     def labels(self) -> tuple[str, ...]:
-        """Two keys to one table are one key."""
+        """Return the key labels. If two keys open the same table, only the first has a label."""
         shown = super().labels()
         return shown if shown[8] != shown[9] else (*shown[:9], "")
 
@@ -175,7 +175,7 @@ class OffsetPage(ModelPage):
         self.effect_model.turn()
 
     def typed(self, key: str) -> bool:
-        """Give figures, signs and the table's own letters to the entry; nothing while the effect is shown."""
+        """Handle a key of the entry. While the effect is shown, characters are rejected with a message."""
         if self.history.isVisible() and key in {"Page up", "Page down"}:
             self.history.scroll_by((1 if key == "Page down" else -1) * self.history.rows)
             return True
@@ -185,31 +185,31 @@ class OffsetPage(ModelPage):
         return self.model.typed(key)
 
     def has_field(self) -> bool:
-        """Return whether values are typed: always, except while the effect of a change is shown."""
+        """Return whether values can be entered, which is always so except while the effect is shown."""
         return not self.effect_model.open
 
     def prompt(self) -> str:
-        """From the model; while the effect is shown, what it is."""
+        """Return the prompt of the model, or the description of the effect while it is shown."""
         if self.effect_model.open:
             return self.effect_model.words
         return self.model.prompt(self.desk.snapshot())
 
     def dress(self) -> None:
-        """The picture in the colours of now."""
+        """Redraw the paths in the present colors."""
         self.effect.restart()
 
     def leave(self) -> bool:
-        """Nothing stays half entered."""
+        """Discard unfinished entries, and let the page close."""
         self.effect_model.close()
         self.model.leave()
         return True
 
     def esc_holds(self) -> bool:
-        """Return False: Esc leaves an entry, the history, then the page, also while something moves."""
+        """Return False, because Esc goes one step back even while the machine moves."""
         return False
 
     def escape(self) -> bool:
-        """Esc goes one step back, and from the first question to the Automatic page."""
+        """Go one step back, or from the first question to the Automatic page."""
         if self.effect_model.open:
             self.effect_model.close()
         elif not self.model.escape():
@@ -217,7 +217,7 @@ class OffsetPage(ModelPage):
         return True
 
     def refresh(self, snapshot: Snapshot, _status: MachineStatus, _loaded: Loaded) -> None:
-        """What is seen, and the question; each page shows its table beside."""
+        """Show the visible part and the entry line. Subclasses also show their table."""
         model, effect = self.model, self.effect_model
         model.look(snapshot)
         changes = model.history.listed
@@ -238,11 +238,11 @@ class OffsetPage(ModelPage):
         self.asked.asked = EntryWords(*words)
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """Table over the line that is typed, the pad at their right; letters of a text stand below them."""
+        """Lay out the table, the entry line, the number pad and the letter keyboard."""
         self._lay_out()
 
     def _show_letters(self, shown: bool) -> None:
-        """Letters while a finger writes a text, figures else."""
+        """Show the letter keyboard while a text is edited by touch, else the number pad."""
         if shown is self.letters.isHidden():
             self.letters.setVisible(shown)
             self._lay_out()

@@ -1,4 +1,4 @@
-"""What a change of offsets does to the part: each diameter and shoulder before and after."""
+"""Effect of a change of offsets on the part: each diameter and shoulder before and after."""
 
 from __future__ import annotations
 
@@ -15,7 +15,10 @@ _NONE = "–"
 
 
 def part_table(part: OtherPart, mode: Mode) -> Sheet:
-    """Features from the face on, those that change with a lamp; then findings that come or go."""
+    """Return a table of the part features, from the face on, with the findings that appear or disappear.
+
+    A lamp marks features that change.
+    """
     unit = tr("MM") if mode.metric else tr("INCH")
     return Sheet(
         join_messages("  ·  ", (tr("EFFECT ON THE PART"), unit)),
@@ -56,7 +59,7 @@ def _figure(feature: Feature | None, mode: Mode) -> str:
 
 
 def _name(feature: Feature, mode: Mode) -> str:
-    """``DIAMETER  Z 0 … -.5``; a shoulder by the diameters that it lies between."""
+    """Return the name of a feature, for example ``DIAMETER Z 0 … -.5``. A shoulder has its two diameters."""
     a, b = feature.reach
     if feature.kind in {FeatureKind.DIAMETER, FeatureKind.BORE}:
         word = tr("DIAMETER") if feature.kind is FeatureKind.DIAMETER else tr("BORE")
@@ -66,6 +69,6 @@ def _name(feature: Feature, mode: Mode) -> str:
 
 
 def _short(mm: float, mode: Mode) -> str:
-    """To a thousandth of an inch, or a hundredth of a millimetre."""
+    """Return a length in mm as text, rounded to .001 in or 0.01 mm."""
     text = f"{mm:.2f}" if mode.metric else f"{mm / 25.4:.3f}"
     return "0" if not text.strip("-0.") else text

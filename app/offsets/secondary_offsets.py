@@ -1,7 +1,7 @@
-"""Secondary offsets, F9 SECCMP: a number, then one question after the other, then the change is saved.
+"""The model of the secondary offsets (F9 SECCMP), which asks for a number and then for X, Z and R.
 
-The questions are the control's own. X is a diameter correction, halved and added; Z is added; R becomes the
-value; bare Return keeps what is there.
+The questions are those of the original control. X is a diameter correction, which is halved and added. Z is
+added. R replaces the value. Enter without a value leaves the present value.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ _KEYS = CHARACTERS | {"Back", "Delete", "Enter"}
 
 
 class Step(IntEnum):
-    """The steps of the dialogue, in the order in which they are asked."""
+    """The steps of the dialogue, in order."""
 
     NUMBER = 0
     X = 1
@@ -33,14 +33,14 @@ class Step(IntEnum):
 
 
 def corrected(step: Step, old: float, typed: float, mode: Mode) -> float:
-    """What ``old`` (mm) becomes: X halved and added, Z added, R becomes the value."""
+    """Return the new value in mm for an entry: X is halved and added, Z is added, R replaces the value."""
     if step is Step.R:
         return to_mm(typed, mode.metric)
     return added(old, typed / 2 if step is Step.X else typed, mode.metric)
 
 
 class SecondaryOffsets(OffsetTable):
-    """The dialogue: which number, which step, what is typed, and what was answered so far."""
+    """The dialogue with its number, step, entered text and previous answers."""
 
     kind = Kind.SECONDARY
     own_key = "C"
@@ -50,10 +50,10 @@ class SecondaryOffsets(OffsetTable):
     def __init__(self, desk: Desk) -> None:
         super().__init__(desk)
         self.step, self.number = Step.NUMBER, 0
-        self._answers: list[float] = []  # mm, of the steps so far
+        self._answers: list[float] = []  # New values of the previous steps in mm.
         self._typed: list[str] = []
 
-    # --- what is shown -------------------------------------------------------------------------------
+    # --- display -------------------------------------------------------------------------------------
 
     @property
     def heading(self) -> str:
@@ -63,23 +63,23 @@ class SecondaryOffsets(OffsetTable):
 
     @property
     def question(self) -> str:
-        """The prompt of this step; attested but for R."""
+        """The prompt of this step. All prompts except R are those of the original control."""
         words = (tr("Offset Number?"), tr("X DIAMETER CORRECTION?"), tr("Z CORRECTION?"), tr("R?"))
         return words[self.step]
 
     @property
     def old(self) -> SecondaryRow | None:
-        """The offset that is being changed, as it is now."""
+        """The present values of the offset that is being changed. None if it is not set."""
         return self.book.secondary.get(self.number) if self.number else None
 
     @property
     def chosen(self) -> int | None:
-        """The offset whose number was entered; None: undo refers to the last change of the table."""
+        """The entered number, or None, which means that undo applies to the last change of the table."""
         return self.number or None
 
     @property
     def preview(self) -> SecondaryRow | None:
-        """What it would become if the text were entered; None while no number is chosen."""
+        """The offset as it would be with the entered text. None if no number is selected."""
         if not self.number:
             return None
         old = self.old or SecondaryRow()
@@ -89,12 +89,12 @@ class SecondaryOffsets(OffsetTable):
                 at = self.step - 1
                 new[at] = corrected(self.step, old[at], value_of(self.text), self.mode)
             except EntryError:
-                pass  # half a sum is no mistake yet
+                pass  # An incomplete expression is not an error yet.
         return SecondaryRow(*new)
 
     @property
     def old_to_new(self) -> str:
-        """The change that is being entered, or else the last one."""
+        """The change that is being entered, or else the last change."""
         if self.step is Step.NUMBER:
             return self.history.last_in_words
         was, new = (in_words(side, self.mode) for side in (self.old, self.preview))
@@ -102,26 +102,26 @@ class SecondaryOffsets(OffsetTable):
 
     @property
     def foot(self) -> str:
-        """How to leave and how to clear, in the control's words."""
+        """The hint how to exit and how to clear the table, in the words of the original control."""
         leave = tr("Press Esc to exit offset adjustment screen")
         return f"{leave}        {tr('Press C to clear all offsets')}"
 
     def hint(self, snapshot: Snapshot) -> str:
-        """Return what is typed now, or from when a correction counts."""
+        """Return how to answer the question, or from when a correction applies."""
         if self.step is Step.NUMBER and not counts_from(snapshot):
             return tr("TYPE AN OFFSET NUMBER AND PRESS ENTER")
         return counts_from(snapshot) or tr("TYPE A VALUE OR EXPRESSION (.5-.002). ENTER ALONE: NO CHANGE")
 
     def proposed(self) -> Proposed:
-        """The tables as they would be with what is being entered."""
+        """Return the offsets as they would be with the present entry."""
         tools, secondary = super().proposed()
         preview = self.preview
         return tools, {**secondary, **({self.number: preview} if preview else {})}
 
     def look(self, snapshot: Snapshot) -> None:
-        """Once a frame; an entry that was begun in another unit is given up.
+        """Update the unit of the control; called once a frame. A change of the unit discards the entry.
 
-        X is a diameter correction whatever the control's X is, which every part changes as it begins.
+        X is always a diameter correction. A change of the control's diameter mode therefore has no effect.
         """
         before = self.mode
         super().look(snapshot)
@@ -132,11 +132,11 @@ class SecondaryOffsets(OffsetTable):
     # --- keys ----------------------------------------------------------------------------------------
 
     def takes(self, key: str) -> bool:
-        """Figures and signs are typed, C clears the table."""
+        """Return whether a character can be entered: number characters, or C to clear the table."""
         return key in CHARACTERS or key == "C"
 
     def enter_key(self, key: str) -> bool:
-        """Figures are typed, Return answers."""
+        """Handle a text key, or Enter to answer the question."""
         if key not in _KEYS:
             return False
         self.desk.clear()
@@ -147,7 +147,7 @@ class SecondaryOffsets(OffsetTable):
         return True
 
     def choose(self, number: int) -> None:
-        """The number, by a finger on its row; in the middle of an entry it is not taken."""
+        """Select an offset by touch. This is rejected while another offset is being entered."""
         if self.step is Step.NUMBER:
             self.text = str(number)
             self._enter()
@@ -155,7 +155,7 @@ class SecondaryOffsets(OffsetTable):
             self.desk.say(tr(Message("FINISH ENTERING D{number} FIRST, OR PRESS ESC", number=self.number)))
 
     def clear(self) -> None:
-        """C; not in the middle of an entry."""
+        """Handle C: clear the table, but not while an offset is being entered."""
         whole = self.barred(self.desk.snapshot(), correction=False)
         if not whole and self.step is not Step.NUMBER:
             self.desk.say(tr("C CLEARS ALL OFFSETS ONLY AT THE PROMPT Offset Number? PRESS ESC FIRST"))
@@ -163,7 +163,7 @@ class SecondaryOffsets(OffsetTable):
             super().clear()
 
     def undo(self) -> None:
-        """Ask about undoing the last change of the entered number, as long as no value follows it."""
+        """Ask whether the last change of the entered number is undone, if no value has been entered yet."""
         if self.step is not Step.X or self.text or self.undo_barred():
             super().undo()
             return
@@ -172,7 +172,7 @@ class SecondaryOffsets(OffsetTable):
         self.history.answer(self.questions.undo(self.kind, number))
 
     def take_back(self) -> bool:
-        """Take back the entry that was begun, and say so."""
+        """Discard the entry and show this. Return False if nothing was entered."""
         if self.step is Step.NUMBER and not self.text:
             return False
         number = self.number
@@ -181,7 +181,7 @@ class SecondaryOffsets(OffsetTable):
         return True
 
     def drop(self) -> None:
-        """Back to the number; what was entered so far is forgotten."""
+        """Return to the first step, and discard all answers."""
         self.step, self.number, self.text = Step.NUMBER, 0, ""
         self._answers, self._typed = [], []
 
@@ -216,7 +216,7 @@ class SecondaryOffsets(OffsetTable):
             self._save(SecondaryRow(self._answers[0], self._answers[1], new), [*self._typed, typed])
 
     def _check(self, mm: float) -> None:
-        """Raises EntryError for a value that is not kept."""
+        """Check the range of a value. Raises EntryError."""
         low, high = (0.0, RADIUS_MAX) if self.step is Step.R else (-SECONDARY_REACH, SECONDARY_REACH)
         if not low <= mm <= high:
             unit, name = self.mode.unit, f"D{self.number} {self.step.name}"

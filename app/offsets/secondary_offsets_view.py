@@ -1,4 +1,4 @@
-"""Secondary offsets, F9: 32 in two columns of sixteen; a finger has eight of them brought near first."""
+"""The page of the 32 secondary offsets (F9), in two columns. A touch first enlarges eight of them."""
 
 from __future__ import annotations
 
@@ -24,25 +24,25 @@ from core.message import join_messages
 from core.store.store_rows import SecondaryRow
 
 ROWS = 16
-NEAR = 8  # offsets that are shown large: half a column
-BAR = 6.8  # units: a finger's height
-# Shares of a column: where the number, and each letter with its figure, end.
+NEAR = 8  # Number of offsets in the enlarged view, half a column.
+BAR = 6.8  # Units: height of a fingertip.
+# Fractions of the column width at which the number, X and Z end.
 _NUMBER, _X, _Z = 0.09, 0.42, 0.73
 
 
 class SecondaryTable(Panel):
-    """The row being changed is filled, the last changed has a bar.
+    """The table of the offsets. The row being changed is filled, and the last changed row has a bar.
 
-    Sixteen rows leave a row a third of a finger's width, so that a finger on the table brings the eight
-    offsets around it near, and the next one chooses.
+    A row in the full table has a third of a fingertip's height. The first touch therefore enlarges eight
+    offsets, and the second touch selects one.
     """
 
     offsets: Shown[Mapping[int, SecondaryRow]] = Shown({})
-    near = Shown(0)  # the first number of those that are shown large; 0: all are shown
+    near = Shown(0)  # First number of the enlarged offsets; 0: all offsets are shown.
     _number = Shown(0)
     _marked: Shown[frozenset[int]] = Shown(frozenset())
     _mode = Shown(Mode())
-    unread = Shown(False)  # whether there are offsets that cannot be read
+    unread = Shown(False)  # True if offsets cannot be read.
 
     def __init__(self, look: Look, choose: Callable[[int], None], parent: QWidget) -> None:
         super().__init__(look, parent)
@@ -51,7 +51,7 @@ class SecondaryTable(Panel):
     def show_offsets(
         self, offsets: Mapping[int, SecondaryRow], number: int, marked: Collection[int], mode: Mode
     ) -> None:
-        """The table, the row that is being changed (0: none), those changed last, and the unit."""
+        """Show the offsets, the row being changed (0 for none), the last changed rows and the unit."""
         if number:
             self.bring_near(0)
         self.offsets, self._number, self._marked, self._mode = offsets, number, frozenset(marked), mode
@@ -66,7 +66,7 @@ class SecondaryTable(Panel):
             self._draw_all(painter, room)
 
     def bring_near(self, first: int) -> None:
-        """Show eight offsets from this one on large, 0: all of them."""
+        """Enlarge eight offsets from this number on, or show all offsets with 0."""
         self.near = first
 
     def _draw_all(self, painter: Painter, room: QRectF) -> None:
@@ -91,7 +91,7 @@ class SecondaryTable(Panel):
         self._choose(number)
 
     def _row(self, painter: Painter, box: QRectF, number: int, size: float) -> None:
-        """``size``: of the letters, 1 where all are shown."""
+        """Draw one row. ``size`` scales the letters, 1 in the full table."""
         u = self.look.u
         here = number == self._number
         if here:
@@ -125,7 +125,7 @@ class SecondaryTable(Panel):
 
 
 def _boxes(room: QRectF, rows: int, gap: float) -> list[QRectF]:
-    """Two columns of so many rows, downwards first."""
+    """Return the boxes of two columns with ``rows`` rows each, column by column."""
     high, wide = room.height() / rows, (room.width() - gap) / 2
     return [
         QRectF(room.x() + column * (wide + gap), room.y() + row * high, wide, high)
@@ -135,7 +135,7 @@ def _boxes(room: QRectF, rows: int, gap: float) -> list[QRectF]:
 
 
 class SecondaryOffsetsPage(OffsetPage):
-    """F9, secondary offsets."""
+    """The page of the secondary offsets, F9."""
 
     NAME = page_table.SECCMP
     LABELS = ("MENU", "", "", "UNDO", "HISTORY", "EFFECT", "ALARMS", "TOOLS", "", "ZERO")
@@ -147,19 +147,19 @@ class SecondaryOffsetsPage(OffsetPage):
         self.table = SecondaryTable(self.look, self.model.choose, self)
 
     def escape(self) -> bool:
-        """Eight offsets that were brought near go back first."""
+        """Show all offsets again, or go one step back."""
         if self.table.near:
             self.table.bring_near(0)
             return True
         return super().escape()
 
     def leave(self) -> bool:
-        """The whole table stands here the next time."""
+        """Show all offsets again, discard unfinished entries, and let the page close."""
         self.table.bring_near(0)
         return super().leave()
 
     def refresh(self, snapshot: Snapshot, status: MachineStatus, loaded: Loaded) -> None:
-        """The table as it is now."""
+        """Show the present state of the table."""
         super().refresh(snapshot, status, loaded)
         model = self.model
         marked = {change.number for change in model.history.last}

@@ -1,4 +1,4 @@
-"""Tool offsets, F8: a table of 32 tools in which a cell is chosen, typed into, and saved."""
+"""The model of the tool offsets (F8), a table of 32 tools that the operator edits cell by cell."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ from core.store.store_rows import OFFSETS, Kind, with_fields
 from core.tool_edges import EDGES, edge_key, edge_number, tool_of
 
 COLUMNS = ("x", "z", "nose_radius", "quadrant", "wear_x", "wear_z", "master", "remark")
-PAGE = 5  # rows that are shown on the smallest glass, each of a finger's height
-EDGE_KEY = "D"  # one more cutting edge of the tool, where the language has some
+PAGE = 5  # Rows that fit on the smallest screen, each as high as a fingertip.
+EDGE_KEY = "D"  # Adds a cutting edge to the tool, in a language with cutting edges.
 _MOVES = {"Up": (-1, 0), "Down": (1, 0), "Left": (0, -1), "Right": (0, 1), "Tab": (0, 1)}
 
 
 class ToolOffsets(ToolEntry):
-    """Where the cursor stands and what is typed there. A remark takes letters once Return has opened it."""
+    """The table with its cursor and the entered text. A remark accepts letters after Enter has opened it."""
 
     kind = Kind.TOOL
     to_write = "PRESS ENTER TO TYPE A REMARK"
@@ -35,15 +35,15 @@ class ToolOffsets(ToolEntry):
         self.own_key = EDGE_KEY if desk.machine.language == "sinumerik" else ""
         self.fields = ToolFields(self.history)
         self.column = 0
-        self.page = PAGE  # rows that fit now, which Page up and Page down go
-        self.relative = False  # X and Z are shown from the master
-        self.opened_edge = 0  # a further cutting edge that is still to be typed
+        self.page = PAGE  # Rows that fit now, by which Page up and Page down move.
+        self.relative = False  # X and Z are shown relative to the master.
+        self.opened_edge = 0  # A new cutting edge whose values are not entered yet.
 
-    # --- what is shown -------------------------------------------------------------------------------
+    # --- display -------------------------------------------------------------------------------------
 
     @property
     def rows(self) -> tuple[int, ...]:
-        """The rows of the table: every tool, and behind it its further cutting edges."""
+        """The rows of the table: every tool, followed by its further cutting edges."""
         edges = sorted({key for key in (*self.book.tools, self.opened_edge) if key not in OFFSETS and key})
         return tuple(
             key for tool in OFFSETS for key in (tool, *(each for each in edges if tool_of(each) == tool))
@@ -51,7 +51,7 @@ class ToolOffsets(ToolEntry):
 
     @property
     def row(self) -> int:
-        """Which of them the cursor stands in, from 0."""
+        """The index of the cursor's row, counted from 0."""
         rows = self.rows
         return rows.index(self.number if self.number in rows else tool_of(self.number))
 
@@ -61,7 +61,7 @@ class ToolOffsets(ToolEntry):
         return COLUMNS[self.column]
 
     def cell(self, number: int, name: str) -> str:
-        """A cell of the table; X and Z of another tool from the master when that is asked for."""
+        """Return a cell of the table as text. X and Z are relative to the master if this is selected."""
         book, mode, new = self.book, self.mode, self.fields.new
         row = book.tools.get(number)
         if row is None:
@@ -75,19 +75,19 @@ class ToolOffsets(ToolEntry):
 
     @property
     def is_writing(self) -> bool:
-        """Whether a remark is open."""
+        """Whether a remark is being edited."""
         return self.writing
 
     @property
     def value_before(self) -> str:
-        """The cell as it is, without what is typed."""
+        """The saved value of the cell as text."""
         return self.cell(self.number, self.name) or (
             not_set(unread=self.book.unread) if self.tool is None else ""
         )
 
     @property
     def foot(self) -> str:
-        """What F2, F3 and Esc do here."""
+        """The hint for the keys F2, F3 and Esc."""
         if self.own_key:
             return tr(
                 "F2: add typed value   F3: X and Z relative to master   F8: shape   D: other edge   Esc: exit"
@@ -95,13 +95,13 @@ class ToolOffsets(ToolEntry):
         return tr("F2: add typed value   F3: X and Z relative to master   F8: tool shape   Esc: exit")
 
     def hint(self, snapshot: Snapshot) -> str:
-        """Of an open remark, or of the table."""
+        """Return how to enter a remark or a value, or from when a change applies."""
         if self.writing:
             return tr("TYPE A REMARK. ENTER: SAVE   ESC: CANCEL   F-KEYS STILL WORK")
         return counts_from(snapshot) or tr("TYPE A NUMBER OR EXPRESSION   ENTER: SET   F2: ADD")
 
     def proposed(self) -> Proposed:
-        """The tables as they would be with what is typed."""
+        """Return the offsets as they would be with the entered text."""
         tools, secondary = super().proposed()
         if self.tool is None or not self.text:
             return tools, secondary
@@ -113,19 +113,19 @@ class ToolOffsets(ToolEntry):
 
     @property
     def corrects(self) -> bool:
-        """Wear and remark may change while parts run."""
+        """Whether the field is wear or remark, which may change while parts run."""
         return self.name in CORRECTIONS[Kind.TOOL]
 
     def cell_barred(self) -> str:
-        """Why the cell under the cursor may not be changed now; empty when it may."""
+        """Return why the cell under the cursor cannot be changed now. Empty if it can."""
         if self.relative and self.name in {"x", "z"}:
             return tr("X, Z RELATIVE TO MASTER: READ-ONLY. F3: SHOW X, Z FROM HOME")
         return super().cell_barred()
 
     def look(self, snapshot: Snapshot) -> None:
-        """Once a frame: an entry in another unit is given up, or one of X where X has changed.
+        """Update the unit of the control; called once a frame. A change of the unit discards the entry.
 
-        Wear is a diameter whatever the control's X is, which every part changes as it begins.
+        An entry of X or Z is also discarded if the diameter mode changes. Wear is always a diameter.
         """
         before = self.mode
         super().look(snapshot)
@@ -138,7 +138,7 @@ class ToolOffsets(ToolEntry):
     # --- keys ----------------------------------------------------------------------------------------
 
     def enter_key(self, key: str) -> bool:
-        """Arrows go from cell to cell, Return sets what is typed."""
+        """Handle a key of the table: arrow keys move the cursor, and Enter saves the entered value."""
         if key in {"Page up", "Page down"}:
             self._step(self.page if key == "Page down" else -self.page, 0)
         elif key in _MOVES:
@@ -150,33 +150,33 @@ class ToolOffsets(ToolEntry):
         return True
 
     def choose(self, number: int, column: int) -> None:
-        """A cell by a finger; touched again its remark opens, or its mark is set."""
+        """Select a touched cell. A second touch opens a remark or sets the master."""
         again = (number, column) == (self.number, self.column)
         self._go(number, column)
         if again and self.name in {"remark", "master"} and not self.writing:
             self.enter()
 
     def add(self) -> None:
-        """F2: what is typed is added to what is there."""
+        """Handle F2: add the entered value to the present value."""
         if why := self.add_barred():
             self.desk.say(why)
             return
         self._save(adding=True)
 
     def add_barred(self) -> str:
-        """Return why nothing is added now; empty when it is."""
+        """Return why no value can be added now. Empty if it can."""
         if self.tool is None or not self.text.strip():
             return tr("TYPE THE VALUE TO ADD, THEN PRESS F2")
         return ""
 
     def relative_barred(self) -> str:
-        """Return why X and Z cannot be shown from the master; empty when they can."""
+        """Return why X and Z cannot be shown relative to the master. Empty if they can."""
         if not self.relative and not self.book.master:
             return tr("NO MASTER TOOL. PRESS ENTER IN MASTER COLUMN TO CHOOSE ONE")
         return ""
 
     def turn_relative(self) -> None:
-        """F3: X and Z from home, or from the master."""
+        """Handle F3: show X and Z from home, or relative to the master."""
         if why := self.relative_barred():
             self.desk.say(why)
             return
@@ -187,7 +187,7 @@ class ToolOffsets(ToolEntry):
         self._go(rows[max(0, min(len(rows) - 1, self.row + down))], self.column + right)
 
     def open_edge(self) -> None:
-        """D: a row for the next cutting edge of this tool, which its X and Z set."""
+        """Handle D: add a row for the next cutting edge of this tool. Entering X and Z sets the edge."""
         tool = tool_of(self.number)
         free = (edge_key(tool, edge) for edge in EDGES if edge_key(tool, edge) not in self.book.tools)
         key = next(free, 0)
@@ -203,7 +203,7 @@ class ToolOffsets(ToolEntry):
             self.desk.say(tr(Message("T{number}: TYPE X AND Z", number=edge_number(key))))
 
     def _go(self, number: int, column: int) -> None:
-        """The cursor there; what was typed and not entered stays behind, and that is said."""
+        """Move the cursor, unless there is an unfinished entry. An incomplete new tool is discarded."""
         if self.left_open():
             return
         if self.opened_edge not in {0, number} and self.fields.new.number != self.opened_edge:
@@ -218,7 +218,7 @@ class ToolOffsets(ToolEntry):
             self.drop()
 
     def enter(self) -> None:
-        """Return sets what is typed, chooses the master, opens a remark, or goes on."""
+        """Handle Enter: save the entered value, choose the master, open a remark, or go to the next cell."""
         if self.name == "master":
             self.history.answer(self.cell_barred() or self.fields.master(self.number))
         elif self.name == "remark" and not self.writing:
@@ -236,17 +236,17 @@ class ToolOffsets(ToolEntry):
         self.writing, self.text = True, self.tool.remark
 
     def _save(self, *, adding: bool) -> None:
-        """Save the cell; of a new tool go on to what is missing."""
+        """Save the cell. For a new tool, move the cursor to the missing value."""
         saved = self.store(lambda: self.fields.save(self.number, self.name, self.text, adding=adding))
         if saved and self.fields.new.number:
             self.column = COLUMNS.index(self.fields.new.missing)
 
     @property
     def entering(self) -> bool:
-        """Half of a new tool is taken back too."""
+        """Whether Esc can discard an entry or an incomplete new tool."""
         return super().entering or bool(self.fields.new.number)
 
     def drop(self) -> None:
-        """Forget what is typed, an open remark and half of a new tool."""
+        """Discard the entry, an open remark and an incomplete new tool."""
         super().drop()
         self.fields.new.drop()

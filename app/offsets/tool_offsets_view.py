@@ -1,4 +1,4 @@
-"""Tool offsets and shape of a tool, F8: their cells and fields, and a drawing of insert, holder and tip."""
+"""The pages of tool offsets and of a tool's shape (F8), with a drawing of insert, holder and tip."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ from core.executor.snapshot import Snapshot
 from core.message import Message, join_messages
 from core.tool_edges import edge_number, edge_of, tool_of
 
-NUMBER = 5.4  # units: width of the column of numbers
-HEAD = 3.2  # units: height of the names of the columns
-# Widths of the columns in parts of what is left.
+NUMBER = 5.4  # Units: width of the number column.
+HEAD = 3.2  # Units: height of the column heads.
+# Relative widths of the other columns.
 SHARES = {
     "x": 15.0,
     "z": 14.0,
@@ -41,7 +41,7 @@ SHARES = {
 
 
 class ToolTable(RowPanel):
-    """Draws the model; redrawn when something of it has changed."""
+    """The table of the tool offsets. It is redrawn when the model has changed."""
 
     notch = 1
     _shown: Shown[object] = Shown(())
@@ -50,10 +50,10 @@ class ToolTable(RowPanel):
         super().__init__(look, parent)
         self._model = model
         self.choose: Callable[[int, int], None] = model.choose
-        self._heads: dict[str, str] = {}  # of the columns
+        self._heads: dict[str, str] = {}  # Column heads by field.
 
     def show_tools(self) -> None:
-        """The model as it is now."""
+        """Show the present state of the model."""
         model = self._model
         self._shown = (
             model.book.tools,
@@ -95,7 +95,7 @@ class ToolTable(RowPanel):
             painter.write(cell, self._heads[name], 1.5, "soft", at=CENTRE, margin=0.2)
 
     def _columns(self, room: QRectF) -> dict[str, tuple[float, float]]:
-        """Left edge and width of each column, pixels."""
+        """Return the left edge and width of each column in pixels."""
         left = room.x() + NUMBER * self.look.u
         part = (room.right() - left) / sum(SHARES.values())
         columns = {}
@@ -122,7 +122,7 @@ class ToolTable(RowPanel):
             self._cell(painter, cell, number, field)
             if here and at == model.column:
                 painter.box(cell.adjusted(0.2 * u, 0.1 * u, -0.2 * u, -0.1 * u), "accent", 0.24, "")
-            spot = cell.united(margin) if at == 0 else cell  # who touches its number means its row
+            spot = cell.united(margin) if at == 0 else cell  # A touch on the number selects the row.
             words = f"{name} {self._heads[field]}"
             self.place(
                 spot, partial(self.choose, number, at), words, kind="row", on=here and at == model.column
@@ -134,7 +134,7 @@ class ToolTable(RowPanel):
             )
 
     def _scale(self, row: QRectF) -> float:
-        """Of the letters, by the height of the row."""
+        """Return the scale of the letters for the height of the row."""
         return min(1.0, row.height() / (4.2 * self.look.u))
 
     def _cell(self, painter: Painter, cell: QRectF, number: int, name: str) -> None:
@@ -159,7 +159,7 @@ class ToolTable(RowPanel):
 
 
 class ToolOffsetsPage(OffsetPage):
-    """F8, tool offsets."""
+    """The page of the tool offsets, F8."""
 
     NAME = page_table.TOOLS
     LABELS = ("MENU", "ADD", "MASTER", "UNDO", "HISTORY", "EFFECT", "ALARMS", "SHAPE", "SECCMP", "ZERO")
@@ -171,12 +171,12 @@ class ToolOffsetsPage(OffsetPage):
         self.table = ToolTable(self.look, self.model, self)
 
     def barred_by(self) -> dict[str, object]:
-        """Return also why nothing is added, and why X and Z are not shown from a master."""
+        """Return the reasons why keys are disabled, including F2 for adding and F3 for the master."""
         model = self.model
         return {**super().barred_by(), "F2": model.add_barred(), "F3": model.relative_barred()}
 
     def key_actions(self) -> KeyActions:
-        """Add to what is there; X and Z from the master; the tool's shape; the rest as on F9."""
+        """Return the key actions, including F2 for adding, F3 for the master and F8 for the tool's shape."""
         own: KeyActions = {
             "F2": self.model.add,
             "F3": self.model.turn_relative,
@@ -185,17 +185,17 @@ class ToolOffsetsPage(OffsetPage):
         return {**super().key_actions(), **own}
 
     def refresh(self, snapshot: Snapshot, status: MachineStatus, loaded: Loaded) -> None:
-        """The table as it is now."""
+        """Show the present state of the table."""
         super().refresh(snapshot, status, loaded)
         self.table.show_tools()
 
 
-ROWS = 6  # fields in one of the two columns
-FIELDS = 0.6  # of the width, for both columns
+ROWS = 6  # Fields in each of the two columns.
+FIELDS = 0.6  # Fraction of the width for both columns.
 
 
 class ShapeTable(Panel):
-    """Two columns of fields, each a finger's target, and the picture at their right."""
+    """Two columns of fields, which are touch targets, with the drawing at their right."""
 
     _shown: Shown[object] = Shown(())
 
@@ -204,7 +204,7 @@ class ShapeTable(Panel):
         self._model = model
 
     def show_shape(self) -> None:
-        """The model as it is now."""
+        """Show the present state of the model."""
         model = self._model
         last = tuple(change.number for change in model.history.last)
         self._shown = (model.number, model.row, model.tool, model.name, model.mode, last)
@@ -234,7 +234,7 @@ class ShapeTable(Panel):
         )
 
     def _field(self, painter: Painter, cell: QRectF, name: str) -> None:
-        """Its name over its value."""
+        """Draw the name of a field above its value."""
         u, model = self.look.u, self._model
         here = name == model.name
         painter.fill(cell, "here" if here else "key")
@@ -252,10 +252,10 @@ class ShapeTable(Panel):
             foot, text or "–", 2.0, "alarm" if wrong else "text", at=RIGHT, bold=bool(text), raw=free
         )
 
-    # --- the picture ---------------------------------------------------------------------------------
+    # --- drawing -------------------------------------------------------------------------------------
 
     def _picture(self, painter: Painter, room: QRectF) -> None:
-        """The outline, X downwards as in every picture of the path; under it what is assumed, or wrong."""
+        """Draw the outline with X down, as in the path view. Below it are the assumed values."""
         u, model = self.look.u, self._model
         words = QRectF(room.x(), room.bottom() - 2.6 * u, room.width(), 2.4 * u)
         painter.fill(room, "panel")
@@ -274,7 +274,7 @@ class ShapeTable(Panel):
 
 
 class ToolShapePage(OffsetPage):
-    """The shape of the tool at which the table of tools stands."""
+    """The page of the shape of the selected tool."""
 
     NAME = page_table.SHAPE
     LABELS = ("MENU", "", "NONE", "UNDO", "HISTORY", "", "ALARMS", "TOOLS", "SECCMP", "ZERO")
@@ -286,26 +286,26 @@ class ToolShapePage(OffsetPage):
         self.table = ShapeTable(self.look, self.model, self)
 
     def barred_by(self) -> dict[str, object]:
-        """Return also why the shape of the tool is not removed."""
+        """Return the reasons why keys are disabled, including F3 for deleting the shape."""
         return {**super().barred_by(), "F3": self.model.remove_barred()}
 
     def key_actions(self) -> KeyActions:
-        """No shape any more; no effect on the path is drawn of these."""
+        """Return the key actions, with F3 for deleting the shape and without the effect on the path."""
         shared = {key: act for key, act in super().key_actions().items() if key != "F6"}
         return {**shared, "F3": self.model.remove}
 
     def opened(self) -> None:
-        """At the first field of the tool that was chosen."""
+        """Select the first field of the selected tool."""
         super().opened()
         self.model.place = 0
 
     def refresh(self, snapshot: Snapshot, status: MachineStatus, loaded: Loaded) -> None:
-        """The table as it is now."""
+        """Show the present state of the fields."""
         super().refresh(snapshot, status, loaded)
         self.table.show_shape()
 
     def escape(self) -> bool:
-        """Esc goes one step back, and then to the table of tools."""
+        """Go one step back, or from the first step to the table of tools."""
         if not self.model.escape():
             self.host.go(page_table.TOOLS)
         return True

@@ -1,4 +1,4 @@
-"""Shape of a tool, F8 of the tool offsets: what its sheet says, field by field, and what it looks like."""
+"""The model of a tool's shape (F8 on the tool offsets), which the operator edits field by field."""
 
 from __future__ import annotations
 
@@ -16,13 +16,14 @@ from core.part.tool_shape import ToolKind
 from core.store.store_rows import OFFSETS, Kind, ShapeRow, Sort, ToolRow, Value, with_fields
 from core.tool_edges import edge_name, edge_number, tool_of
 
-_OF_THE_OFFSET = {"tip": "quadrant", "nose_radius": "nose_radius"}  # kept with the tool's offset
+# Fields that are saved with the tool's offset.
+_OF_THE_OFFSET = {"tip": "quadrant", "nose_radius": "nose_radius"}
 _MOVES = {"Up": -1, "Down": 1, "Tab": 1}
 _TURNS = {"Left": -1, "Right": 1}
 
 
 class ToolShapes(ToolEntry):
-    """One tool, and the field under the cursor. Left and Right turn through what a field may be."""
+    """The shape of one tool, with the field under the cursor. Left and Right cycle through the choices."""
 
     kind = Kind.SHAPE
     to_write = "PRESS ENTER TO TYPE THE TEXT"
@@ -31,16 +32,16 @@ class ToolShapes(ToolEntry):
         super().__init__(desk)
         self.place = 0
 
-    # --- what is shown -------------------------------------------------------------------------------
+    # --- display -------------------------------------------------------------------------------------
 
     @property
     def row(self) -> ShapeRow | None:
-        """Its shape; None: it has none yet."""
+        """The shape of the selected tool. None if the tool has no shape."""
         return self.book.shapes.get(self.number)
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The fields that mean something for a tool of this kind."""
+        """The fields that apply to a tool of this kind."""
         row = self.row
         if row is None:
             return ("kind",)
@@ -52,7 +53,7 @@ class ToolShapes(ToolEntry):
         return self.names[min(self.place, len(self.names) - 1)]
 
     def value(self, name: str) -> Value:
-        """A field as it is kept; of nose radius and tip what the tool's offset has."""
+        """Return the saved value of a field. Nose radius and tip come from the tool's offset."""
         if name in ToolRow._fields:
             of_offset: Value = getattr(self.tool or ToolRow(), name)
             return of_offset
@@ -60,29 +61,29 @@ class ToolShapes(ToolEntry):
         return of_shape
 
     def cell(self, name: str) -> str:
-        """A field as the operator reads it; empty where nothing is stated."""
+        """Return a field as text. Empty if the field is not specified."""
         value = self.value(name)
         stated = bool(value) or TOOL_FIELDS[name].sort is Sort.FLAG or (name == "quadrant" and self.tool)
         return shown_value(name, value, self.mode) if stated else ""
 
     @property
     def mistakes(self) -> tuple[ShapeMistake, ...]:
-        """What cannot be in this shape."""
+        """The mistakes in this shape."""
         return () if self.row is None else row_mistakes(self.row, self.tool)
 
     @property
     def outline(self) -> ToolOutline | None:
-        """What to draw; None while there is no shape, or one that cannot be."""
+        """The outline to draw. None if there is no shape, or if it has mistakes."""
         return None if self.row is None or self.mistakes else outline(shape_of(self.row, self.tool))
 
     @property
     def value_before(self) -> str:
-        """The field as it is, without what is typed."""
+        """The saved value of the field as text."""
         return self.cell(self.name)
 
     @property
     def entered(self) -> str:
-        """What is typed, or what has been turned to."""
+        """The entered text, or the name of the selected choice."""
         return self._said(self.text) if self.text and self.chosen_from else self.text
 
     def _said(self, choice: str) -> str:
@@ -90,11 +91,11 @@ class ToolShapes(ToolEntry):
 
     @property
     def foot(self) -> str:
-        """What F3, F8 and Esc do here."""
+        """The hint for the keys F3, F8 and Esc."""
         return tr("Page Up, Page Down: other tool   F3: delete shape   F8: tool table   Esc: exit")
 
     def hint(self, _snapshot: Snapshot) -> str:
-        """What cannot be in the shape; else how the field under the cursor is entered."""
+        """Return the first mistake of the shape, or how to enter the field under the cursor."""
         if self.mistakes and not (self.text or self.writing):
             return f"{edge_name(self.number)}: {tr(self.mistakes[0].text)}"
         if self.writing:
@@ -107,19 +108,19 @@ class ToolShapes(ToolEntry):
 
     @property
     def corrects(self) -> bool:
-        """A shape is no correction: it waits until no program is under way."""
+        """False, because a change of a shape must wait until no program is running."""
         return False
 
     @property
     def chosen_from(self) -> tuple[str, ...]:
-        """What the field under the cursor may be, where it is one of several."""
+        """The choices of the field under the cursor. Empty for a free value."""
         field = TOOL_FIELDS[self.name]
         return ("no", "yes") if field.sort is Sort.FLAG else field.choices
 
     # --- keys ----------------------------------------------------------------------------------------
 
     def enter_key(self, key: str) -> bool:
-        """Up and Down go from field to field, Return sets what is typed or chosen."""
+        """Handle a key: Up and Down move the cursor, and Enter saves the entered value or choice."""
         if key in _MOVES:
             self.go(self.names.index(self.name) + _MOVES[key])
         elif key in _TURNS:
@@ -133,7 +134,7 @@ class ToolShapes(ToolEntry):
         return True
 
     def choose(self, place: int) -> None:
-        """A field by a finger; touched again its text opens, or the next of several comes up."""
+        """Select a touched field. A second touch opens a text or selects the next choice."""
         again = place == self.names.index(self.name)
         if not again:
             self.go(place)
@@ -143,17 +144,17 @@ class ToolShapes(ToolEntry):
             self.enter()
 
     def go(self, place: int) -> None:
-        """The cursor there; what was typed and not entered stays, and that is said."""
+        """Move the cursor to a field, unless there is an unfinished entry."""
         if not self.left_open():
             self.place = max(0, min(len(self.names) - 1, place))
 
     def go_to_tool(self, number: int) -> None:
-        """Another tool, at its first field."""
+        """Select another tool at its first field, unless there is an unfinished entry."""
         if not self.left_open():
             self.book.at, self.place = max(OFFSETS[0], min(OFFSETS[-1], number)), 0
 
     def turn(self, step: int) -> None:
-        """The next or the one before of what the field may be; Return sets it."""
+        """Show the next or previous choice of the field. Enter saves it."""
         choices = self.chosen_from
         if not choices:
             return
@@ -164,12 +165,12 @@ class ToolShapes(ToolEntry):
         self.text = choices[(choices.index(now) + step) % len(choices)] if now in choices else choices[0]
 
     def _choice(self) -> str:
-        """The value of the field as one of its choices; empty when it is none yet."""
+        """Return the value of the field as one of its choices. Empty if it is not specified."""
         value = self.value(self.name)
         return ("yes" if value else "no") if isinstance(value, bool) else str(value)
 
     def enter(self) -> None:
-        """Return sets what is typed or chosen, opens a text, or goes on."""
+        """Handle Enter: save the entered value or choice, open a text, or go to the next field."""
         if self.text.strip() or self.writing:
             self.store(lambda: self._save(self.name, value_typed(self.name, self.text, self.mode)))
         elif self.is_text:
@@ -184,7 +185,7 @@ class ToolShapes(ToolEntry):
             self.writing, self.text = True, str(self.value(self.name))
 
     def _save(self, name: str, value: Value) -> str:
-        """Raises EntryError where this field would mean nothing."""
+        """Save a field. Raises EntryError if the value is a mistake in this field."""
         of_offset = name in ToolRow._fields
         if of_offset and self.tool is None:
             return ToolFields(self.history).never_set(self.number)
@@ -198,7 +199,10 @@ class ToolShapes(ToolEntry):
         )
 
     def _check(self, name: str, value: Value) -> None:
-        """What is wrong with this very field is refused; what it does to the others is shown."""
+        """Raise EntryError if the value is a mistake in this field.
+
+        Mistakes in other fields are only shown.
+        """
         tool, row = self.tool or ToolRow(), self.row or ShapeRow()
         if name in ToolRow._fields:
             tool = with_fields(tool, {name: value})
@@ -211,13 +215,13 @@ class ToolShapes(ToolEntry):
             raise EntryError(wrong[0].text)
 
     def remove_barred(self) -> str:
-        """Return why the shape of the tool is not removed now; empty when it is."""
+        """Return why the shape cannot be deleted now. Empty if it can."""
         if self.row is None:
             return tr(Message("T{number}: NO TOOL SHAPE DEFINED", number=edge_number(self.number)))
         return self.cell_barred()
 
     def remove(self) -> None:
-        """F3: the tool has no shape any more, after asking."""
+        """Handle F3: delete the shape after the operator confirms."""
         if why := self.remove_barred():
             self.desk.say(why)
         else:

@@ -1,4 +1,4 @@
-"""Zero offsets G54 to G59 of a lathe, and the presets of a mill: where the workpiece is."""
+"""Zero offsets G54 to G59 of a lathe, and presets of a mill, which define the workpiece position."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from core.message import Message
 from core.store.store_rows import PRESETS, ZERO_CODES, Kind, PresetRow, Value
 
 _ROTARY = {"a": "A", "b": "B", "c": "C"}
-_APART = 1.0  # mm: points of an edge that are nearer tell no direction
+_APART = 1.0  # Millimeters: closer points of an edge do not define its direction.
 
 
 class Presets(CellTable):
-    """The cell that is chosen, and what is typed over it. ``edge`` is the first point of a basic rotation."""
+    """The preset table with its selected cell. ``edge`` is the first touched point for a basic rotation."""
 
     kind = Kind.PRESET
     numbers = PRESETS
@@ -33,22 +33,22 @@ class Presets(CellTable):
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """The fields, and of the rotary axes those that this machine has."""
+        """The field names of the columns, with the rotary axes of this machine only."""
         absent = {name for name, axis in _ROTARY.items() if axis not in MillTouch.of(self.desk).rotary_axes}
         return tuple(name for name in super().columns if name not in absent)
 
     @property
     def title(self) -> str:
-        """What the table is, and its units."""
+        """The title of the table, with its units."""
         return tr("PRESETS  ·  WORKPIECE ZERO IN MACHINE COORDINATES, MM AND DEGREES")
 
     def in_force(self, _snapshot: Snapshot) -> int:
-        """The preset that was chosen."""
+        """Return the number of the preset in force."""
         return self.book.preset
 
     @property
     def foot(self) -> str:
-        """What F2, F3 and Esc do here, and which preset is in force."""
+        """The hint for the keys F2, F3 and Esc, with the preset in force."""
         told = tr("F2: set the current tip position to the typed value")
         if self.name in _ROTARY:
             told = tr("F2: set the current axis position to the typed value")
@@ -60,21 +60,24 @@ class Presets(CellTable):
 
     @property
     def row_now(self) -> PresetRow:
-        """The chosen row; one that was never set is empty."""
+        """The selected row. Empty if it was never set."""
         return self.book.presets.get(self.number, PresetRow())
 
     def choose(self, row: int, column: int) -> None:
-        """Another cell: an edge that was begun is forgotten."""
+        """Select another cell, and discard the first point of an edge."""
         self.edge = None
         super().choose(row, column)
 
     def take_back(self) -> bool:
-        """Forget what is typed, and an edge that was begun."""
+        """Discard the entry and the first point of an edge. Return False if there is neither."""
         begun, self.edge = self.edge is not None, None
         return super().take_back() or begun
 
     def here(self) -> None:
-        """F2: what stands here shall read what was typed, or 0; of a basic rotation an edge is two points."""
+        """Handle F2: set the selected field so that the present position reads the entered value, or 0.
+
+        A basic rotation needs two points of an edge.
+        """
         if self.name in _ROTARY:
             self._touch_rotary()
         elif self.name in {"x", "y", "z"}:
@@ -89,7 +92,7 @@ class Presets(CellTable):
         return self.text.strip() or "0"
 
     def _touch_slide(self) -> None:
-        """The tip stands where the workpiece shall read what was typed."""
+        """Set a linear axis so that the tip reads the entered value."""
         tip, reads = self._tip(), self._reads
         if tip is not None:
             at = tip["xyz".index(self.name)]
@@ -106,7 +109,10 @@ class Presets(CellTable):
         return tip
 
     def _touch_rotary(self) -> None:
-        """The axis reads what was typed where it stands; the workpiece's zero keeps its place on the part."""
+        """Set a rotary axis so that it reads the entered value.
+
+        The workpiece zero remains on the same point of the part.
+        """
         at, reads = MillTouch.of(self.desk).angle(_ROTARY[self.name]), self._reads
         if isinstance(at, str):
             self.desk.say(at)
@@ -118,7 +124,7 @@ class Presets(CellTable):
         )
 
     def _followed(self, zero: Value) -> Mapping[str, Value]:
-        """X Y Z of the same point of the part with another zero of the chosen rotary axis."""
+        """Return X, Y and Z of the same workpiece point for another zero of the selected rotary axis."""
         row = self.row_now
         if self.stored is None:
             return {}
@@ -127,7 +133,7 @@ class Presets(CellTable):
         return dict(zip("xyz", (round(at, 10) for at in spot), strict=True))
 
     def _touch_edge(self) -> None:
-        """First one point of an edge, then another: what the edge is off by is the basic rotation."""
+        """Store the first point of an edge, or set the basic rotation from the second point."""
         tip, reads = self._tip(), self._reads
         if tip is None:
             return
@@ -143,14 +149,18 @@ class Presets(CellTable):
             self.edge = None
 
     def _turned(self, first: Vector, last: Vector, reads: float) -> float:
-        """Of an edge that shall read so many degrees from X; it has no beginning, so a half turn is none."""
+        """Return the basic rotation in degrees, if the edge must read ``reads`` degrees from X.
+
+        An edge has no direction, so a half revolution is ignored. Raises EntryError if the points are too
+        close.
+        """
         dx, dy = last[0] - first[0], last[1] - first[1]
         if hypot(dx, dy) < _APART:
             raise EntryError(tr("POINTS LESS THAN 1 MM APART. TOUCH FARTHER ALONG THE EDGE"))
         return self.checked(remainder(degrees(atan2(dy, dx)) - reads, 180.0))
 
     def activate_barred(self) -> str:
-        """Return why the chosen preset does not come into force now; empty when it does."""
+        """Return why the selected preset cannot be activated now. Empty if it can."""
         if why := self.barred(self.desk.snapshot()):
             return why
         if self.stored is None:
@@ -160,7 +170,7 @@ class Presets(CellTable):
         return ""
 
     def here_barred(self) -> str:
-        """Return why the workpiece is not touched off now; empty when it is."""
+        """Return why the workpiece cannot be touched off now. Empty if it can."""
         if self.name in _ROTARY:
             place: object = MillTouch.of(self.desk).angle(_ROTARY[self.name])
         elif self.name in {"x", "y", "z", "rotation"}:
@@ -170,7 +180,7 @@ class Presets(CellTable):
         return place if isinstance(place, str) else self.barred(self.desk.snapshot())
 
     def activate(self) -> None:
-        """F3: the chosen preset is in force; that of the machine file where it is already."""
+        """Handle F3: activate the selected preset, or that of the machine file if it is already active."""
         if why := self.activate_barred():
             self.desk.say(why)
             return
@@ -180,7 +190,7 @@ class Presets(CellTable):
 
 
 class ZeroOffsets(CellTable):
-    """The cell that is chosen, and what is typed over it."""
+    """The table of the zero offsets with its selected cell and the entered text."""
 
     kind = Kind.ZERO
     own_key = "C"
@@ -190,44 +200,44 @@ class ZeroOffsets(CellTable):
 
     @property
     def title(self) -> str:
-        """What the table is, and its units."""
+        """The title of the table, with its units."""
         return tr("SETTABLE OFFSETS  ·  X IS A RADIUS  ·  MM AND DEGREES")
 
     @property
     def words(self) -> tuple[str, ...]:
-        """What stands over the columns: the axes."""
+        """The column heads, which are the axis names."""
         return tuple(name.upper() for name in self.columns)
 
     def in_force(self, snapshot: Snapshot) -> int:
-        """The settable offset of the program."""
+        """Return the G code of the active zero offset."""
         return snapshot.modal.settable
 
     @property
     def code(self) -> int:
-        """The G code of the chosen row."""
+        """The G code of the selected row."""
         return self.number
 
     @property
     def question(self) -> str:
-        """What is asked for the chosen cell."""
+        """The prompt for the selected cell, with its unit."""
         words = {"x": tr("X RADIUS, MM?"), "z": tr("Z, MM?"), "c": tr("C, DEGREES?")}
         return f"G{self.code}  {words[self.name]}"
 
     @property
     def foot(self) -> str:
-        """What F2, C and Esc do here."""
+        """The hint for the keys F2, C and Esc."""
         return tr(
             "F2: set the current position to the typed value        C: clear G54 to G59        Esc: exit"
         )
 
     def barred(self, snapshot: Snapshot, *, correction: bool = False) -> str:
-        """Nothing here is a correction: part zero changes between cycles only."""
+        """Return why the zero offsets cannot be changed now. They can be changed only between cycles."""
         if snapshot.state in UNDER_WAY - {State.JOG, State.HOME} and not self.book.locked:
             return tr("PROGRAM RUNNING. CHANGE G54 TO G59 ONLY BETWEEN CYCLES")
         return super().barred(snapshot, correction=correction)
 
     def here_barred(self) -> str:
-        """Return why the position of the machine is not taken now; empty when it is."""
+        """Return why the machine position cannot be used now. Empty if it can."""
         snapshot, axis = self.desk.snapshot(), self.name.upper()
         if axis not in snapshot.axes:
             return tr(Message("THIS MACHINE HAS NO {axis} AXIS", axis=axis))
@@ -236,7 +246,7 @@ class ZeroOffsets(CellTable):
         return self.barred(snapshot)
 
     def here(self) -> None:
-        """F2: the machine stands where the program shall read what was typed, or 0: the offset follows."""
+        """Handle F2: set the offset so that the present position reads the entered value, or 0."""
         if why := self.here_barred():
             self.desk.say(why)
             return
@@ -247,5 +257,8 @@ class ZeroOffsets(CellTable):
         self.save(lambda: self._touched(snapshot.actual[place], value_of(reads)), words)
 
     def _touched(self, at: float, reads: float) -> float:
-        """The offset with which the machine position ``at`` reads so; whole turns of C are left out."""
+        """Return the offset with which machine position ``at`` reads ``reads``.
+
+        Full revolutions of C are ignored.
+        """
         return self.checked(remainder(at - reads, 360.0) if self.name == "c" else at - reads)

@@ -1,1 +1,1 @@
-"""The page PART: stock and findings of the program on the desk."""
+"""Page PART: stock and findings of the loaded program."""

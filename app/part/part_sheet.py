@@ -1,6 +1,6 @@
-"""The page PART: what was found in the program on the desk, and the stock that it is proved on. No Qt.
+"""Model of the page PART without Qt: findings in the loaded program, and the stock of its proof.
 
-What is said here is kept in the store with the program, never written into its text; then it is proved anew.
+Entries are stored with the program in the store, never in the program text. The program is then proved again.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _TURNS = {"Left": -1, "Right": 1}
 
 
 class Section(StrEnum):
-    """What the table shows."""
+    """Content of the table."""
 
     FINDINGS = "findings"
     STOCK = "stock"
@@ -39,58 +39,59 @@ class Section(StrEnum):
 
 @dataclass(slots=True)
 class PartSheet:
-    """``checks`` are those that can be silenced, ``of_machine`` those that the machine file has silenced.
+    """Model of the page PART.
 
-    ``shows`` hears of the finding whose place is to be seen.
+    ``checks`` are the checks that can be turned off, and ``of_machine`` those that the machine file turns
+    off. ``shows`` is called with a finding when the page has to show its location.
     """
 
     desk: Desk
     keep: Persistence
     checks: frozenset[str] = frozenset()
     of_machine: frozenset[str] = frozenset()
-    stick_out: float = 0.0  # mm, of the machine file; 0: it says none
-    holds: bool = False  # whether the machine file has a chuck or collet that a stick-out belongs to
+    stick_out: float = 0.0  # mm, from the machine file; 0 if not specified
+    holds: bool = False  # whether the machine file has a chuck or collet to which a stick-out applies
     section: Section = Section.FINDINGS
     at: dict[Section, int] = field(default_factory=dict)
-    text: str = ""  # what is typed
-    silencing: str = ""  # the check whose reason is being typed
-    writing: bool = False  # the name of a file is: every character is part of it
+    text: str = ""  # typed text
+    silencing: str = ""  # check whose reason is being typed
+    writing: bool = False  # a file name is being typed: every character is part of the name
     worker: Latest = field(default_factory=lambda: Latest("editing-part"))
     shows: Callable[[Diagnostic], None] = field(default=lambda _found: None)
     kept: KeptPart = NOTHING_KEPT
     entry: StockEntry = field(default_factory=StockEntry)
-    _seen: tuple[str, int] = ("", -1)  # the program that ``_kept`` is of, and when it was loaded
+    _seen: tuple[str, int] = ("", -1)  # program name and load count of the stored data
 
     def close(self) -> None:
-        """End the worker; what is being kept is kept."""
+        """Stop the worker after pending writes are finished."""
         self.worker.close()
 
-    # --- what is shown -------------------------------------------------------------------------------
+    # --- displayed values ----------------------------------------------------------------------------
 
     @property
     def loaded(self) -> Loaded:
-        """The program on the desk."""
+        """Loaded program."""
         return self.desk.session.now
 
     @property
     def name(self) -> str:
-        """Under which its part is kept."""
+        """Name under which the part data is stored."""
         return self.loaded.name
 
     @property
     def metric(self) -> bool:
-        """The unit of the program."""
+        """Whether the program uses millimeters."""
         picture = self.loaded.picture
         return picture is not None and picture.metric
 
     @property
     def findings(self) -> tuple[Diagnostic, ...]:
-        """Everything that was found, in the order of lines."""
+        """All findings in the order of lines."""
         return self.loaded.diagnostics
 
     @property
     def marked(self) -> int:
-        """The row that keys act on; before anybody has chosen, where to look first."""
+        """Index of the selected row; before a selection, the most important finding."""
         first = _first(self.findings) if self.section is Section.FINDINGS else 0
         return max(0, min(self.at.get(self.section, first), self._count - 1))
 
@@ -100,18 +101,18 @@ class PartSheet:
 
     @property
     def finding(self) -> Diagnostic | None:
-        """The marked one."""
+        """Selected finding, or None."""
         if self.section is not Section.FINDINGS or not self.findings:
             return None
         return self.findings[self.marked]
 
     @property
     def marked_field(self) -> StockField:
-        """The marked field of the stock."""
+        """Selected field of the stock."""
         return self.entry.fields[min(self.at.get(Section.STOCK, 0), len(self.entry.fields) - 1)]
 
     def look(self) -> None:
-        """Once a frame: take up what has been kept, and another program."""
+        """Process finished writes and a change of the loaded program; called once per frame."""
         self.worker.poll()
         seen = self.name, self.desk.session.loads
         if seen != self._seen:
@@ -132,7 +133,7 @@ class PartSheet:
     # --- keys ----------------------------------------------------------------------------------------
 
     def keys(self) -> Mapping[str, Key]:
-        """Function keys of this moment."""
+        """Return the function keys that are available now."""
         if self.section is Section.STOCK:
             return {
                 "F2": Key("FINDINGS", self.turn),
@@ -145,22 +146,22 @@ class PartSheet:
         return {"F2": Key("STOCK", self.turn), "F4": silenced}
 
     def turn(self) -> None:
-        """To the other table."""
+        """Switch to the other table."""
         self.drop()
         self.desk.clear()
         self.section = following(Section, self.section)
 
     def show_stock(self) -> None:
-        """The table of the stock, as the part view asks for it."""
+        """Show the table of the stock."""
         self.section = Section.STOCK
 
     @property
     def has_keyboard(self) -> bool:
-        """Whether every character is text."""
+        """Whether every typed character is text."""
         return bool(self.silencing) or self.writing
 
     def takes(self, key: str) -> bool:
-        """Whether a character is text here."""
+        """Return whether a character is part of an entry."""
         if self.has_keyboard:
             return len(key) == 1 and key.isprintable()
         return self.section is Section.STOCK and self._figures and key in CHARACTERS
@@ -170,7 +171,7 @@ class PartSheet:
         return bool(self.name) and self.marked_field not in {StockField.KIND, StockField.FILE}
 
     def typed(self, key: str) -> bool:
-        """Arrows mark, Return takes or shows, figures and letters are typed where one is asked."""
+        """Handle a key: arrows select a row, Enter accepts, and other characters edit the entry."""
         if key == "Enter":
             self._enter()
         elif self.takes(key) or (key in {"Back", "Delete"} and self.has_entry):
@@ -185,11 +186,11 @@ class PartSheet:
 
     @property
     def has_entry(self) -> bool:
-        """Whether something is typed: a reason, the name of a file, or a figure of the stock."""
+        """Whether an entry is active: a reason, a file name or a value of the stock."""
         return self.has_keyboard or (self.section is Section.STOCK and self._figures)
 
     def choose(self, row: int) -> None:
-        """Mark a row; of a finding its place is shown."""
+        """Select a row. The location of a selected finding is shown."""
         self.drop()
         self.desk.clear()
         self.at[self.section] = max(0, min(row, self._count - 1))
@@ -198,7 +199,10 @@ class PartSheet:
             self.shows(found)
 
     def touch(self, row: int) -> None:
-        """A finger marks a row; on the marked one it turns the kind, or opens the name of a file."""
+        """Select the touched row.
+
+        A second touch changes the kind of stock or opens the file name entry.
+        """
         if row != self.marked or self.section is Section.FINDINGS:
             self.choose(row)
         elif self.marked_field in {StockField.KIND, StockField.FILE} and not self.writing:
@@ -218,7 +222,10 @@ class PartSheet:
             self._take()
 
     def escape(self) -> bool:
-        """What is typed, an answer, or half a stock is taken back; False when there was none of it."""
+        """Cancel the entry, the message or an incomplete stock.
+
+        Return False if there was nothing to cancel.
+        """
         if self.text or self.has_keyboard:
             self.drop()
         elif self.desk.notice:
@@ -230,22 +237,22 @@ class PartSheet:
         return True
 
     def drop(self) -> None:
-        """Forget what is typed."""
+        """Cancel the entry."""
         self.text, self.silencing, self.writing = "", "", False
 
     def opened(self) -> None:
-        """The page comes up."""
+        """Reload the data when the page opens."""
         self._seen = ("", -1)
         self.look()
 
     def leave(self) -> None:
-        """It goes: nothing stays half entered."""
+        """Cancel the entry and reset the selection when the page closes."""
         self.drop()
         self.section = Section.FINDINGS
         self.at.clear()
 
     def prompt(self) -> str:
-        """What the keys do here."""
+        """Return the prompt for the present keys."""
         if self.silencing:
             return tr("TYPE THE REASON   ENTER: TURN CHECK OFF   ESC: LEAVE IT ON")
         if self.writing:
@@ -258,16 +265,16 @@ class PartSheet:
             return tr("LEFT/RIGHT: CHANGE STOCK TYPE   F6: DELETE STOCK DATA")
         return tr("TYPE A LENGTH OR EXPRESSION   ENTER: SAVE   0: NOT SPECIFIED")
 
-    # --- what is said --------------------------------------------------------------------------------
+    # --- entries -------------------------------------------------------------------------------------
 
     def _barred(self) -> bool:
-        """Whether nothing may be changed now; says why."""
+        """Return whether changes are not possible now, and show the reason."""
         if why := self._locked():
             self.desk.say(why)
         return bool(why)
 
     def _locked(self) -> str:
-        """Return why nothing may be changed now; empty when it may."""
+        """Return the reason why changes are not possible now, or an empty string."""
         if not self.name:
             return tr("LOAD A PROGRAM FIRST. STOCK DATA IS SAVED WITH THE PROGRAM")
         if self.desk.machine.model is not None and self.desk.machine.model.kind != "lathe":
@@ -279,7 +286,10 @@ class PartSheet:
         return ""
 
     def turn_kind(self, by: int = 1) -> None:
-        """The next kind of stock; what it still lacks is asked for, and until then the stock is as before."""
+        """Select the next kind of stock.
+
+        An incomplete stock takes effect only when its missing value is entered.
+        """
         self.drop()
         if self._barred():
             return
@@ -290,7 +300,7 @@ class PartSheet:
         self.at[Section.STOCK] = 0
 
     def forget(self) -> None:
-        """Nothing is said of stock and stick-out any more."""
+        """Delete the stock and the stick-out of the program."""
         self.drop()
         if self._barred():
             return
@@ -301,7 +311,7 @@ class PartSheet:
         self._keep(replace(self.kept, stock="", stick_out=None), tr("STOCK DATA DELETED"))
 
     def _take(self) -> None:
-        """Return on a field."""
+        """Accept the typed text for the selected field."""
         if self._barred():
             return
         try:
@@ -318,7 +328,10 @@ class PartSheet:
         self._say(entry)
 
     def _found(self, name: str) -> str:
-        """The file of this name: beside the program, or where programs are kept. Raises EntryError."""
+        """Return the path of a file in the program's folder or in the program folders.
+
+        Raises EntryError if the file does not exist.
+        """
         beside = self.loaded.path.parent if self.loaded.path is not None else Path()
         there = beside / Path(name).expanduser()
         if name and there.is_file():
@@ -331,7 +344,7 @@ class PartSheet:
         return str(path)
 
     def _say(self, entry: StockEntry) -> None:
-        """What is whole is kept, and the program proved on it."""
+        """Store an entry if it is complete, and prove the program with the new stock."""
         self.entry = entry
         if entry.lacks is not None:
             return
@@ -344,10 +357,10 @@ class PartSheet:
         if kept != self.kept:
             self._keep(kept, tr(Message("STOCK DATA SAVED WITH {name}", name=self.name)))
 
-    # --- silenced ------------------------------------------------------------------------------------
+    # --- checks that are turned off ------------------------------------------------------------------
 
     def _not_silenced(self) -> str:
-        """Return why the check of the marked finding cannot be silenced; empty when it can."""
+        """Return the reason why the check of the finding cannot be turned off, or an empty string."""
         found = self.finding
         if found is None:
             return tr("SELECT THE FINDING WHOSE CHECK YOU WANT TO TURN OFF")
@@ -362,7 +375,7 @@ class PartSheet:
         return ""
 
     def silence(self) -> None:
-        """F4: ask why the check of the marked finding is silenced, or let it speak again."""
+        """Ask for the reason to turn the check off, or turn it on again (F4)."""
         found = self.finding
         self.drop()
         why = self._not_silenced()
@@ -388,10 +401,10 @@ class PartSheet:
                 replace(self.kept, silenced=silenced), tr(Message("{check} CHECK TURNED OFF", check=check))
             )
 
-    # --- the store -----------------------------------------------------------------------------------
+    # --- store ---------------------------------------------------------------------------------------
 
     def _keep(self, kept: KeptPart, said: str) -> None:
-        """On the worker, to the disk; then the program is proved anew."""
+        """Write the data on the worker, then prove the program again."""
         name = self.name
         if self.desk.refused(Act.STOCK):
             return
@@ -418,14 +431,15 @@ class PartSheet:
         loaded = self.loaded
         if self.name != name or loaded.path is None:
             return
-        if self.desk.snapshot().state in UNDER_WAY:  # somebody started a cycle at the station meanwhile
+        # A cycle was started at the operator station in the meantime.
+        if self.desk.snapshot().state in UNDER_WAY:
             self.desk.rebuilding.wanted = True
         else:
             self.desk.session.load(loaded.path, loaded.block_delete)
 
 
 def _first(found: tuple[Diagnostic, ...]) -> int:
-    """Where to look first: the first error, or else what was first found in the part."""
+    """Return the index of the first error, or else of the first finding in the part."""
     errors = [place for place, each in enumerate(found) if each.severity is Severity.ERROR]
     of_part = [place for place, each in enumerate(found) if each.n and not each.silenced]
     return next(iter((*errors, *of_part)), 0)

@@ -1,4 +1,4 @@
-"""The page PART: findings or stock at the left, the part at the right as the marked finding leaves it."""
+"""Page PART: findings or stock on the left, and the part after the selected block on the right."""
 
 from __future__ import annotations
 
@@ -23,17 +23,18 @@ from app.screen.sheet_panel import ListPage, SheetPanel
 from core.executor.snapshot import Snapshot
 from core.language.diagnostics import Diagnostic
 
-SHARE, PAD, LETTERS = 0.5, 28.4, 24.0  # of the width; units: width of the figures, height of the letters
+# ratio of the page width; units: width of the number pad, height of the letter pad
+SHARE, PAD, LETTERS = 0.5, 28.4, 24.0
 
 
 class PartView(PathView):
-    """The part as the marked finding leaves it, or as the time line says."""
+    """View of the part after the block of the selected finding, or at the time of the time line."""
 
     title = "PART"
 
 
 class PartPage(ListPage):
-    """The model decides; this shows it and hands the keys on."""
+    """Page PART: shows its model and passes the keys to it."""
 
     NAME = page_table.PART
     model: PartSheet
@@ -45,29 +46,29 @@ class PartPage(ListPage):
         self.pad = KeyPad(self.look, self.touched, own=None, parent=self)
         self.letters = LetterPad(self.look, self.touched, self)
         self._loaded: Loaded | None = None
-        self._shown: Diagnostic | None = None  # whose place the part view stands at
+        self._shown: Diagnostic | None = None  # finding whose location the part view shows
         model.shows = self._show
 
     def page_keys(self) -> Mapping[str, Key]:
-        """Return those of the model."""
+        """Return the function keys of the model."""
         return self.model.keys()
 
     def labels(self) -> tuple[str, ...]:
-        """Those of the table that is shown, and the page's own."""
+        """Return the labels of the displayed table and of the page."""
         return self.labels_of({"F3": "EDIT", "F5": "FIT", "F8": "TOOLS"}, self.page_keys())
 
     def barred(self) -> frozenset[str]:
-        """Return those of the table, and F3 while the editor cannot be entered."""
+        """Return the barred keys of the table, and F3 while the editor cannot be opened."""
         named = self.desk.session.now.path is not None
         closed = editor_barred(self.desk.snapshot(), named=named)
         return super().barred() | ({"F3"} if closed else set())
 
     def lively(self) -> bool:
-        """The part is being played."""
+        """Return whether the part is being played."""
         return self.path.player is not None and self.path.player.playing
 
     def key_actions(self) -> KeyActions:
-        """Keys of the table, of the time line and of looking around."""
+        """Return the actions of the table, the time line and the view."""
         path = self.path
         return {
             **{name: key.action for name, key in self.page_keys().items()},
@@ -80,15 +81,15 @@ class PartPage(ListPage):
         }
 
     def has_field(self) -> bool:
-        """Return whether a reason, the name of a file or a figure of the stock is typed."""
+        """Return whether a reason, a file name or a value of the stock is being typed."""
         return self.model.has_entry
 
     def dress(self) -> None:
-        """The picture in the colours of now."""
+        """Redraw the path in the present colors."""
         self.path.restart()
 
     def _show(self, found: Diagnostic) -> None:
-        """The part as the block leaves it in which something was found."""
+        """Show the part after the block of the finding."""
         player = self.path.player
         assert player is not None
         self._shown = found
@@ -98,7 +99,7 @@ class PartPage(ListPage):
             player.to_line(found.line)
 
     def refresh(self, _snapshot: Snapshot, _view: MachineStatus, loaded: Loaded) -> None:
-        """The table of this moment, and the part."""
+        """Update the table and the part."""
         model = self.model
         model.look()
         sheet = table(model)
@@ -122,7 +123,7 @@ class PartPage(ListPage):
         self.path.advance()
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """Table, part and pads side by side."""
+        """Arrange table, part and pads."""
         self._lay_out()
 
     def _lay_out(self) -> None:

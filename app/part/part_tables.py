@@ -1,4 +1,4 @@
-"""What the page PART shows: the findings of a program, and its stock as it was said and assumed."""
+"""Tables of the page PART: findings of a program, and its specified and assumed stock."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _TONES = {Severity.ERROR: Tone.ALARM, Severity.WARNING: Tone.PAUSE, Severity.NOT
 
 
 def table(page: PartSheet) -> Sheet:
-    """The table of this moment."""
+    """Return the table that the page shows now."""
     return _findings_table(page) if page.section is Section.FINDINGS else _stock_table(page)
 
 
@@ -105,7 +105,7 @@ def _said(page: PartSheet, name: StockField) -> str:
 
 
 def _assumed(page: PartSheet, name: StockField) -> str:
-    """What counts where nothing is said."""
+    """Return the value that is assumed where no value is specified."""
     if name is StockField.STICK_OUT:
         return length(page.stick_out, page.metric) if page.stick_out else ""
     part = page.loaded.part
@@ -157,7 +157,7 @@ def _word(name: StockField) -> str:
 
 
 def _of(stock: Stock, name: StockField, metric: bool) -> str:
-    """A field of the stock that the proof has assumed."""
+    """Return the text of a field of the assumed stock."""
     if name is StockField.KIND:
         return tr("TUBE") if stock.bore else tr("BAR")
     figures = {

@@ -1,4 +1,4 @@
-"""Stock and stick-out of a program as fields: what was said, and the words in which the store keeps it."""
+"""Stock and stick-out of a program as entry fields and as the text in the store."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _PLACES = 6
 
 
 class StockKind(StrEnum):
-    """What the stock is; ``NONE``: nobody has said it."""
+    """Kind of stock. ``NONE`` means not specified."""
 
     NONE = "none"
     BAR = "bar"
@@ -25,7 +25,7 @@ class StockKind(StrEnum):
 
 
 class StockField(StrEnum):
-    """The fields; all but kind and file are lengths."""
+    """Entry fields of a stock. All except kind and file are lengths."""
 
     KIND = "kind"
     DIAMETER = "diameter"
@@ -57,7 +57,10 @@ _STICK_OUTS = (0.0, 40.0 * MM_PER_INCH)
 
 @dataclass(frozen=True, slots=True)
 class StockEntry:
-    """Lengths in mm, 0: not said. ``file`` is a profile's, or the program before."""
+    """Stock entry with lengths in mm, 0 if not specified.
+
+    ``file`` is a profile or the preceding program.
+    """
 
     kind: StockKind = StockKind.NONE
     diameter: float = 0.0
@@ -69,7 +72,10 @@ class StockEntry:
 
     @classmethod
     def of(cls, kept: KeptPart) -> StockEntry:
-        """What is kept with a program; of words that mean nothing only the stick-out."""
+        """Return the entry for the stored data.
+
+        An invalid stock text is ignored, but the stick-out remains.
+        """
         out = kept.stick_out or 0.0
         try:
             spec = stock_spec(kept.stock) if kept.stock else StockSpec("")
@@ -81,11 +87,11 @@ class StockEntry:
 
     @property
     def fields(self) -> tuple[StockField, ...]:
-        """Those that this kind has."""
+        """Fields that apply to this kind of stock."""
         return (StockField.KIND, *_FIELDS[self.kind], StockField.STICK_OUT)
 
     def cell(self, name: StockField, metric: bool) -> str:
-        """A field as it is read; empty where nothing is said."""
+        """Return the text of a field, or an empty string if the field is not specified."""
         if name is StockField.FILE:
             return Path(self.file).name
         if name is StockField.KIND:
@@ -94,7 +100,10 @@ class StockEntry:
         return length(value, metric) if value else ""
 
     def typed(self, name: StockField, text: str, metric: bool) -> StockEntry:
-        """With a length that was typed, in inches or mm. Raises EntryError for what it cannot be."""
+        """Return a copy with a typed length, in mm or inches.
+
+        Raises EntryError if the length is not valid for the field.
+        """
         value = value_of(text) * (1.0 if metric else MM_PER_INCH)
         if value < 0.0:
             raise EntryError("a stock length cannot be negative; enter 0 to clear the length")
@@ -108,7 +117,7 @@ class StockEntry:
 
     @property
     def lacks(self) -> StockField | None:
-        """What is still to be said before it is a stock; None: nothing."""
+        """First required field without a value, or None if the stock is complete."""
         wanted = {
             StockKind.BAR: (StockField.DIAMETER,),
             StockKind.TUBE: (StockField.DIAMETER, StockField.BORE),
@@ -119,7 +128,10 @@ class StockEntry:
 
     @property
     def words(self) -> str:
-        """As ``--stock`` has it. Raises StockError for what no stock can be; empty where none is said."""
+        """Stock in the syntax of the option ``--stock``, or an empty string if no stock is specified.
+
+        Raises StockError if the stock is not possible.
+        """
         if self.kind is StockKind.NONE:
             return ""
         if self.kind in {StockKind.PROFILE, StockKind.AFTER}:
@@ -134,7 +146,7 @@ class StockEntry:
 
 
 def _word(mm: float) -> str:
-    """A length in inches where that is shorter, else in mm."""
+    """Return a length in inches if that text is shorter, and otherwise in mm."""
     inches, metric = (f"{value:.6f}".rstrip("0").rstrip(".") for value in (mm / MM_PER_INCH, mm))
     exact = abs(float(inches) * MM_PER_INCH - mm) < 1e-6
     return inches if exact and len(inches) <= len(metric) + 2 else f"{metric}mm"

@@ -1,1 +1,1 @@
-"""The path view: a program's path as polylines, drawn, measured and looked around in."""
+"""Path view: the path of a program as polylines, with drawing, panning, zooming and measuring."""

@@ -1,6 +1,6 @@
-"""Measuring in the path view: points worth measuring from, what lies nearest, what lies between two of them.
+"""Measuring in the path view: snap points, the nearest point, and the distance between two points.
 
-No answer here takes longer than a look at every point once, so that a key may ask among a million.
+Each function scans the points only once, so a key press remains fast with a million points.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from core.message import Message
 
 
 class PointKind(IntEnum):
-    """What a point is; of two in one place the first is told."""
+    """Kind of a snap point, in order of priority where several points coincide."""
 
     END = 0
     CENTRE = 1
@@ -29,7 +29,7 @@ class PointKind(IntEnum):
 
 
 class Point(NamedTuple):
-    """A point of a polyline."""
+    """Point of a polyline in the plane of the view, in millimeters."""
 
     z: float
     x: float
@@ -37,7 +37,7 @@ class Point(NamedTuple):
 
 
 def kind_words(kind: PointKind) -> str:
-    """What the cursor stands on."""
+    """Return the display text for the kind of point under the cursor."""
     return {
         PointKind.END: tr("END"),
         PointKind.CENTRE: tr("CENTER"),
@@ -47,17 +47,18 @@ def kind_words(kind: PointKind) -> str:
 
 
 def measuring_words() -> str:
-    """The prompt line while one measures."""
+    """Return the prompt that is shown during measuring."""
     return tr("ARROWS, TAB: NEXT POINT   ENTER: MEASURE FROM IT   ESC: BACK")
 
 
-MOST_CROSSED = 300  # chords in sight up to which crossings are looked for
-APART = 1e-6  # mm: nearer points are one
-WIDE = 1.2  # how far aside of an arrow key's direction a point may lie, of its distance along it
+MOST_CROSSED = 300  # number of visible chords above which intersections are not searched
+APART = 1e-6  # mm; points that are nearer than this count as one point
+# largest sideways offset of a point found with an arrow key, as a ratio of its distance along the direction
+WIDE = 1.2
 
 
 class Features:
-    """Of one path; crossings are those in sight, looked for when another part is looked at."""
+    """Snap points of one path. ``update`` refreshes the intersections for the visible area."""
 
     def __init__(self, polyline: Polyline) -> None:
         self._polyline = polyline
@@ -66,12 +67,12 @@ class Features:
         self._crossings = np.zeros((0, 2))
 
     def look(self, box: Bounds) -> None:
-        """This part is in sight: (least z, greatest z, least x, greatest x)."""
+        """Find the intersections in the visible area (minimum z, maximum z, minimum x, maximum x)."""
         if box != self._box:
             self._box, self._crossings = box, crossings(self._polyline, box)
 
     def nearest(self, z: float, x: float) -> Point | None:
-        """The point nearest to a place."""
+        """Return the snap point nearest to a position, or None if the path has no snap points."""
         best: tuple[float, Point] | None = None
         for kind, table in self._tables():
             if len(table):
@@ -82,7 +83,11 @@ class Features:
         return best[1] if best else None
 
     def towards(self, z: float, x: float, way: tuple[int, int]) -> Point | None:
-        """The next point in a direction, (1, 0) for Z+ and (0, 1) for X+: near, and not far aside of it."""
+        """Return the next snap point in a direction: (1, 0) is Z+, (0, 1) is X+.
+
+        Points that are close to the direction line are preferred. Returns None if no point is in that
+        direction.
+        """
         best: tuple[float, Point] | None = None
         for kind, table in self._tables():
             dz, dx = table[:, 0] - z, table[:, 1] - x
@@ -97,7 +102,10 @@ class Features:
         return best[1] if best else None
 
     def following(self, z: float, x: float, steps: int) -> Point | None:
-        """The end that comes so many steps after this one along the path, going on at the other end."""
+        """Return the end point that is ``steps`` points further along the path.
+
+        After the last end point, the search continues with the first. Returns None if the path has no points.
+        """
         ends = self._ends
         if not len(ends):
             return None
@@ -117,7 +125,7 @@ class Features:
 
 
 def _ends(polyline: Polyline) -> Floats:
-    """Ends of blocks and starts after jumps (n, 2), along the path."""
+    """Return the ends of blocks and the starts after jumps, in path order, shape (n, 2)."""
     told = polyline.stroke == Stroke.JUMP
     told[polyline.first[1:][np.diff(polyline.first) > 0] - 1] = True
     index = np.flatnonzero(told)
@@ -125,7 +133,10 @@ def _ends(polyline: Polyline) -> Floats:
 
 
 def crossings(polyline: Polyline, box: Bounds) -> Floats:
-    """Where chords within a box cross each other (n, 2); none where there are too many of them."""
+    """Return the intersections of the chords within a box, shape (n, 2).
+
+    The result is empty if more than ``MOST_CROSSED`` chords are in the box.
+    """
     z0, x0, z1, x1 = polyline.z[:-1], polyline.x[:-1], polyline.z[1:], polyline.x[1:]
     seen = polyline.stroke[1:] != Stroke.JUMP
     seen &= (np.maximum(z0, z1) >= box[0]) & (np.minimum(z0, z1) <= box[1])
@@ -145,7 +156,10 @@ def crossings(polyline: Polyline, box: Bounds) -> Floats:
 
 
 def point_at(polyline: Polyline, z: float, x: float, within: float) -> int | None:
-    """The point that ends the chord nearest to a place, no farther than ``within`` mm; None: none is."""
+    """Return the index of the end point of the chord nearest to a position.
+
+    Returns None if no chord is within ``within`` millimeters.
+    """
     z0, x0, z1, x1 = polyline.z[:-1], polyline.x[:-1], polyline.z[1:], polyline.x[1:]
     near = polyline.stroke[1:] != Stroke.JUMP
     near &= (np.maximum(z0, z1) >= z - within) & (np.minimum(z0, z1) <= z + within)
@@ -168,7 +182,10 @@ Row = tuple[str, str]
 
 
 def between_on_path(start: Point, end: Point, metric: bool) -> list[Row]:
-    """Seen from above: X as diameter and as radius, Z, distance, and the angle to the axis, 0…90 degrees."""
+    """Return the rows for two points on the path seen from above.
+
+    The rows are X as a diameter and as a radius, Z, the distance and the angle to the axis (0 to 90 degrees).
+    """
     dz, dx = end.z - start.z, end.x - start.x
     return [
         ("ΔX Ø", formats.length(2 * dx, metric)),
@@ -179,7 +196,7 @@ def between_on_path(start: Point, end: Point, metric: bool) -> list[Row]:
 
 
 def between_on_face(start: Point, end: Point, metric: bool) -> list[Row]:
-    """On the face of the part, in its own X and Y; Y is up."""
+    """Return the rows for two points on the face of the part, in face X and Y, with Y up."""
     dx, dy = end.z - start.z, start.x - end.x
     return [
         ("ΔX", formats.length(dx, metric)),
@@ -189,7 +206,10 @@ def between_on_face(start: Point, end: Point, metric: bool) -> list[Row]:
 
 
 def between_on_side(start: Point, end: Point, metric: bool, scale: float) -> list[Row]:
-    """On the side unrolled; ``scale`` are mm round the part to a degree of C."""
+    """Return the rows for two points on the unrolled side.
+
+    ``scale`` is the circumferential length per degree of C, in millimeters.
+    """
     dz, way = end.z - start.z, start.x - end.x
     return [
         ("ΔZ", formats.length(dz, metric)),
@@ -200,12 +220,12 @@ def between_on_side(start: Point, end: Point, metric: bool, scale: float) -> lis
 
 
 def place_on_path(spot: Point, metric: bool) -> list[Row]:
-    """Where a point is: X as a diameter, Z."""
+    """Return the rows for the position of a point: X as a diameter, and Z."""
     return [("X Ø", formats.length(2 * spot.x, metric)), ("Z", formats.length(spot.z, metric))]
 
 
 def place_on_face(spot: Point, metric: bool) -> list[Row]:
-    """X and Y of the part, and its distance from the axis."""
+    """Return the rows for the position of a point on the face: X, Y and the distance from the axis."""
     radius = math.hypot(spot.z, spot.x)
     return [
         ("X", formats.length(spot.z, metric)),
@@ -215,7 +235,7 @@ def place_on_face(spot: Point, metric: bool) -> list[Row]:
 
 
 def place_on_side(spot: Point, metric: bool, scale: float) -> list[Row]:
-    """Z, and C in degrees."""
+    """Return the rows for the position of a point on the unrolled side: Z, and C in degrees."""
     return [("Z", formats.length(spot.z, metric)), ("C", f"{formats.angle(-spot.x / scale)}°")]
 
 
@@ -227,11 +247,11 @@ def _straight(right: float, across: float, metric: bool, to: str) -> list[Row]:
     ]
 
 
-# --- two pictures compared ----------------------------------------------------------------------------
+# --- comparison of two pictures -----------------------------------------------------------------------
 
 
 class Apart(NamedTuple):
-    """The greatest way between a point that is cut and the same point of the other picture; mm, there."""
+    """Largest distance between corresponding cutting points of two pictures, with its position, in mm."""
 
     distance: float
     z: float
@@ -239,7 +259,10 @@ class Apart(NamedTuple):
 
 
 def farthest(before: Polyline, after: Polyline) -> Apart | None:
-    """Point by point; None where the pictures are not of the same points: then no point has a partner."""
+    """Return the largest distance between corresponding cutting points of two pictures.
+
+    Returns None if the pictures do not consist of the same strokes, or if nothing is cut.
+    """
     if len(before.z) != len(after.z) or not np.array_equal(before.stroke, after.stroke):
         return None
     cut = np.flatnonzero(after.stroke >= Stroke.TURN)

@@ -1,7 +1,8 @@
-"""Measuring in the path view: a cross that jumps from point to point of the path, and what lies between two.
+"""Measuring in the path view with a cursor that snaps to points of the path.
 
-Arrows jump to the next end, centre or crossing that way, Tab along the path, Shift with arrows moves freely
-by a pixel. Return holds a point: the first, then the second, then a new first one. The pointer does the same.
+Arrow keys move the cursor to the next end, center or intersection in that direction. Tab moves the cursor
+along the path, and Shift with an arrow key moves it by one pixel. Enter sets the first point, then the
+second, then a new first point. The pointer does the same.
 """
 
 from __future__ import annotations
@@ -17,16 +18,16 @@ from app.screen.look import LEFT, RIGHT, put
 
 Key = Qt.Key
 WAYS = {Key.Key_Left: (-1, 0), Key.Key_Right: (1, 0), Key.Key_Up: (0, -1), Key.Key_Down: (0, 1)}
-CATCH = 2.2  # units: how near the pointer must come to a point to take it
-TABLE = (22.0, 2.5)  # units: width of the figures, height of a row
+CATCH = 2.2  # units: distance within which the pointer snaps to a point
+TABLE = (22.0, 2.5)  # units: width of the table, height of a row
 
 
 class Measure:
-    """In one pane; ``cursor`` is where the cross stands, ``first`` and ``second`` what is held."""
+    """Measurement in one pane, with the ``cursor`` and the two measured points."""
 
     def __init__(self, pane: Pane) -> None:
         self.pane = pane
-        self._free = not pane.by_hand  # whether the view goes back to the whole part in the end
+        self._free = not pane.by_hand  # whether the whole path is shown again at the end
         self._features = Features(pane.polyline)
         self.first: Point | None = None
         self.second: Point | None = None
@@ -39,7 +40,7 @@ class Measure:
     # --- keys and pointer ----------------------------------------------------------------------------
 
     def key(self, event: QKeyEvent) -> bool:
-        """Whether the key was meant for measuring."""
+        """Handle a key press and return whether the key was used for measuring."""
         key, held = Key(event.key()), event.modifiers()
         if held & (Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.AltModifier):
             return False
@@ -58,12 +59,12 @@ class Measure:
         return True
 
     def end(self) -> None:
-        """Look at the whole part again, where one did before."""
+        """Show the whole path again if it was shown before measuring."""
         if self._free:
             self.pane.fit()
 
     def point(self, at: QPointF) -> None:
-        """The pointer is at a place of the widget: the cross goes to a point near it, or there."""
+        """Move the cursor to the snap point near a widget position, or to the position itself."""
         z, x = self.pane.here(at)
         self._features.look(self.pane.sight())
         near = self._features.nearest(z, x)
@@ -73,23 +74,23 @@ class Measure:
             self.cursor = Point(z, x)
 
     def hold(self) -> None:
-        """Hold where the cross is."""
+        """Set the first or second measured point at the cursor."""
         if self.first is None or self.second is not None:
             self.first, self.second = self.cursor, None
         else:
             self.second = self.cursor
 
     def forget(self) -> None:
-        """Give up the points that are held."""
+        """Clear the measured points."""
         self.first = self.second = None
 
     def block(self) -> int:
-        """The block on whose line the cross stands, or that ends there; 0: it stands on none."""
+        """Return the number of the block that is drawn at the cursor, or 0 without a block."""
         pane = self.pane
         return pane.block_at(pane.room.topLeft() + pane.spot(*self.cursor[:2]))
 
     def renew(self) -> None:
-        """The pane shows another path now; what is held stays where it is."""
+        """Rebuild the snap points for the pane's new path. The measured points remain."""
         self._features = Features(self.pane.polyline)
 
     def _jump(self, way: tuple[int, int]) -> None:
@@ -108,10 +109,10 @@ class Measure:
             self.cursor = spot
             self.pane.show_spot(spot.z, spot.x)
 
-    # --- what it says --------------------------------------------------------------------------------
+    # --- displayed values ----------------------------------------------------------------------------
 
     def rows(self, metric: bool) -> list[measuring.Row]:
-        """The figures: where the cross stands, or what lies between the held point and it."""
+        """Return the rows to display: the cursor position and the differences from the first point."""
         start, end = self.first, self.second or self.cursor
         aspect, scale = self.pane.aspect, self.pane.polyline.round
         if aspect in {Aspect.PATH, Aspect.SECTION}:
@@ -126,7 +127,7 @@ class Measure:
     # --- drawing -------------------------------------------------------------------------------------
 
     def draw(self, painter: QPainter) -> None:
-        """The painter's origin is the corner of the pane."""
+        """Draw the measured points and the cursor. The painter's origin is the corner of the pane."""
         look, pane = self.pane.look, self.pane
         if self.first is not None:
             start, end = pane.spot(*self.first[:2]), pane.spot(*(self.second or self.cursor)[:2])
@@ -148,7 +149,10 @@ class Measure:
             painter.drawRect(QRectF(at.x() - u, at.y() - u, 2 * u, 2 * u))
 
     def draw_figures(self, painter: QPainter, room: QRectF, metric: bool) -> None:
-        """The table, in the corner of ``room`` that is farthest from the cross; places of the widget."""
+        """Draw the table of values in the corner of ``room`` that is farthest from the cursor.
+
+        ``room`` is in widget coordinates.
+        """
         look, u, rows = self.pane.look, self.pane.look.u, self.rows(metric)
         wide, high = min(TABLE[0] * u, room.width() - 2 * u), TABLE[1] * u
         tall = (len(rows) + 1) * high + 0.6 * u
@@ -177,6 +181,6 @@ class Measure:
 
 
 def _apart(pane: Pane, spot: Point, z: float, x: float) -> float:
-    """How far a point is from a place; pixels."""
+    """Return the distance between a point and a position, in pixels."""
     way = pane.spot(spot.z, spot.x) - pane.spot(z, x)
     return float((way.x() ** 2 + way.y() ** 2) ** 0.5)

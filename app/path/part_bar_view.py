@@ -1,4 +1,4 @@
-"""The time line under the part: play and pause, ten times as fast, step by step; errors are red on it."""
+"""Time line below the part: play, pause, fast playback and single steps, with the errors marked in red."""
 
 from __future__ import annotations
 
@@ -15,24 +15,27 @@ from app.screen.panel import Press
 from core.message import Message
 
 _KEY = 6.6  # units: width of a key
-_STOCK = 9.0  # the one that opens the stock
-_WORDS = 15.0  # units: time and line at the right
-_LEAST = 8.0  # units of a time line that is one
+_STOCK = 9.0  # units: width of the STOCK key
+_WORDS = 15.0  # units: width of the time and line number at the right
+_LEAST = 8.0  # units: minimum width of the time line
 
 Place = Callable[[QRectF, Press], None]
 
 
 class PartBar:
-    """Where the time line was drawn last, and what a finger on it means."""
+    """Time line of the part view, with its buttons and its touch handling."""
 
     def __init__(self, look: Look, player: PartPlayer, stock: Press | None = None) -> None:
-        """``stock`` opens what the part is proved on."""
+        """Create the time line. ``stock`` opens the entry of the stock."""
         self.look, self.player, self._stock = look, player, stock
         self._track = QRectF()
-        self._at = 0.0  # where the finger is, pixels
+        self._at = 0.0  # touch position in pixels
 
     def takes(self, at: QPointF) -> bool:
-        """Whether a place is on the time line, and may be; the part of that time is wanted then."""
+        """Return whether a touch is on the active time line, and seek to its time.
+
+        Returns False while the player follows the run.
+        """
         u = self.look.u
         if self.player.bound or not self._track.adjusted(-u, -3 * u, u, 3 * u).contains(at):
             return False
@@ -42,7 +45,7 @@ class PartBar:
         return True
 
     def drag(self, by: QPointF) -> None:
-        """The finger goes along the line."""
+        """Seek by a horizontal drag, in pixels."""
         self._at += by.x()
         self._seek()
 
@@ -51,7 +54,10 @@ class PartBar:
         self.player.seek(min(max(share, 0.0), 1.0) * self.player.duration)
 
     def draw(self, painter: QPainter, room: QRectF, place: Place) -> None:
-        """In this room."""
+        """Draw the buttons and the time line within ``room``.
+
+        ``place`` registers the touch targets.
+        """
         look, u, player = self.look, self.look.u, self.player
         box = QRectF(room.x() + 0.6 * u, room.y() + 0.5 * u, _KEY * u, room.height() - u)
         self._sign(painter, box, Tone.PAUSE if player.playing else Tone.RUN)
@@ -71,7 +77,7 @@ class PartBar:
         left, right = box.right() + 2.2 * u, room.right() - (_WORDS + 1.0) * u
         self._track = QRectF()
         if right - left < _LEAST * u:
-            return  # no room for a time line
+            return  # There is not enough room for a time line.
         self._track = QRectF(left, room.center().y() - 0.5 * u, right - left, u)
         self._line(painter)
         painter.setFont(look.font(1.7, bold=True))
@@ -85,7 +91,7 @@ class PartBar:
             put(painter, words.translated(0, room.height() / 2 - 0.4 * u), LEFT, text)
 
     def _line(self, painter: QPainter) -> None:
-        """The track, how far it is done, the errors on it, the place of now."""
+        """Draw the track, the elapsed part, the error marks and the current position."""
         look, u, track, player = self.look, self.look.u, self._track, self.player
         length = max(player.duration, 1e-9)
         at = track.x() + track.width() * min(player.t / length, 1.0)
@@ -120,6 +126,6 @@ class PartBar:
 
 
 def _clock(seconds: float) -> str:
-    """Minutes and seconds."""
+    """Return a time as minutes and seconds."""
     minutes, rest = divmod(max(seconds, 0.0), 60.0)
     return f"{int(minutes)}:{rest:04.1f}"

@@ -1,4 +1,4 @@
-"""The panes of the part: its section as a drawing, red where something is hit; and the part in space."""
+"""Panes of the part: a section drawing with collisions in red, and the solid part."""
 
 from __future__ import annotations
 
@@ -30,20 +30,21 @@ from app.screen.look import CENTRE, LEFT, Look, put
 from core.part.solid_view import SolidView
 from core.part.solid_view import fitted as fitted_solid
 
-_BESIDE = 0.1  # of length and diameter of the stock: room for the tool
-_MARGIN = 3.0  # units round the part: for the scales
-_TICK = 6.0  # units from one figure of a scale to the next, at least
+_BESIDE = 0.1  # ratio to the length and diameter of the stock: room for the tool
+_MARGIN = 3.0  # units around the part for the scales
+_TICK = 6.0  # minimum distance between two values of a scale, in units
 _STEPS = (0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
 
 
 class PartPane(Pane):
-    """Shows what the player shows. Everything is drawn anew when the part, the tool or the view changes."""
+    """Pane that shows the part from a ``PartPlayer``, redrawn when the part, the tool or the view changes."""
 
     player: PartPlayer
 
     def __init__(self, look: Look, aspect: Aspect, polyline: Polyline, player: PartPlayer) -> None:
         self.player = player
-        self._drawn: tuple[PlayedInstant, Projection] | None = None  # what the outlines are of
+        # the instant and projection of the cached outlines
+        self._drawn: tuple[PlayedInstant, Projection] | None = None
         self._metal: list[tuple[QPolygonF, list[QPolygonF]]] = []
         self._hits: list[QPolygonF] = []
         self._stock: list[QPolygonF] = []
@@ -53,13 +54,13 @@ class PartPane(Pane):
 
     @property
     def metric(self) -> bool:
-        """The unit of the program."""
+        """Whether the program uses millimeters."""
         return isinstance(self.polyline, Picture) and self.polyline.metric
 
-    # --- what is seen --------------------------------------------------------------------------------
+    # --- projection ----------------------------------------------------------------------------------
 
     def whole(self) -> Projection:
-        """The stock, and what is cut beside it."""
+        """Return the projection that shows the stock and room for the tool."""
         z0, z1, x0, x1 = self.polyline.bounds
         shown = self.player.played
         if shown is not None and (stock := shown.instant.stock) is not None:
@@ -69,12 +70,16 @@ class PartPane(Pane):
         return fitted((z0, z1, x0, x1), int(room.width()), int(room.height()), margin)
 
     def look_at(self, projection: Projection) -> None:
-        """This is seen from now on."""
+        """Set the projection, and ask the player for the section only."""
         self.projection = projection
         self.player.look_at(None)
 
     def stand(self, block: int, place: Place | None, stood: Place | None = None) -> None:
-        """The run is in a block, its tool at a place of the path; no block: nothing runs."""
+        """Let the player follow the run while a block is active.
+
+        ``place`` is the position of the tool, and ``stood`` is the position where an interrupted block
+        stopped.
+        """
         if block and place is not None and (block, place) != (self._block, self._place):
             end = self.end_of(block) or place
             at = stood or place
@@ -82,7 +87,7 @@ class PartPane(Pane):
         self._block, self._place = block, place
 
     def advance(self) -> bool:
-        """Take up what the worker has made; whether there is anything new."""
+        """Update the player and return whether the pane needs to be redrawn."""
         new = self.player.look()
         if self.player.played is not None and not self._fitted:
             self._fitted = True
@@ -91,19 +96,19 @@ class PartPane(Pane):
         return new
 
     def take(self, polyline: Polyline, before: Polyline | None) -> None:
-        """Another program, or the same with another text; its stock may be another one."""
+        """Show another program or another version of the program, whose stock can differ."""
         self._fitted = False
         super().take(polyline, before)
 
     @property
     def complete(self) -> bool:
-        """Whether what is wanted is shown."""
+        """Whether the player shows the requested part."""
         return not self.player.behind
 
     # --- drawing -------------------------------------------------------------------------------------
 
     def draw_path(self, painter: QPainter) -> None:
-        """The section; the painter's origin is the corner of the pane."""
+        """Draw the section. The painter's origin is the corner of the pane."""
         shown, projection = self.player.played, self.projection
         if shown is None or projection is None:
             return
@@ -130,7 +135,7 @@ class PartPane(Pane):
                 painter.drawPolyline(edge)
 
     def draw_run(self, painter: QPainter) -> None:
-        """The tool, and the outline of what was hit over all else."""
+        """Draw the tool, the scales, the travel limits and the outlines of collisions on top."""
         shown, projection = self.player.played, self.projection
         if shown is None or projection is None:
             return
@@ -171,7 +176,7 @@ class PartPane(Pane):
             painter.drawPolygon(area)
 
     def _reach(self, painter: QPainter, shown: PlayedInstant) -> None:
-        """How far the machine lets the tip go, where that is in sight."""
+        """Draw the limits of travel for the tool tip."""
         if shown.instant.reach is None:
             return
         (z0, x0), (z1, x1) = shown.instant.reach
@@ -206,7 +211,7 @@ class PartPane(Pane):
     # --- scales --------------------------------------------------------------------------------------
 
     def _scales(self, painter: QPainter, projection: Projection) -> None:
-        """Z along the lower edge, diameters or radii of X at the left, in the unit of the program."""
+        """Draw the Z scale at the bottom and the X scale at the left, in the unit of the program."""
         look, u = self.look, self.look.u
         painter.setFont(look.font(1.4))
         unit = 1.0 if self.metric else 25.4
@@ -226,7 +231,7 @@ class PartPane(Pane):
 
 
 def draw_reach(painter: QPainter, look: Look, corners: Sequence[QPointF]) -> None:
-    """The limits of the machine, as a line of long and short strokes."""
+    """Draw the travel limits of the machine as a dash-dot line."""
     pen = look.pen("alarm", 0.16)
     pen.setDashPattern([10, 4, 2, 4])
     painter.setPen(pen)
@@ -240,7 +245,7 @@ def _ticks(middle: float, length: float, step: float) -> range:
 
 
 def _figure(value: float) -> str:
-    """As shops write it: no nought before the point."""
+    """Return a value with three decimals at most and no zero before the point, as shops write it."""
     text = f"{value:.3f}".rstrip("0").rstrip(".")
     return text.replace("0.", ".", 1) if text.startswith(("0.", "-0.")) else text
 
@@ -255,34 +260,34 @@ def _placed(shape: Floats, projection: Projection) -> QPolygonF:
     )
 
 
-_TURN = 0.4  # degrees a pixel
-_STEP = 10.0  # degrees a key
-_STEEPEST = 85.0  # degrees from the side
-_ROUND = 1.25  # of the radius
+_TURN = 0.4  # degrees per pixel
+_STEP = 10.0  # degrees per key press
+_STEEPEST = 85.0  # maximum rotation from the side view, in degrees
+_ROUND = 1.25  # ratio to the radius of the stock
 
 
 class SolidPane(PartPane):
-    """Asks the player for a picture of its own size, and shows the latest that it has."""
+    """Pane that shows the latest 3D image of the part in the size of the pane."""
 
     def __init__(self, look: Look, aspect: Aspect, polyline: Polyline, player: PartPlayer) -> None:
         self._azimuth, self._tilt, self._roll = 30.0, 35.0, 0.0
-        self._view: SolidView | None = None  # that was asked for last
+        self._view: SolidView | None = None  # the view of the last request
         super().__init__(look, aspect, polyline, player)
 
-    # --- what is seen --------------------------------------------------------------------------------
+    # --- projection ----------------------------------------------------------------------------------
 
     def whole(self) -> Projection:
-        """All of the stock."""
+        """Return the projection that shows the whole stock."""
         flat, shown = super().whole(), self.player.played
         if shown is None or (stock := shown.instant.stock) is None:
             return flat
         wide, high = flat.width, max(flat.height - round(3.0 * self.look.u), 1)
-        room = _ROUND * stock.radius  # for the tool
+        room = _ROUND * stock.radius  # leaves room for the tool
         scale, centre = fitted_solid(stock.back, stock.front, room, wide, high, self._azimuth)
         return Projection(centre, 0.0, scale, flat.width, flat.height)
 
     def look_at(self, projection: Projection) -> None:
-        """This is seen from now on."""
+        """Set the projection and request an image for it."""
         self.projection = projection
         self._want()
 
@@ -296,24 +301,24 @@ class SolidPane(PartPane):
         self.player.look_at(SolidLook(view, projection.width, projection.height))
 
     def place_of(self, tip: Tip) -> Place | None:
-        """The tool's place; C turns the part while it is held."""
+        """Return the position of the tool, and turn the part with a locked C axis."""
         if tip.c is not None and tip.c != self._roll:
             self._roll = tip.c
             self._want()
         return super().place_of(tip)
 
-    # --- looking around ------------------------------------------------------------------------------
+    # --- navigation ----------------------------------------------------------------------------------
 
     def drag(self, by: QPointF) -> None:
-        """The part turns with the finger."""
+        """Turn the part by a drag, in pixels."""
         self._turn(by.x() * _TURN, by.y() * _TURN)
 
     def pan(self, across: int, down: int) -> None:
-        """The keys that pan turn it by steps."""
+        """Turn the part by steps, for the pan keys."""
         self._turn(-across * _STEP, -down * _STEP)
 
     def show_spot(self, z: float, x: float) -> None:
-        """Nothing is measured here."""
+        """Do nothing, because measuring is not possible in this pane."""
 
     def _turn(self, across: float, down: float) -> None:
         self._azimuth = min(max(self._azimuth - across, -_STEEPEST), _STEEPEST)
@@ -321,7 +326,7 @@ class SolidPane(PartPane):
         self._want()
 
     def magnify(self, factor: float, at: QPointF) -> None:
-        """Nearer by a factor; the axis stays in the middle."""
+        """Magnify the view by a factor around a column. The axis remains in the middle."""
         if self.projection is not None:
             self.by_hand = True
             across = (at - self.room.topLeft()).x()
@@ -330,7 +335,7 @@ class SolidPane(PartPane):
     # --- drawing -------------------------------------------------------------------------------------
 
     def draw_path(self, painter: QPainter) -> None:
-        """The latest picture; the painter's origin is the corner of the pane."""
+        """Draw the latest image. The painter's origin is the corner of the pane."""
         shown = self.player.played
         if shown is not None and shown.image is not None:
             image = shown.image
@@ -340,12 +345,12 @@ class SolidPane(PartPane):
             )
 
     def draw_run(self, painter: QPainter) -> None:
-        """The limits of the machine in the plane of turning; the tool is in the picture."""
+        """Draw the travel limits of the machine in the turning plane. The image includes the tool."""
         shown, view, projection = self.player.played, self._view, self.projection
         if shown is None or shown.instant.reach is None or view is None or projection is None:
             return
         (z0, x0), (z1, x1) = shown.instant.reach
-        # (In the part's frame the operator's side lies at 180 degrees less C.)
+        # In the frame of the part, the operator's side is at 180 degrees minus C.
         places = [[x, z, 180.0 - view.roll] for z, x in ((z0, x0), (z1, x0), (z1, x1), (z0, x1), (z0, x0))]
         wide, high = (
             (self.projection.width, self.projection.height) if self.projection is not None else (1, 1)
@@ -355,10 +360,10 @@ class SolidPane(PartPane):
 
 
 def quarter(tilt: float) -> tuple[float, float]:
-    """What is taken out, from and to which angle from the viewer towards the top, degrees.
+    """Return the start and end angle of the removed quarter, in degrees from the viewer towards the top.
 
-    One edge lies in the plane of turning on the operator's side, where the tool is; the other stands upright
-    on it, on the side that is looked at.
+    One edge is in the turning plane on the operator's side, where the tool is. The other edge is
+    perpendicular to it, on the visible side.
     """
     first = -tilt if tilt >= 0.0 else -tilt - 90.0
     return first, first + 90.0

@@ -1,6 +1,6 @@
-"""The part view's player: which moment of the program is shown, while it runs or along a time line.
+"""Player of the part view: shows the part at a moment of the program, during a run or along a time line.
 
-Metal is taken off on a worker; the screen looks at ``shown`` once a frame and never waits.
+A worker thread removes the material. The screen polls the result once per frame and never waits.
 """
 
 from __future__ import annotations
@@ -27,15 +27,15 @@ if TYPE_CHECKING:
     from core.proving.part_history import PartHistory
     from core.proving.part_instant import PartInstant
 
-FAST = 10.0  # times
-_RESTS = 0.25  # s after which a solid that nobody turns any more is drawn finely
-_TELL = 0.08  # s; on a long way the part is shown so often
+FAST = 10.0  # times the program speed
+_RESTS = 0.25  # seconds after which an image that no longer moves is drawn in full resolution
+_TELL = 0.08  # seconds between two images during a long calculation
 
 Place = tuple[float, float]
 
 
 class SolidLook(NamedTuple):
-    """How the part is looked at in space: a picture of so many pixels; ``quick``: a coarser one."""
+    """3D view of the part and the image size in pixels. ``quick`` selects a coarser image."""
 
     view: SolidView
     width: int
@@ -44,8 +44,11 @@ class SolidLook(NamedTuple):
 
 
 class Moment(NamedTuple):
-    """So many blocks done, and ``share`` of the next; or, if ``behind_end`` is told, as much of it as lies
-    before the tool, which is that far (Z, r; mm) off its end."""
+    """Position in the program: ``block`` finished blocks and the ``share`` of the next block.
+
+    If ``behind_end`` is set, it replaces ``share``: the offset of the tool from the end of the block as (Z,
+    radius), in millimeters.
+    """
 
     block: int = 0
     share: float = 0.0
@@ -54,40 +57,44 @@ class Moment(NamedTuple):
 
 
 class PlayedInstant(NamedTuple):
-    """What the worker has made: the part, and what was found in the whole program."""
+    """Result of the worker: the part at one instant and the findings of the whole program."""
 
     instant: PartInstant
     findings: tuple[Diagnostic, ...] = ()
-    image: Image | None = None  # of the solid, where that is looked at
+    image: Image | None = None  # image of the solid, if a 3D view is shown
 
 
 @dataclass(slots=True, eq=False)
 class PartPlayer:
-    """Of one view. While ``bound`` the run leads, and the keys of the time line do nothing."""
+    """Player of one view.
+
+    While ``bound`` is set, the run leads and the time line keys do nothing.
+    """
 
     worker: Latest = field(default_factory=lambda: Latest("part"))
     clock: Callable[[], float] = time.monotonic
     bound: bool = False
     playing: bool = False
     fast: bool = False
-    t: float = 0.0  # program time of what is wanted, s
-    trouble: str = ""  # why there is no part
+    t: float = 0.0  # requested program time in seconds
+    trouble: str = ""  # reason why no part is shown
     _picture: Picture | None = None
     _wanted: Moment = field(default_factory=Moment)
     _asked: Moment | None = None
     _played: PlayedInstant | None = None
     _looked: float = 0.0
-    _turned: float = 0.0  # when it was last looked at from elsewhere
-    _history: tuple[Picture, PartHistory] | None = None  # the worker's, as is what follows
+    _turned: float = 0.0  # time of the last change of the view
+    # used only on the worker, as are the following attributes
+    _history: tuple[Picture, PartHistory] | None = None
     _findings: tuple[Diagnostic, ...] | None = None
     _painter: SolidPicture | None = None
     _solid: tuple[PartInstant, Solid] | None = None
     _draws: int = 0
 
-    # --- which program -------------------------------------------------------------------------------
+    # --- selection of the program --------------------------------------------------------------------
 
     def show(self, picture: Picture | None) -> None:
-        """Another program, or the same with other offsets: seen at its end, until somebody plays it."""
+        """Load a picture. The part is shown at the end of the program until the operator plays it."""
         if picture is self._picture:
             return
         self.worker.give_up()
@@ -99,28 +106,28 @@ class PartPlayer:
             self.want(self.duration)
 
     def close(self) -> None:
-        """Give up what is being made and end the worker."""
+        """Cancel the pending work and stop the worker."""
         self.worker.close()
 
     @property
     def duration(self) -> float:
-        """Program seconds."""
+        """Duration of the program in seconds."""
         return float(self._picture.ends[-1]) if self._picture is not None else 0.0
 
     @property
     def played(self) -> PlayedInstant | None:
-        """The latest that the worker has made; None: nothing yet."""
+        """Latest result of the worker, or None before the first result."""
         return self._played
 
     @property
     def behind(self) -> bool:
-        """Whether something else is wanted than what is shown."""
+        """Whether the requested part differs from the displayed part."""
         return self.worker.busy or (self._picture is not None and self._asked != self._wanted)
 
-    # --- once a frame --------------------------------------------------------------------------------
+    # --- update once per frame -----------------------------------------------------------------------
 
     def look(self) -> bool:
-        """Take up what the worker has made, and want the next; whether there is something new to be seen."""
+        """Fetch the result of the worker, request the next one, and return whether the view changed."""
         shown, now = self._played, self.clock()
         gone, self._looked = now - self._looked, now
         self.worker.poll()
@@ -132,7 +139,7 @@ class PartPlayer:
         return self._played is not shown or self.playing
 
     def settle(self, timeout: float) -> None:
-        """Wait for what is wanted; for scripts and tests, never for the screen."""
+        """Wait for the requested part; for scripts and tests only, because the call blocks."""
         self._ask()
         self.worker.settle(timeout)
 
@@ -141,25 +148,28 @@ class PartPlayer:
         if self.t >= self.duration:
             self.playing = False
 
-    # --- in space ------------------------------------------------------------------------------------
+    # --- 3D view -------------------------------------------------------------------------------------
 
     def look_at(self, solid: SolidLook | None) -> None:
-        """The part in space is wanted, as it is looked at; None: it is not."""
+        """Set the 3D view to render. None turns off 3D rendering."""
         self._wanted = self._wanted._replace(solid=solid)
         self._turned = self.clock()
 
     def _draw_finely(self) -> None:
-        """What moves is drawn in coarser points, and finely when it rests."""
+        """Request a coarse image while the view moves, and a fine image when it rests."""
         solid = self._wanted.solid
         if solid is not None:
             moving = self.playing or self.bound or self.clock() - self._turned < _RESTS
             if solid.quick is not moving:
                 self._wanted = self._wanted._replace(solid=solid._replace(quick=moving))
 
-    # --- the run leads -------------------------------------------------------------------------------
+    # --- following the run ---------------------------------------------------------------------------
 
     def follow(self, block: int, behind_end: Place) -> None:
-        """The tool is in this block, so far (Z, r; mm) off the place where it ends."""
+        """Follow the run in a block.
+
+        The offset (Z, radius) of the tool from the block's end is in mm.
+        """
         self.playing = False
         self._wanted = Moment(block - 1, 0.0, behind_end, self._wanted.solid)
         if self._picture is not None and 1 <= block < len(self._picture.ends):
@@ -168,13 +178,13 @@ class PartPlayer:
     # --- the time line -------------------------------------------------------------------------------
 
     def seek(self, t: float) -> None:
-        """Show the part at this time of the program, s; what was being made for another is given up."""
+        """Show the part at a program time in seconds, and cancel the pending request."""
         self.want(t)
         if self._picture is not None:
             self._ask()
 
     def play_or_pause(self) -> None:
-        """Go on in time, from the beginning when the end is shown; or stay."""
+        """Start or pause playback. Playback starts at the beginning if the end is shown."""
         if self.bound or self._picture is None:
             return
         self.playing, self._looked = not self.playing, self.clock()
@@ -182,11 +192,11 @@ class PartPlayer:
             self.seek(0.0)
 
     def faster(self) -> None:
-        """Ten times as fast, or as fast as the machine again."""
+        """Switch between program speed and fast playback."""
         self.fast = not self.fast
 
     def step(self, blocks: int) -> None:
-        """To the end of the next block that moves (1), or of the one before (-1)."""
+        """Move to the end of the next block with motion (1) or of the previous one (-1)."""
         if self.bound or self._picture is None:
             return
         self.playing = False
@@ -201,19 +211,19 @@ class PartPlayer:
             self.seek(float(there[at]) if at >= 0 else 0.0)
 
     def to_line(self, line: int) -> None:
-        """To the end of the first pass through a source line."""
+        """Move to the end of the first pass through a source line."""
         if not self.bound and self._picture is not None:
             self.playing = False
             self.seek(float(self._picture.ends[self._picture.block_of_line(line)]))
 
     def to_block(self, block: int) -> None:
-        """To the end of an elementary block."""
+        """Move to the end of an elementary block."""
         if not self.bound and self._picture is not None:
             self.playing = False
             self.want(float(self._picture.ends[min(block, len(self._picture.ends) - 1)]))
 
     def marks(self) -> npt.NDArray[np.float64]:
-        """When errors of the part come up, s."""
+        """Return the program times of the errors of the part, in seconds."""
         if self._played is None or self._picture is None:
             return np.zeros(0)
         ends = self._picture.ends
@@ -221,7 +231,7 @@ class PartPlayer:
         return np.array([ends[min(n, len(ends) - 1)] for n in errors])
 
     def want(self, t: float) -> None:
-        """The part at this time of the program, s, as soon as somebody looks at it."""
+        """Request the part at a program time in seconds. The next ``look`` starts the work."""
         self.t = min(max(t, 0.0), self.duration)
         if self._picture is None:
             return
@@ -234,7 +244,7 @@ class PartPlayer:
             share = (self.t - float(ends[block])) / length if length > 0.0 else 0.0
         self._wanted = Moment(block, min(max(share, 0.0), 1.0), None, self._wanted.solid)
 
-    # --- the worker ----------------------------------------------------------------------------------
+    # --- worker --------------------------------------------------------------------------------------
 
     def _ask(self) -> None:
         picture = self._picture
@@ -244,7 +254,10 @@ class PartPlayer:
         self.worker.ask(partial(self._make, picture, self._wanted), self._take, self._failed)
 
     def _make(self, picture: Picture, wanted: Moment, request: Request) -> PlayedInstant:
-        """On the worker. A new program is first gone through to its end: then it is known what is wrong."""
+        """Calculate the requested instant, on the worker.
+
+        A new program is first simulated to its end, so that all findings are known.
+        """
         history = self._history_of(picture)
         watch = partial(self._tell, history, request, [self.clock()])
         if self._findings is None:
@@ -261,7 +274,7 @@ class PartPlayer:
     def _instant(
         self, history: PartHistory, block: int, share: float, watch: Callable[[], None]
     ) -> PartInstant:
-        """The same as before where it is only turned."""
+        """Return the instant, reusing the last one if only the view has turned."""
         if self._solid is not None:
             last = self._solid[0]
             if (last.block, last.share) == (block, share) and history.is_current(last):
@@ -269,7 +282,7 @@ class PartPlayer:
         return history.at(block, share, watch)
 
     def _image(self, history: PartHistory, instant: PartInstant, look: SolidLook) -> Image | None:
-        """On the worker: the part drawn in space."""
+        """Return the 3D image of the part, on the worker, or None without a solid."""
         from core.part.solid_picture import SolidPicture
 
         if self._painter is None:
@@ -279,7 +292,7 @@ class PartPlayer:
             if solid is None:
                 return None
             self._solid, self._draws = (instant, solid), self._draws + 1
-        # While the run leads, the view has C as it is measured.
+        # While the run leads, the view uses the measured C position.
         view = look.view if self.bound else replace(look.view, roll=instant.c)
         spans = tuple(
             (float(hit.z.min()) - hit.wide / 2, float(hit.z.max()) + hit.wide / 2) for hit in instant.hits
@@ -305,7 +318,7 @@ class PartPlayer:
         return self._history[1]
 
     def _tell(self, history: PartHistory, request: Request, told: list[float]) -> None:
-        """On a long way: go on or give up, and show how far it has come."""
+        """Continue or cancel a long calculation, and publish an intermediate result."""
         request()
         now = self.clock()
         if now - told[0] > _TELL:
@@ -320,16 +333,16 @@ class PartPlayer:
 
 
 class PartPlayers(list[PartPlayer]):
-    """All of a desk; they end with it."""
+    """All part players of one operator screen, closed together with the screen."""
 
     def close(self) -> None:
-        """End their workers."""
+        """Stop all workers."""
         for player in self:
             player.close()
 
 
 def player_of(desk: Desk) -> PartPlayer:
-    """One more player of this desk."""
+    """Return a new part player that closes together with ``desk``."""
     players = desk.pages.find(PartPlayers)
     if players is None:
         players = PartPlayers()

@@ -1,4 +1,4 @@
-"""Aspects of the path view: from where a program is looked at, where the tip is, legs of an approach."""
+"""Aspects of the path view, the position of the tool tip, and the legs of an approach."""
 
 from __future__ import annotations
 
@@ -14,10 +14,11 @@ if TYPE_CHECKING:
 
 
 class Aspect(Enum):
-    """From above (X+ down, Z+ right), onto the end of the part, onto its side unrolled (Z+ right, C+ up).
+    """Direction from which a program is viewed.
 
-    ``SECTION`` is the part itself, cut along its axis, as from above; ``SOLID`` the same in space, ``OPEN``
-    with a quarter taken out.
+    ``PATH`` is from above (X+ down, Z+ right). ``FACE`` is onto the end of the part, and ``SIDE`` is its
+    unrolled side (Z+ right, C+ up). ``SECTION`` is the part cut along its axis, ``SOLID`` is the part in 3D,
+    and ``OPEN`` is the solid part without one quarter.
     """
 
     PATH = "PATH"
@@ -33,9 +34,10 @@ OF_PART = IN_SPACE | {Aspect.SECTION}
 
 
 class Tip(NamedTuple):
-    """Where the program is: block under way (0: none), and the tool tip in the part's frame, mm.
+    """Active block (0 for none) and the position of the tool tip in the frame of the part, in millimeters.
 
-    ``c`` is the program's C while it is locked, degrees, else None; ``h`` the height of a mill's centre line.
+    ``c`` is the programmed C position in degrees while C is locked, and otherwise None. ``h`` is the height
+    of the center line of a mill.
     """
 
     block: int = 0
@@ -43,14 +45,17 @@ class Tip(NamedTuple):
     x: float = 0.0
     c: float | None = None
     h: float = 0.0
-    stood: tuple[float, float] | None = None  # Z and X where the block was broken off, when elsewhere
+    stood: tuple[float, float] | None = None  # Z and X where an interrupted block stopped, if different
 
 
 View = tuple[Aspect, ...]
 
 
 def tip_of(snapshot: Snapshot, job: Job | None = None) -> Tip:
-    """The tip as the machine stands now; of the interrupted ``job`` what was done of it stays."""
+    """Return the present tip position.
+
+    If ``job`` was interrupted, the tip also contains the block and position of the interruption.
+    """
     modal = snapshot.modal
     x, z, *rotary = snapshot.actual
     turned = rotary[0] - modal.offset_c if rotary and modal.c_locked else None
@@ -66,22 +71,25 @@ def tip_of(snapshot: Snapshot, job: Job | None = None) -> Tip:
 
 
 def polyline_of(picture: Picture | None, aspect: Aspect) -> Polyline | None:
-    """What is to be seen from there."""
+    """Return the polyline of a picture for an aspect, or None if there is nothing to show."""
     if picture is None or aspect is Aspect.PATH or aspect in OF_PART:
         return picture
     return picture.face if aspect is Aspect.FACE else picture.side
 
 
 def views_of(picture: Picture, *, part: bool = False) -> list[View]:
-    """What the view key goes through: the path with what is cut at C beside it, then each alone; then the
-    ``part``, where there is one to be shown."""
+    """Return the views that the view key steps through.
+
+    The first views show the path together with a face or side that is machined at C, then each of them alone.
+    If ``part`` is set, the views of the part follow.
+    """
     more = [aspect for aspect in (Aspect.FACE, Aspect.SIDE) if polyline_of(picture, aspect) is not None]
     both = [(Aspect.PATH, aspect) for aspect in more]
     views = [*both, *((aspect,) for aspect in more), (Aspect.PATH,)]
     if not part:
         return views
     if picture.part is None:
-        return [*views, (Aspect.SECTION,)] if picture.no_part else views  # where it is told
+        return [*views, (Aspect.SECTION,)] if picture.no_part else views  # The section shows the reason.
     return [*views, (Aspect.SECTION,), (Aspect.SOLID,), (Aspect.OPEN,)]
 
 
@@ -90,10 +98,10 @@ def views_of(picture: Picture, *, part: bool = False) -> list[View]:
 
 @dataclass(frozen=True, slots=True)
 class DrawnLeg:
-    """One straight move to (z, x) in the part's frame (machine less tool offset); mm, X a radius.
+    """One straight move of an approach to (z, x) in the frame of the part, in mm, with X as a radius.
 
-    ``label`` tells what it is and when: ``1 X``, ``2 Z``. The first leg is where the tool stands now; its
-    ``rapid`` means nothing.
+    The position is the machine position minus the tool offset. ``label`` is the number and axis, for example
+    ``1 X``. The first leg is the present tool position, and its ``rapid`` has no meaning.
     """
 
     z: float

@@ -1,9 +1,8 @@
-"""The two cached images of a pane: everything to come, and upon a copy of it what is done.
+"""Two cached images of a pane: the whole path, and a copy with the finished blocks drawn over it.
 
-Only new strokes are ever drawn. Another projection (zoom, pan, size) starts the images again, in slices, so
-that a picture of a million strokes never holds up a key. Qt's painter draws each change of pen as a call of
-its own, and a program that rapids between all its cuts has as many: long paths are set pixel by pixel in
-numpy instead, where the later chord wins.
+Only new strokes are drawn. A changed projection (zoom, pan or size) starts the images again in time slices,
+so that a path with a million strokes never delays a key press. Qt draws each change of pen with a separate
+call. Long paths are therefore set pixel by pixel with numpy, and later chords overwrite earlier ones.
 """
 
 from __future__ import annotations
@@ -29,17 +28,18 @@ if TYPE_CHECKING:
 Line = Qt.PenStyle
 
 
-BAND = 0.45  # how much of a band covers what it marks
-SMOOTH_TO = 3_000  # points up to which lines are smoothed, wide and dashed; above that they are pixels
-BUDGET = 0.006  # seconds a frame may give to drawing
-SMOOTH_SLICE, SLICE = 150, 20_000  # points drawn at a time
-PIXELS = 120_000  # of their chords: one takes 15 ns, and most are set twice
-# Address, bytes (two doubles a point), writable. The stub of VoidPtr knows only a bare address.
+BAND = 0.45  # opacity of the band over a marked line
+# number of points up to which lines are antialiased, wide and dashed; longer paths are drawn as pixels
+SMOOTH_TO = 3_000
+BUDGET = 0.006  # seconds of drawing per frame
+SMOOTH_SLICE, SLICE = 150, 20_000  # number of points per drawing step
+PIXELS = 120_000  # pixels per step; one pixel takes 15 ns, and most are set twice
+# Address, bytes (two doubles per point), writable. The stub of VoidPtr declares only the address.
 _MEMORY = cast("Callable[[object, int, bool], bytes]", shiboken6.VoidPtr)
 
 
 class Ink(Enum):
-    """What a polyline is drawn as: colour of cuts, their width in units, line style."""
+    """Style of a polyline: color of cuts, width in units, and line style."""
 
     TODO = ("todo", 0.15, Line.SolidLine)
     DONE = ("done", 0.26, Line.SolidLine)
@@ -48,7 +48,7 @@ class Ink(Enum):
     MARKED = ("lit", 1.2, Line.SolidLine)  # a band along the blocks of the line under the cursor
 
     def pens(self, look: Look) -> dict[int, QPen]:
-        """The pen of each stroke; two programs are compared by their cuts alone."""
+        """Return the pen of each stroke. A comparison of two programs has pens for cuts only."""
         colour, width, style = self.value
         cut = _round(look.pen(colour, width), style)
         if self is Ink.MARKED:
@@ -61,7 +61,7 @@ class Ink(Enum):
         return {Stroke.RAPID: cut if self is Ink.MARKED else rapid, Stroke.TURN: cut, Stroke.MILL: cut}
 
     def colours(self, look: Look) -> dict[int, QColor]:
-        """The same where lines are one pixel wide."""
+        """Return the color of each stroke, for lines that are one pixel wide."""
         return {stroke: pen.color() for stroke, pen in self.pens(look).items()}
 
 
@@ -73,7 +73,10 @@ def _round(pen: QPen, style: Qt.PenStyle) -> QPen:
 
 
 class Layers:
-    """Images of one path in one frame; ``before`` is what it was before a change, drawn under it."""
+    """Images of one path in one projection.
+
+    ``before`` is the path before a change, drawn below it.
+    """
 
     def __init__(
         self, look: Look, polyline: Polyline, projection: Projection, before: Polyline | None = None
@@ -90,18 +93,21 @@ class Layers:
         self._base = QImage(size, QImage.Format.Format_RGB32)
         self._base.fill(look.colour("panel"))
         self.image = self._base
-        self._stage = 0  # which polyline of the base is being drawn
-        self._drawn = 0  # points of it that are
+        self._stage = 0  # index of the polyline that is being drawn into the base image
+        self._drawn = 0  # number of its points that are drawn
         self._done = 0
         self._wanted = 0
 
     @property
     def complete(self) -> bool:
-        """Whether everything wanted is drawn."""
+        """Whether everything requested is drawn."""
         return self._stage >= len(self._under) and self._done >= self._wanted
 
     def want(self, blocks: int) -> None:
-        """So many blocks are behind. Fewer than before: a new cycle, from the image of what is to come."""
+        """Request that the first ``blocks`` blocks are drawn as finished.
+
+        A smaller number than before starts a new cycle from the image of the whole path.
+        """
         wanted = self.polyline.points_done(blocks)
         if wanted < self._wanted:
             self._done = 0
@@ -109,7 +115,7 @@ class Layers:
         self._wanted = wanted
 
     def advance(self) -> bool:
-        """Draw on for a slice of a frame's time; True when anything was drawn."""
+        """Draw for a part of the frame time, and return whether anything was drawn."""
         if self.complete:
             return False
         until = time.perf_counter() + BUDGET
@@ -136,7 +142,10 @@ class Layers:
         self._done = end
 
     def _slice_end(self, polyline: Polyline, begin: int, most: int) -> int:
-        """Up to which point is drawn at once: pixels count where chords are long, points where short."""
+        """Return the end of the next slice.
+
+        Pixels limit slices of long chords, and points limit slices of short chords.
+        """
         end = min(begin + self._slice, most)
         if self._smooth or end - begin < 2:
             return end
@@ -171,12 +180,12 @@ class Layers:
 
     @property
     def _middle(self) -> float:
-        """Twice the row of X0: what a row is taken from to mirror it."""
+        """Twice the row of X0. A row is mirrored by subtracting it from this value."""
         return 2 * float(self.projection.down(0.0))
 
 
 def polygon(columns: Floats, rows: Floats) -> QPolygonF:
-    """The points as Qt's polygon, copied as one block of memory."""
+    """Return the points as a ``QPolygonF``, copied as one block of memory."""
     count = len(columns)
     shape = QPolygonF()
     shape.resize(count)
@@ -187,12 +196,15 @@ def polygon(columns: Floats, rows: Floats) -> QPolygonF:
 
 
 def stroke_run(painter: QPainter, run: Run) -> None:
-    """Draw a run with the pen in force."""
+    """Draw a run with the painter's current pen."""
     painter.drawPolyline(polygon(run.columns, run.rows))
 
 
 def draw_pixels(image: QImage, projection: Projection, shape: Shape, inks: dict[int, QColor]) -> None:
-    """Draw the chords that end in points 1… in the ink of their stroke; those without ink are skipped."""
+    """Draw the chords of a shape, each in the color of its stroke.
+
+    Strokes without a color are skipped.
+    """
     table = np.zeros(256, dtype=np.uint32)
     inked = np.zeros(256, dtype=np.bool_)
     for kind, ink in inks.items():
@@ -206,7 +218,10 @@ def draw_pixels(image: QImage, projection: Projection, shape: Shape, inks: dict[
 
 
 def pixels_of(image: QImage) -> npt.NDArray[np.uint32]:
-    """The image's own memory (rows, columns), 32 bits a pixel; valid as long as the image."""
+    """Return the memory of the image as an array (rows, columns) with 32 bits per pixel.
+
+    The array is valid only as long as the image exists.
+    """
     stride = image.bytesPerLine() // 4
     memory = np.frombuffer(image.bits(), dtype=np.uint32)
     return memory.reshape(image.height(), stride)[:, : image.width()]

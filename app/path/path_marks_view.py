@@ -1,4 +1,4 @@
-"""Marks of the path view: centre lines, legs of an approach, what lines mean, a scale, buttons."""
+"""Marks of the path view: center lines, approach legs, legend, scale and buttons."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ from core.language.diagnostics import Diagnostic
 from core.message import Message
 from core.proving.checks.part_checks import is_serious
 
-BUTTON = (6.6, 6.6, 0.4)  # units: width, height, between two of them; at least a fingertip
+BUTTON = (6.6, 6.6, 0.4)  # units: width, height and gap; the size is at least that of a fingertip
 
 
 class Button(NamedTuple):
-    """``lit`` while what it switches is on."""
+    """Button of the view. ``lit`` is set while the function of the button is on."""
 
     sign: str
     press: Press
@@ -40,14 +40,14 @@ LegendEntry = tuple[str, QPen]
 
 
 def button_columns(look: Look, room: QRectF, count: int) -> int:
-    """In how many columns so many buttons stand: a low room has them beside each other."""
+    """Return the number of button columns. A low room needs several columns."""
     _, high, gap = _button(look)
     rows = max(1, int((room.height() - 3.2 * look.u + gap) / (high + gap)))
     return math.ceil(count / rows)
 
 
 def columns_wide(columns: int, look: Look) -> float:
-    """What so many columns take of a view at its right, pixels."""
+    """Return the width of the button columns at the right of a view, in pixels."""
     wide, _, gap = _button(look)
     return columns * (wide + gap)
 
@@ -64,7 +64,7 @@ def draw_buttons(
     buttons: Sequence[Button],
     place: Callable[[QRectF, Press], None],
 ) -> None:
-    """At the right, column by column."""
+    """Draw the buttons at the right of the room, column by column."""
     wide, high, gap = _button(look)
     columns = button_columns(look, room, len(buttons))
     rows = math.ceil(len(buttons) / columns)
@@ -81,18 +81,18 @@ def draw_buttons(
 
 
 def run_legend(look: Look) -> list[LegendEntry]:
-    """Of a program that runs or will."""
+    """Return the legend entries for a path that runs or is ready to run."""
     todo, done = Ink.TODO.pens(look), Ink.DONE.pens(look)
     return [(tr("done"), done[2]), (tr("remaining"), todo[2]), (tr("rapid"), todo[1])]
 
 
 def compared_legend(look: Look) -> list[LegendEntry]:
-    """Of a program before and after a change."""
+    """Return the legend entries for the comparison of a program before and after a change."""
     return [(tr("before"), Ink.BEFORE.pens(look)[2]), (tr("after"), Ink.AFTER.pens(look)[2])]
 
 
 def draw_legend(painter: QPainter, look: Look, room: QRectF, entries: Sequence[LegendEntry]) -> None:
-    """A row at the lower left."""
+    """Draw the legend as a row at the lower left."""
     u = look.u
     x, y = room.x() + 1.2 * u, room.bottom() - 2.2 * u
     painter.setFont(look.font(1.5))
@@ -109,7 +109,7 @@ def draw_legend(painter: QPainter, look: Look, room: QRectF, entries: Sequence[L
 
 
 def draw_scale(painter: QPainter, look: Look, room: QRectF, projection: Projection, metric: bool) -> None:
-    """A round length at the lower right of a pane, in the unit in force."""
+    """Draw a scale bar with a round length at the lower right of a pane, in the unit in force."""
     u = look.u
     mm, text = scale_length(min(14 * u, 0.2 * room.width()) / projection.scale, metric)
     wide = mm * projection.scale
@@ -123,13 +123,13 @@ def draw_scale(painter: QPainter, look: Look, room: QRectF, projection: Projecti
 
 
 def draw_border(painter: QPainter, look: Look, room: QRectF) -> None:
-    """Between a pane and the one at its left."""
+    """Draw the border between a pane and the pane to its left."""
     painter.setPen(look.pen("frame", 0.12))
     painter.drawLine(room.topLeft(), room.bottomLeft())
 
 
 def draw_words(painter: QPainter, look: Look, room: QRectF, words: str, ink: str = "soft") -> None:
-    """At the upper left of a pane: what it is, or what is to be said of it, over figures of its axis."""
+    """Draw the title or status of a pane at its upper left."""
     u = look.u
     painter.setFont(look.fit(words, 1.6, room.width() - 2 * u, bold=True))
     box = QRectF(room.x() + 1.2 * u, room.y() + 0.9 * u, room.width() - 2 * u, 2 * u)
@@ -140,7 +140,7 @@ def draw_words(painter: QPainter, look: Look, room: QRectF, words: str, ink: str
 
 
 def draw_nothing(painter: QPainter, look: Look, room: QRectF, why: str) -> None:
-    """Where there is no path."""
+    """Draw the reason why no path is shown."""
     painter.setPen(look.colour("soft"))
     painter.setFont(look.fit(why, 2.0, room.width()))
     painter.setBrush(Qt.BrushStyle.NoBrush)
@@ -148,7 +148,10 @@ def draw_nothing(painter: QPainter, look: Look, room: QRectF, why: str) -> None:
 
 
 def draw_approach(painter: QPainter, look: Look, pane: Pane, legs: Sequence[DrawnLeg]) -> None:
-    """All legs from where the tool stands now; the painter's origin is the corner of the pane."""
+    """Draw all legs from the present tool position.
+
+    The painter's origin is the corner of the pane.
+    """
     u = look.u
     spots = [pane.spot(leg.z, leg.x) for leg in legs]
     painter.setBrush(Qt.BrushStyle.NoBrush)
@@ -168,7 +171,7 @@ def draw_approach(painter: QPainter, look: Look, pane: Pane, legs: Sequence[Draw
 
 
 def _arrow(painter: QPainter, look: Look, start: QPointF, end: QPointF) -> None:
-    """A head at the end of a leg that is long enough to have one."""
+    """Draw an arrow head at the end of a leg that is long enough."""
     way, u = end - start, look.u
     length = math.hypot(way.x(), way.y())
     if length < 2.5 * u:
@@ -184,7 +187,10 @@ def _arrow(painter: QPainter, look: Look, start: QPointF, end: QPointF) -> None:
 
 
 def leg_labels(look: Look, middles: Sequence[QPointF], labels: Sequence[str]) -> list[tuple[QRectF, str]]:
-    """The labels in the middle of their legs; of legs that lie too near to each other one, ``5–15``."""
+    """Return the boxes and texts of the labels at the middle of each leg.
+
+    Labels that overlap are merged into a range, for example ``5–15``.
+    """
     drawn: list[tuple[QRectF, str]] = []
     for at, label in zip(middles, labels, strict=True):
         if not label:
@@ -213,7 +219,7 @@ def _label(painter: QPainter, look: Look, box: QRectF, text: str) -> None:
 
 
 def apart_words(apart: Apart, in_mm: bool) -> str:
-    """How far two pictures are apart."""
+    """Return the text for the largest difference between two pictures."""
     if not apart.distance:
         return tr("NO CUTTING MOVE HAS CHANGED")
     length = formats.length(apart.distance, in_mm)
@@ -227,14 +233,14 @@ def apart_words(apart: Apart, in_mm: bool) -> str:
 
 
 def errors_of(pane: Pane) -> list[Diagnostic]:
-    """What is wrong with the part that a pane shows, by now."""
+    """Return the errors of the part that a pane shows, up to the displayed moment."""
     shown = pane.player.played if pane.player is not None else None
     found = shown.instant.findings if shown is not None else ()
     return [each for each in found if is_serious(each)]
 
 
 def part_words(pane: Pane) -> str:
-    """What is wrong by now, or else which tool cuts."""
+    """Return the title of a part pane: its latest error, or else the tool that cuts."""
     shown = pane.player.played if pane.player is not None else None
     if pane.player is None or shown is None:
         trouble = pane.player.trouble if pane.player is not None else ""
@@ -251,7 +257,7 @@ def part_words(pane: Pane) -> str:
 
 
 def pane_words(pane: Pane, in_mm: bool) -> str:
-    """Which side of the part a pane shows."""
+    """Return the title of a pane, which names the visible side of the part."""
     if pane.aspect in OF_PART:
         return part_words(pane)
     if pane.aspect is Aspect.FACE:
@@ -261,13 +267,13 @@ def pane_words(pane: Pane, in_mm: bool) -> str:
 
 
 QUARTERS = (0, 90, 180, 270)
-TIGHT = 9.0  # units: C lines of the side stand no nearer to each other
+TIGHT = 9.0  # units: minimum distance between the C lines of the side view
 
 
 def draw_centre_lines(
     painter: QPainter, look: Look, aspect: Aspect, projection: Projection, polyline: Polyline
 ) -> None:
-    """Centre lines, the circle of the part with C round it, lines along the side: under all that moves.
+    """Draw the center lines, the C circle of a face, and the C lines of a side below all moving marks.
 
     The painter's origin is the corner of the pane.
     """
@@ -298,7 +304,7 @@ def _cross(painter: QPainter, look: Look, projection: Projection) -> None:
 
 
 def _ring(painter: QPainter, look: Look, projection: Projection, polyline: Polyline) -> None:
-    """The circle that holds all cuts, and where on it the tool is at C 0, 90, 180 and 270."""
+    """Draw the circle around all cuts, with the tool positions at C 0, 90, 180 and 270 degrees."""
     u = look.u
     reach = polyline.bounds[1]
     middle = QPointF(float(projection.across(0.0)), float(projection.down(0.0)))
@@ -315,7 +321,10 @@ def _ring(painter: QPainter, look: Look, projection: Projection, polyline: Polyl
 
 
 def _degrees(painter: QPainter, look: Look, projection: Projection, polyline: Polyline) -> None:
-    """Lines along Z at even angles, with their C; whole turns are as strong as a centre line."""
+    """Draw lines along Z at equal angles with their C.
+
+    Full revolutions are drawn like center lines.
+    """
     u, scale = look.u, polyline.round
     step = next((s for s in (15, 30, 45, 90, 180, 360) if s * scale * projection.scale >= TIGHT * u), 360)
     top, bottom = (

@@ -1,4 +1,4 @@
-"""The panes of the path view: what part of a path each shows, zoomed and panned, and where the tool is."""
+"""Panes of the path view: the visible area of a path, with zoom, pan and the tool position."""
 
 from __future__ import annotations
 
@@ -20,19 +20,20 @@ if TYPE_CHECKING:
     from app.path.part_player import PartPlayer
 
 ZOOM_STEP = 1.25
-PAN_STEP = 0.1  # of the width
-MARGIN = 2.8  # units round what is fitted
+PAN_STEP = 0.1  # ratio to the width of the pane
+MARGIN = 2.8  # units around the fitted path
 
 Place = tuple[float, float]
-PICK = 1.6  # units: how near a finger must come to a line to mean it
-RING = 6.0  # units round a face: the circle of the part and its angles stand there
-MOST_MARKED = 20_000  # points drawn thick, of a line that makes more of them
+PICK = 1.6  # units: maximum distance from a line at which a touch selects the line
+RING = 6.0  # units around a face: room for the circle of the part and its angles
+MOST_MARKED = 20_000  # maximum number of points of a line that are drawn thick
 
 
 class Pane:
-    """A part of the path view; places are the widget's pixels, everything drawn is the pane's own.
+    """One pane of the path view. Positions are widget pixels, and drawings are relative to the pane.
 
-    z and x are those of the plane that is looked at. ``player`` is that of the part, where that is shown.
+    z and x are the coordinates of the viewed plane. ``player`` is the player of the part, where the part is
+    shown.
     """
 
     player: PartPlayer | None = None
@@ -42,21 +43,21 @@ class Pane:
     ) -> None:
         self.look, self.aspect = look, aspect
         self.room = QRectF()
-        self.also: tuple[Place, ...] = ()  # points that are to be seen with the whole
-        self.by_hand = False  # somebody has zoomed or panned
+        self.also: tuple[Place, ...] = ()  # points that must be visible together with the whole path
+        self.by_hand = False  # set when the user zooms or pans
         self.projection: Projection | None = None
         self.polyline, self.before = polyline, before
         self.apart = farthest(before, polyline) if before is not None else None
         self._layers: Layers | None = None
         self._block = 0
-        self._place: Place | None = None  # of the tip; nobody has told it yet
+        self._place: Place | None = None  # position of the tip; None until the first position is set
         self._stood: Place | None = None
         self.marked: list[tuple[int, int]] = []  # ranges of points
 
-    # --- what is seen --------------------------------------------------------------------------------
+    # --- projection and path -------------------------------------------------------------------------
 
     def take(self, polyline: Polyline, before: Polyline | None) -> None:
-        """Another path in the same place; what is looked at stays if it was chosen by hand."""
+        """Show another path. The projection remains if the user adjusted it."""
         self.polyline, self.before, self._block, self.marked = polyline, before, 0, []
         self.apart = farthest(before, polyline) if before is not None else None
         if self.by_hand and self.projection is not None:
@@ -65,7 +66,7 @@ class Pane:
             self.fit()
 
     def whole(self) -> Projection:
-        """Everything, the path before a change too."""
+        """Return the projection that shows everything, including the path before a change."""
         fit = boxed if self.aspect is Aspect.SIDE else fitted
         bounds = self.polyline.bounds
         if self.before is not None:
@@ -76,27 +77,27 @@ class Pane:
         return fit(bounds, int(self.room.width()), int(self.room.height()), margin)
 
     def restart(self) -> None:
-        """The same again, in other colours."""
+        """Draw the same view again, with new colors."""
         if self.projection is not None:
             self.look_at(self.projection)
 
     def look_at(self, projection: Projection) -> None:
-        """This is seen from now on, drawn anew."""
+        """Set the projection and redraw the pane."""
         self.projection = projection
         self._layers = Layers(self.look, self.polyline, projection, self.before)
         self._layers.want(self._block - 1)
         self._layers.advance()
 
     def block_at(self, at: QPointF) -> int:
-        """The block that was drawn at a place of the widget, or very near to it; 0: none was."""
+        """Return the block that is drawn at or near a widget position, or 0 without a block."""
         z, x = self.here(at)
         point = point_at(self.polyline, z, x, PICK * self.look.u * self.pixel)
         return 0 if point is None else self.polyline.block_of_point(point)
 
-    # --- looking around ------------------------------------------------------------------------------
+    # --- navigation ----------------------------------------------------------------------------------
 
     def lay(self, room: QRectF) -> None:
-        """Fill this room; another size shows the whole part again."""
+        """Set the room of the pane. A changed size shows the whole path again."""
         if room != self.room:
             self.room = room
             self.fit()
@@ -107,14 +108,14 @@ class Pane:
         self.look_at(self.whole())
 
     def include(self, places: Sequence[Place]) -> None:
-        """Points of the plane that are to be seen with the whole part."""
+        """Set the points that must be visible together with the whole path."""
         if tuple(places) != self.also:
             self.also = tuple(places)
             if not self.by_hand and self.projection is not None:
                 self.fit()
 
     def zoom(self, steps: int, at: QPointF | None = None) -> None:
-        """Nearer (positive) or farther, about a point of the widget, the greatest change or the middle."""
+        """Zoom in (positive steps) or out, around a widget position, the largest difference or the middle."""
         self.magnify(ZOOM_STEP**steps, at if at is not None else self._middle())
 
     def _middle(self) -> QPointF:
@@ -125,49 +126,49 @@ class Pane:
         return self.room.center()
 
     def magnify(self, factor: float, at: QPointF) -> None:
-        """Nearer by a factor; what is at the point stays there."""
+        """Magnify by a factor. The path under the position ``at`` stays in place."""
         if self.projection is not None:
             self.by_hand = True
             at = at - self.room.topLeft()
             self.look_at(self.projection.zoomed(factor, at.x(), at.y()))
 
     def pan(self, across: int, down: int) -> None:
-        """Look further right and down by so many steps."""
+        """Move the visible area to the right and down by a number of steps."""
         step = PAN_STEP * self.room.width()
         self.drag(QPointF(-across * step, -down * step))
 
     def drag(self, by: QPointF) -> None:
-        """The picture goes along with the finger."""
+        """Move the picture by a drag, in pixels."""
         if self.projection is not None:
             self.by_hand = True
             self.look_at(self.projection.moved(by.x(), by.y()))
 
-    # --- places --------------------------------------------------------------------------------------
+    # --- coordinates ---------------------------------------------------------------------------------
 
     @property
     def pixel(self) -> float:
-        """How many mm one is."""
+        """Size of one pixel in millimeters."""
         return 1.0 / self.projection.scale if self.projection is not None else 1.0
 
     def spot(self, z: float, x: float) -> QPointF:
-        """Where a point of the plane is in the pane; pixels from its corner."""
+        """Return the pane position of a point of the plane, in pixels from the corner of the pane."""
         assert self.projection is not None
         return QPointF(float(self.projection.across(z)), float(self.projection.down(x)))
 
     def here(self, at: QPointF) -> Place:
-        """The plane's z and x at a place of the widget."""
+        """Return the z and x of the plane at a widget position."""
         projection, room = self.projection, self.room
         assert projection is not None
         z = projection.z + (at.x() - room.x() - projection.width / 2) / projection.scale
         return z, projection.x + (at.y() - room.y() - projection.height / 2) / projection.scale
 
     def sight(self) -> Bounds:
-        """What part of the plane is seen: least and greatest z, least and greatest x."""
+        """Return the visible area: minimum z, maximum z, minimum x, maximum x."""
         (z0, x0), (z1, x1) = self.here(self.room.topLeft()), self.here(self.room.bottomRight())
         return z0, z1, x0, x1
 
     def show_spot(self, z: float, x: float) -> None:
-        """Look aside as far as is needed to see a point."""
+        """Pan as far as necessary to make a point visible."""
         at, room = self.spot(z, x), self.room
         edge = MARGIN * self.look.u
         over = QPointF(
@@ -177,24 +178,30 @@ class Pane:
         if not over.isNull():
             self.drag(-over)
 
-    # --- what moves ----------------------------------------------------------------------------------
+    # --- moving parts --------------------------------------------------------------------------------
 
     def stand(self, block: int, place: Place | None, stood: Place | None = None) -> None:
-        """The tip, in the polyline's own z and x; ``stood``: where the block was broken off."""
+        """Set the active block and the tip position, in the z and x of the polyline.
+
+        ``stood`` is the position where an interrupted block stopped.
+        """
         if self._layers is not None and block != self._block:
             self._layers.want(block - 1)
         self._block, self._place = block, place
         self._stood = stood
 
     def end_of(self, block: int) -> Place | None:
-        """Where a block ends, or the last one before it that draws anything here."""
+        """Return the end of a block, or the end of the last earlier block that is drawn in this pane."""
         at = max(0, self.polyline.points_done(block) - 1)
         return (
             (float(self.polyline.z[at]), float(self.polyline.x[at])) if len(self.polyline.z) else self._place
         )
 
     def place_of(self, tip: Tip) -> Place | None:
-        """Where the machine's tip is seen here; a face keeps what it showed while C turns as the spindle."""
+        """Return the position of the machine's tip in this pane.
+
+        A face retains its last position while C turns as the spindle.
+        """
         if self.aspect is Aspect.PATH or self.aspect in OF_PART:
             return tip.z, tip.x
         if tip.c is None:
@@ -204,29 +211,29 @@ class Pane:
         return tip.z, -tip.c * self.polyline.round
 
     def mark(self, blocks: list[tuple[int, int]]) -> None:
-        """Draw these blocks thick: ranges of numbers from 1, the last one in them."""
+        """Draw blocks as thick lines. Each range is (first, last), inclusive, counted from 1."""
         first = self.polyline.first
         ranges = [(int(first[a - 1]), int(first[b])) for a, b in blocks]
         self.marked = [(a, min(b, a + MOST_MARKED)) for a, b in ranges if b > a]
 
     def advance(self) -> bool:
-        """Draw on for a few milliseconds at most; whether there is anything new."""
+        """Draw for a few milliseconds at most, and return whether anything changed."""
         return self._layers is not None and self._layers.advance()
 
     @property
     def complete(self) -> bool:
-        """Whether all that was wanted is drawn."""
+        """Whether everything requested is drawn."""
         return self._layers is not None and self._layers.complete
 
     # --- drawing -------------------------------------------------------------------------------------
 
     def draw_path(self, painter: QPainter) -> None:
-        """What is to come and what is done, as cached. The painter's origin is the corner of the pane."""
+        """Draw the cached image of the path. The painter's origin is the corner of the pane."""
         if self._layers is not None:
             painter.drawImage(QPointF(0, 0), self._layers.image)
 
     def draw_run(self, painter: QPainter) -> None:
-        """The marked line, what is under way and the tip; of two pictures the greatest change."""
+        """Draw the marked line, the active block and the tip, or the largest difference of two pictures."""
         if self.projection is None:
             return
         self._draw_marked(painter, self.projection)
@@ -247,11 +254,11 @@ class Pane:
                 stroke_run(painter, run)
 
     def _under_way(self, painter: QPainter, projection: Projection) -> None:
-        """The part of the present block that lies behind the tip."""
+        """Draw the finished part of the active block."""
         if not self._block or self._place is None:
             return
         if self._stood is not None and self.aspect is not Aspect.PATH:
-            return  # on a face or a side nobody knows any more where C stood
+            return  # On a face or a side, the C position of the interruption is not known.
         found = travelled(self.polyline, projection, self._block, *(self._stood or self._place))
         if found is not None:
             painter.setPen(Ink.DONE.pens(self.look)[found.stroke])
@@ -265,7 +272,7 @@ class Pane:
         at = self.spot(*self._place)
         painter.setPen(look.pen("panel", 0.2))
         painter.setBrush(look.colour("tip"))
-        if self.aspect is not Aspect.PATH:  # a mill is looked at along its axis
+        if self.aspect is not Aspect.PATH:  # A mill is viewed along its axis.
             painter.drawEllipse(at, 0.7 * u, 0.7 * u)
             return
         side = 1.0 if self._place[1] >= 0 else -1.0
@@ -274,19 +281,19 @@ class Pane:
 
 
 def _around(one: Bounds, other: Bounds) -> Bounds:
-    """The box round two boxes."""
+    """Return the bounding box of two boxes."""
     low, high = tuple(map(min, one, other)), tuple(map(max, one, other))
     return low[0], high[1], low[2], high[3]
 
 
 Make = Callable[[Aspect, Polyline, Polyline | None], Pane]
-LEAST = 40  # pixels: in less room nothing is laid out
+LEAST = 40  # pixels: minimum width of a layout
 
 
 class Panes:
-    """``picture`` and, where two are compared, what it was ``before``; one of several views onto them.
+    """Panes of ``picture`` and, for a comparison, of the picture ``before`` the change.
 
-    ``keeps``: what is looked at by hand stays when the picture changes. ``make`` makes a pane.
+    ``keeps`` retains adjusted projections when the picture changes. ``make`` creates a pane.
     """
 
     def __init__(self, keeps: bool, make: Make, *, with_part: bool = False) -> None:
@@ -299,7 +306,7 @@ class Panes:
         self._room = QRectF()
 
     def show(self, picture: Picture | None, before: Picture | None) -> None:
-        """Other pictures; the same view where there still is one."""
+        """Set the pictures. The present view remains if it still exists."""
         self.picture, self.before = picture, before
         with_part = self._with_part and before is None
         views = views_of(picture, part=with_part) if picture is not None else []
@@ -309,21 +316,21 @@ class Panes:
 
     @property
     def several(self) -> bool:
-        """Whether there is another view."""
+        """Whether more than one view exists."""
         return len(self._views) > 1
 
     @property
     def choices(self) -> int:
-        """How many views there are."""
+        """Number of views."""
         return len(self._views)
 
     def next_view(self) -> None:
-        """Go on to the next choice of panes."""
+        """Switch to the next view."""
         self._view = (self._view + 1) % max(1, len(self._views))
         self._fill()
 
     def lay(self, room: QRectF) -> None:
-        """Divide this room among the panes."""
+        """Divide the room among the panes."""
         self._room = room
         if room.width() <= LEAST or not self.now:
             return
@@ -333,11 +340,11 @@ class Panes:
             pane.lay(box.toRect().toRectF())
 
     def at(self, place: QPointF) -> Pane | None:
-        """The pane under a place of the widget."""
+        """Return the pane at a widget position, or None."""
         return next((pane for pane in self.now if pane.room.contains(place)), None)
 
     def advance(self) -> bool:
-        """Draw on for a few milliseconds at most; whether there is anything new."""
+        """Draw for a few milliseconds at most, and return whether anything changed."""
         drawn = [pane.advance() for pane in self.now]
         return any(drawn)
 

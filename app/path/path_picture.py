@@ -1,7 +1,7 @@
-"""The path of a program as polylines, also on face and side with C locked; made once on a worker thread.
+"""Path of a program as polylines, including face and side with C locked; built once on a worker thread.
 
-Coordinates are the part's: machine position less the offset of the active tool, so that work shifts (G10)
-and presets (G92) stand where they are cut. mm, X a radius.
+Coordinates are relative to the part: machine position minus the offset of the active tool. Work shifts (G10)
+and presets (G92) therefore appear where they are cut. All values are in mm, with X as a radius.
 """
 
 from __future__ import annotations
@@ -37,25 +37,28 @@ if TYPE_CHECKING:
 
 
 STILL = 1e-9  # mm, degrees
-LEAST = 1.0  # mm: the radius that a side is unrolled at when nothing tells one
+LEAST = 1.0  # mm: radius for unrolling a side whose radius is unknown
 
 
 def face_point(x: float, c: float, h: float = 0.0) -> tuple[float, float]:
-    """Where on the face (to the right, downwards) a tip at lathe X, a radius, stands with C so far turned."""
+    """Return the position on the face (right, down) of a tip at lathe X (a radius).
+
+    C is turned by ``c`` degrees, and ``h`` is the height of the center line.
+    """
     at = math.atan2(h, -x) - math.radians(c)
     rho = math.hypot(x, h)
     return rho * math.cos(at), -rho * math.sin(at)
 
 
 class FaceBuilder:
-    """Collects what is seen on the face."""
+    """Collects the moves that are visible on the face."""
 
     def __init__(self, blocks: int) -> None:
         self.pencil = PolylineBuilder(blocks)
         self.wanted = False
 
     def mill(self, move: PlaneMove, frame: Face, way: list[Spot], stroke: int) -> None:
-        """A move of plane switching, in the frame that stood at ``frame.c0`` when it was entered."""
+        """Add a move of plane switching, in a frame that was turned by ``frame.c0`` on entry."""
         self.wanted = True
         turn = -math.radians(frame.heading)
         cos, sin = math.cos(turn), math.sin(turn)
@@ -68,7 +71,7 @@ class FaceBuilder:
             self.pencil.centres.extend((x * cos + y * sin, x * sin - y * cos))
 
     def move(self, block: Block, x0: float, x1: float, stroke: int) -> None:
-        """Any other move with C locked, from lathe X to lathe X."""
+        """Add any other move with C locked, from lathe X ``x0`` to lathe X ``x1``."""
         self.wanted |= abs(block.c - block.c0) > STILL and abs(x1 - x0) > STILL
         self.pencil.start(*face_point(x0, block.c0))
         pieces = turn_pieces(block.c - block.c0)
@@ -78,7 +81,7 @@ class FaceBuilder:
             self.pencil.to(*face_point(x0 + (x1 - x0) * s, c), stroke)
 
     def polyline(self) -> Polyline:
-        """The polyline of what was collected."""
+        """Return the polyline of the collected moves."""
         z, x, stroke, first = self.pencil.arrays()
         low_z, high_z, low_x, high_x = bounds_of(z, x, stroke)
         reach = max(abs(low_z), abs(high_z), abs(low_x), abs(high_x))
@@ -87,16 +90,19 @@ class FaceBuilder:
 
 
 class SideBuilder:
-    """Collects what is seen on the side; ``x`` is minus C in degrees until the radius is known."""
+    """Collects the moves that are visible on the side.
+
+    ``x`` is minus C in degrees until the radius is known.
+    """
 
     def __init__(self, blocks: int) -> None:
         self.pencil = PolylineBuilder(blocks)
         self.wanted = False
-        self._diameter = 0.0  # of the first plane; it is what the programmer has drawn on
+        self._diameter = 0.0  # diameter of the first plane, which the program uses
         self._reach = 0.0
 
     def mill(self, move: PlaneMove, frame: Side, way: list[Spot], stroke: int, dz: float) -> None:
-        """A move of plane switching; ``dz`` leads from program Z to the part's."""
+        """Add a move of plane switching. ``dz`` converts program Z to the Z of the part."""
         self.wanted = True
         self._diameter = self._diameter or frame.diameter
         degrees = 360.0 / (math.pi * frame.diameter)
@@ -109,7 +115,7 @@ class SideBuilder:
             self.pencil.centres.extend((frame.z0 - x + dz, y * degrees - frame.c0))
 
     def move(self, block: Block, x: float, dz: float, stroke: int) -> None:
-        """Any other move with C locked, to lathe X."""
+        """Add any other move with C locked, to lathe X ``x``."""
         self.wanted |= abs(block.c - block.c0) > STILL and abs(block.z - block.z0) > STILL
         if stroke != Stroke.RAPID:
             self._reach = max(self._reach, abs(x))
@@ -117,7 +123,10 @@ class SideBuilder:
         self.pencil.to(block.z + dz, -block.c, stroke)
 
     def polyline(self) -> Polyline:
-        """What was collected, unrolled at the diameter of the first plane or at the greatest that is cut."""
+        """Return the collected moves, unrolled at a diameter.
+
+        The diameter is that of the first plane, or else the largest cut diameter.
+        """
         z, x, stroke, first = self.pencil.arrays()
         scale = math.pi * (self._diameter or 2 * max(self._reach, LEAST)) / 360.0
         centres = np.array(self.pencil.centres).reshape(-1, 2) * (1.0, scale)
@@ -127,13 +136,16 @@ class SideBuilder:
 
 
 class FaceAndSideBuilder:
-    """Both views of everything that is done with C locked; made at the first block that is."""
+    """Builds the face and side views of all moves with C locked."""
 
     def __init__(self, blocks: int) -> None:
         self._face, self._side = FaceBuilder(blocks), SideBuilder(blocks)
 
     def add(self, block: Block, stroke: int, way: list[Spot]) -> None:
-        """One move with C locked; ``way`` are the mill's points behind its start, for a move in a plane."""
+        """Add one move with C locked.
+
+        ``way`` contains the mill's points after the start of a move in a plane.
+        """
         modal, plane = block.modal, block.plane
         dz = block.offset_z - modal.base_z
         if plane is None:
@@ -146,12 +158,15 @@ class FaceAndSideBuilder:
             self._face.mill(plane, plane.frame, way, stroke)
 
     def end_block(self) -> None:
-        """Every block ends, seen or not."""
+        """Mark the end of a block, whether or not the block is visible."""
         self._face.pencil.end_block()
         self._side.pencil.end_block()
 
     def polylines(self) -> tuple[Polyline | None, Polyline | None]:
-        """Face and side, each where something is to be seen there. Where C only divides it is the face."""
+        """Return face and side, each None if nothing is visible there.
+
+        A program that uses C only for indexing is shown on the face.
+        """
         face, side = self._face, self._side
         divides = not side.wanted and len(face.pencil.z) > 0
         return (
@@ -161,22 +176,22 @@ class FaceAndSideBuilder:
 
 
 def way_of(block: Block) -> list[Spot]:
-    """The mill's points behind the start of a move in a plane."""
+    """Return the mill's points after the start of a move in a plane."""
     return [] if block.plane is None else mill_way(block.plane, block.c - block.c0)
 
 
-WATCHED = 2000  # blocks between two looks at whether the work is still wanted
+WATCHED = 2000  # number of blocks between two checks for cancellation
 
 Timed = tuple[Block, float, float]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Picture(Polyline):
-    """The path seen from above, X+ downwards; ``face`` and ``side`` are what is cut there with C locked.
+    """Path seen from above, with X+ down. ``face`` and ``side`` show the cuts with C locked.
 
-    ``ends`` (blocks + 1,) seconds of program time with 0 in front, ``chord`` (blocks,) mm from start to end
-    of a block. ``line`` (blocks,) is the source line that each block is of. ``metric``: the program ends in
-    G71.
+    ``ends`` (blocks + 1,) is the program time in seconds at the end of each block, starting with 0. ``chord``
+    (blocks,) is the distance from start to end of a block in mm. ``line`` (blocks,) is the source line of
+    each block. ``metric`` is set if the program ends in G71.
     """
 
     ends: npt.NDArray[np.float64]
@@ -185,13 +200,16 @@ class Picture(Polyline):
     face: Polyline | None = None
     side: Polyline | None = None
     metric: bool = False
-    scene: Scene | None = None  # of a mill
-    part: PartMoves | None = None  # what the part can be made of
-    no_part: str = ""  # why it is not made
+    scene: Scene | None = None  # scene of a mill
+    part: PartMoves | None = None  # moves from which the part can be calculated
+    no_part: str = ""  # reason why the part is not calculated
 
     def block_of_line(self, line: int) -> int:
-        """The block that ends the first pass through a source line, or through the nearest one before that
-        makes any; 0 when there is none. Numbers count from 1."""
+        """Return the block that ends the first pass through a source line.
+
+        If the line has no blocks, the nearest earlier line with blocks is used. Returns 0 if no such line
+        exists. Numbers count from 1.
+        """
         before = self.line[self.line <= line]
         if not len(before):
             return 0
@@ -200,22 +218,25 @@ class Picture(Polyline):
         return int(there[apart[0]] if len(apart) else there[-1]) + 1
 
     def blocks_before(self, line: int) -> int:
-        """How many blocks are done when a source line is reached for the first time."""
+        """Return the number of blocks that are finished when a source line is first reached."""
         there = np.flatnonzero(self.line == line)
         return int(there[0]) if len(there) else self.block_of_line(line)
 
     def blocks_of_line(self, line: int) -> list[tuple[int, int]]:
-        """All blocks of a source line, as ranges of numbers from 1 with the last one in them."""
+        """Return all blocks of a source line as inclusive ranges (first, last), counted from 1."""
         there = np.flatnonzero(self.line == line) + 1
         parts = np.split(there, np.flatnonzero(np.diff(there) > 1) + 1) if len(there) else []
         return [(int(part[0]), int(part[-1])) for part in parts]
 
     def line_of_block(self, block: int) -> int:
-        """The source line of a block, both from 1; 0 for no block."""
+        """Return the source line of a block, both counted from 1, or 0 for no block."""
         return int(self.line[block - 1]) if 1 <= block <= len(self.line) else 0
 
     def time_left(self, block: int, to_go: float) -> float:
-        """Program seconds left when block number ``block`` has ``to_go`` mm before it, at full override."""
+        """Return the remaining program time in seconds, at 100 % override.
+
+        ``to_go`` is the distance in mm that remains in block number ``block``.
+        """
         total = float(self.ends[-1])
         if not 1 <= block <= self.blocks:
             return total
@@ -226,7 +247,7 @@ class Picture(Polyline):
 
 
 class PictureBuilder:
-    """Collects blocks into a picture. ``metric``: the unit at the start, that of a picture without blocks."""
+    """Collects blocks into a picture. ``metric`` is the unit of a picture without blocks."""
 
     def __init__(self, metric: bool = False) -> None:
         self._pencil = PolylineBuilder()
@@ -236,9 +257,9 @@ class PictureBuilder:
         self._ends, self._chord, self._line = array("d", [0.0]), array("d"), array("q")
 
     def add(self, block: Block, end: float) -> None:
-        """Append one block that ends ``end`` seconds into the program."""
+        """Append one block that ends ``end`` seconds after the start of the program."""
         if block.swivel is not None:
-            self._scene.add(block, block.swivel)  # what a lathe's picture would show of it means nothing
+            self._scene.add(block, block.swivel)  # The picture of a lathe has no meaning for such a block.
         elif block.moves:
             if block.modal.c_locked:
                 self._locked(block)
@@ -253,7 +274,7 @@ class PictureBuilder:
         self._chord.append(_chord(block) if block.moves else 0.0)
 
     def add_series(self, series: Series, ends: Floats) -> None:
-        """Append straight moves that end ``ends`` (m,) seconds into the program."""
+        """Append straight moves that end ``ends`` (m,) seconds after the start of the program."""
         like = series.pattern
         if self._turned is not None or like.modal.c_locked:
             for block, end in zip(series, ends.tolist(), strict=True):
@@ -268,7 +289,7 @@ class PictureBuilder:
         self._metric = like.modal.metric
 
     def add_timed(self, each: Timed | TimedSeries) -> int:
-        """Append a block, or a series of moves, with its times; returns how many blocks that is."""
+        """Append a timed block or series of moves, and return the number of blocks."""
         if isinstance(each, TimedSeries):
             self.add_series(each.series, each.t1)
             return len(each.series)
@@ -276,7 +297,7 @@ class PictureBuilder:
         return 1
 
     def picture(self) -> Picture:
-        """The picture of what was added."""
+        """Return the picture of the appended blocks."""
         z, x, stroke, first = self._pencil.arrays()
         face, side = self._turned.polylines() if self._turned is not None else (None, None)
         return Picture(
@@ -324,7 +345,7 @@ class PictureBuilder:
             self._pencil.to(cz + radius * math.cos(at), cx + radius * math.sin(at), stroke)
 
     def _mill(self, block: Block, plane: PlaneMove, way: list[Spot], stroke: Stroke) -> None:
-        """What the slides do while the mill goes its way in a plane."""
+        """Add the motion of the X and Z axes during a move of the mill in a plane."""
         modal = block.modal
         dx = block.offset_x - modal.base_x + modal.secondary_x
         dz = block.offset_z - modal.base_z + modal.secondary_z
@@ -342,7 +363,10 @@ class PictureBuilder:
 
 
 def picture_of(blocks: Iterable[Timed | TimedSeries], watch: Callable[[int], None]) -> Picture:
-    """The picture of all blocks; ``watch`` is told the count now and then and may raise to give up."""
+    """Return the picture of all blocks.
+
+    ``watch`` is called with the block count at intervals and may raise an exception to cancel.
+    """
     sketch, count, told = PictureBuilder(), 0, 0
     for each in blocks:
         count += sketch.add_timed(each)
@@ -353,7 +377,7 @@ def picture_of(blocks: Iterable[Timed | TimedSeries], watch: Callable[[int], Non
 
 
 def _chord(block: Block) -> float:
-    """From start to end in the machine's first two axes, of which the way left is told, mm."""
+    """Return the distance from start to end in the first two axes, in mm, as used for the distance to go."""
     if block.travel is not None:
         return math.dist(block.travel.start[:2], block.travel.end[:2])
     return math.hypot(block.x - block.x0, block.z - block.z0)

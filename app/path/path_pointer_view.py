@@ -1,4 +1,4 @@
-"""The mouse or fingers on the path view: drag it along, spread two fingers, touch a line or a point."""
+"""Mouse and touch input of the path view: dragging, pinch zoom and touching a line or a point."""
 
 from __future__ import annotations
 
@@ -16,34 +16,38 @@ if TYPE_CHECKING:
     from app.path.part_bar_view import PartBar
     from app.path.path_pane_view import Pane
 
-STILL = 0.8  # units: a press that moves less is a touch, not a drag
-NEAR = 8.0  # pixels: fingers that lie closer tell no spread
+STILL = 0.8  # units: a press that moves less is a touch instead of a drag
+NEAR = 8.0  # pixels: smaller finger distances are treated as this distance
 
 
 @dataclass(slots=True, eq=False)
 class Pointer:
-    """Tells drags from touches. ``pressed`` says on which pane, or time line, it went down, if any."""
+    """Distinguishes drags from touches.
+
+    ``pressed`` returns the pressed pane or time line, or None.
+    """
 
     look: Look
     pressed: Callable[[QPointF], Pane | PartBar | None]
-    hovers: Callable[[QPointF], None]  # it moves over the view and is not held down
-    dragged: Callable[[Pane | PartBar, QPointF], None]  # by so many pixels
-    touched: Callable[[Pane | PartBar, QPointF], None]  # it came up where it went down
-    magnify: Callable[[float, QPointF], None]  # by two fingers, about a point
-    _pane: Pane | PartBar | None = None  # that was pressed
+    hovers: Callable[[QPointF], None]  # called while the pointer moves without a pressed button
+    dragged: Callable[[Pane | PartBar, QPointF], None]  # called with the distance in pixels
+    # called if the pointer is released where it was pressed
+    touched: Callable[[Pane | PartBar, QPointF], None]
+    magnify: Callable[[float, QPointF], None]  # called with the factor and center of a pinch gesture
+    _pane: Pane | PartBar | None = None  # the pressed target
     _down: QPointF = field(default_factory=QPointF)
     _last: QPointF = field(default_factory=QPointF)
     _dragging: bool = False
-    _spread: float | None = None  # of two fingers, pixels; None until there are two
+    _spread: float | None = None  # distance of two fingers in pixels; None until there are two
 
     def press(self, at: QPointF) -> None:
-        """It went down: on a button of the view, or on a pane."""
+        """Start a press on a button of the view or on a pane."""
         self._pane = self.pressed(at)
         self._down = self._last = at
         self._dragging = False
 
     def move(self, at: QPointF) -> None:
-        """It moves; held down it takes the picture along."""
+        """Handle motion of the pointer. A pressed pointer drags the picture."""
         if self._pane is None:
             self.hovers(at)
             return
@@ -54,13 +58,13 @@ class Pointer:
         self._last = at
 
     def release(self, at: QPointF) -> None:
-        """It came up again; where it has not moved something was touched."""
+        """End a press. A press without motion is a touch."""
         pane, self._pane = self._pane, None
         if pane is not None and not self._dragging:
             self.touched(pane, at)
 
     def takes(self, event: QEvent) -> bool:
-        """Fingers on the screen or on a touch pad; whether the event was one of theirs."""
+        """Handle a touch or gesture event, and return whether the event was used."""
         if isinstance(event, QNativeGestureEvent):
             if event.gestureType() == Qt.NativeGestureType.ZoomNativeGesture:
                 self.magnify(1.0 + event.value(), event.position())
@@ -78,7 +82,7 @@ class Pointer:
         return True
 
     def _one(self, kind: QEvent.Type, at: QPointF) -> None:
-        """One finger is as the mouse; the one that is left of two does nothing any more."""
+        """Handle one finger like the mouse. A finger that remains after a pinch does nothing."""
         if self._spread is not None:
             return
         if kind == QEvent.Type.TouchBegin:
@@ -89,7 +93,7 @@ class Pointer:
             self.release(at)
 
     def _two(self, one: QPointF, other: QPointF) -> None:
-        """Nearer by as much as the fingers spread, about the middle between them."""
+        """Magnify by the change of the finger distance, around the middle of the fingers."""
         self._pane = None
         way = one - other
         spread, before = max(NEAR, math.hypot(way.x(), way.y())), self._spread

@@ -1,6 +1,6 @@
-"""How a path and the section of a part are projected onto pixels: thinned out to what can be seen.
+"""Projection of a path and of the section of a part onto pixels, reduced to the visible points.
 
-Everything is done for whole arrays: no Python loop goes over the points.
+All functions process whole arrays without a Python loop over the points.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ Indices = npt.NDArray[np.int64]
 
 @dataclass(frozen=True, slots=True)
 class Projection:
-    """What is looked at: the point (z, x) in the middle of ``width`` by ``height`` pixels, pixels a mm."""
+    """Visible area: the point (z, x) in the middle, the size in pixels, and ``scale`` in pixels per mm."""
 
     z: float
     x: float
@@ -33,28 +33,31 @@ class Projection:
     height: int
 
     def across(self, z: Floats | float) -> Floats | float:
-        """Pixel column of a Z: Z+ goes to the right."""
+        """Return the pixel column of a Z position. Z+ is to the right."""
         return self.width / 2 + (z - self.z) * self.scale
 
     def down(self, x: Floats | float) -> Floats | float:
-        """Pixel row of an X, a radius: X+ goes down, towards the operator."""
+        """Return the pixel row of an X radius. X+ is down, towards the operator."""
         return self.height / 2 + (x - self.x) * self.scale
 
     def zoomed(self, factor: float, column: float, row: float) -> Projection:
-        """Nearer by ``factor``, the point under (column, row) staying where it is."""
+        """Return a projection magnified by ``factor``.
+
+        The point at (column, row) remains in place.
+        """
         scale = min(max(self.scale * factor, 0.02), 5000.0)
         z = self.z + (column - self.width / 2) * (1 / self.scale - 1 / scale)
         x = self.x + (row - self.height / 2) * (1 / self.scale - 1 / scale)
         return Projection(z, x, scale, self.width, self.height)
 
     def moved(self, columns: float, rows: float) -> Projection:
-        """The picture shifted by so many pixels."""
+        """Return the projection shifted by a number of pixels."""
         z, x = self.z - columns / self.scale, self.x - rows / self.scale
         return Projection(z, x, self.scale, self.width, self.height)
 
 
 def fitted(bounds: tuple[float, float, float, float], width: int, height: int, margin: float) -> Projection:
-    """All that is cut and its mirror image on the other side of X0, ``margin`` pixels around it."""
+    """Return a projection of all cuts and their mirror image across X0, with a margin in pixels."""
     z0, z1, x0, x1 = bounds
     reach = max(abs(x0), abs(x1), 0.5)
     across, down = max(width - 2 * margin, 10.0), max(height - 2 * margin, 10.0)
@@ -63,7 +66,7 @@ def fitted(bounds: tuple[float, float, float, float], width: int, height: int, m
 
 
 def boxed(bounds: tuple[float, float, float, float], width: int, height: int, margin: float) -> Projection:
-    """Just what is within the bounds, ``margin`` pixels around it."""
+    """Return a projection of the bounds only, with a margin in pixels."""
     z0, z1, x0, x1 = bounds
     across, down = max(width - 2 * margin, 10.0), max(height - 2 * margin, 10.0)
     scale = min(across / max(z1 - z0, 1.0), down / max(x1 - x0, 1.0))
@@ -71,7 +74,7 @@ def boxed(bounds: tuple[float, float, float, float], width: int, height: int, ma
 
 
 class Shape(NamedTuple):
-    """Points in pixels, with the stroke that ends in each."""
+    """Points in pixels, with the stroke that ends at each point."""
 
     columns: Floats
     rows: Floats
@@ -80,7 +83,7 @@ class Shape(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """Neighbouring points under one stroke, in pixels."""
+    """Consecutive points of one stroke, in pixels."""
 
     stroke: int
     columns: Floats
@@ -88,7 +91,7 @@ class Run:
 
 
 def points(polyline: Polyline, projection: Projection, start: int, end: int) -> Shape:
-    """Points ``start`` … ``end - 1`` and the one before, thinned out to the pixel."""
+    """Return points ``start`` to ``end - 1`` and the preceding point, reduced to pixel resolution."""
     low = max(0, start - 1)
     columns = np.asarray(projection.across(polyline.z[low:end]), dtype=np.float64)
     rows = np.asarray(projection.down(polyline.x[low:end]), dtype=np.float64)
@@ -100,7 +103,7 @@ def points(polyline: Polyline, projection: Projection, start: int, end: int) -> 
 
 
 def runs(polyline: Polyline, projection: Projection, start: int, end: int) -> Iterator[Run]:
-    """The strokes that end in points ``start`` … ``end - 1``, thinned out to the pixel, cut to the frame."""
+    """Yield the strokes that end in points ``start`` to ``end - 1``, reduced to pixels and clipped."""
     columns, rows, stroke = points(polyline, projection, start, end)
     stroke[1:][_outside(columns, rows, projection)] = 0
     edges = np.flatnonzero(np.diff(stroke)) + 1
@@ -111,7 +114,7 @@ def runs(polyline: Polyline, projection: Projection, start: int, end: int) -> It
 
 
 def _telling(columns: Floats, rows: Floats, stroke: npt.NDArray[np.uint8]) -> npt.NDArray[np.bool_]:
-    """Points that fall on another pixel than the one before, or where the stroke changes."""
+    """Return a mask of points that are on another pixel than the preceding point or change the stroke."""
     c, r = np.rint(columns * 2), np.rint(rows * 2)
     keep = np.ones(len(c), dtype=np.bool_)
     keep[1:-1] = (c[1:-1] != c[:-2]) | (r[1:-1] != r[:-2]) | (stroke[1:-1] != stroke[2:])
@@ -119,7 +122,7 @@ def _telling(columns: Floats, rows: Floats, stroke: npt.NDArray[np.uint8]) -> np
 
 
 def _outside(columns: Floats, rows: Floats, projection: Projection) -> npt.NDArray[np.bool_]:
-    """Chords with both ends beyond the same edge."""
+    """Return a mask of the chords with both ends outside the same edge."""
     out = np.zeros(max(0, len(columns) - 1), dtype=np.bool_)
     for beyond in (columns < 0, columns > projection.width, rows < 0, rows > projection.height):
         out |= beyond[1:] & beyond[:-1]
@@ -127,12 +130,15 @@ def _outside(columns: Floats, rows: Floats, projection: Projection) -> npt.NDArr
 
 
 def travelled(polyline: Polyline, projection: Projection, block: int, z: float, x: float) -> Run | None:
-    """What of a block lies behind the tip at (z, x): its points up to the nearest chord, then the tip."""
+    """Return the finished part of a block, or None if nothing is drawn.
+
+    The part consists of the points of the block up to the tip at (z, x).
+    """
     if not 1 <= block <= polyline.blocks:
         return None
     start, end = int(polyline.first[block - 1]), int(polyline.first[block])
     if start < end and polyline.stroke[start] == 0:
-        start += 1  # a jump to another tool's tip
+        start += 1  # a jump to the tip of another tool
     if start >= end or start == 0:
         return None
     zs, xs = polyline.z[start - 1 : end], polyline.x[start - 1 : end]
@@ -143,7 +149,7 @@ def travelled(polyline: Polyline, projection: Projection, block: int, z: float, 
 
 
 def _nearest_chord(zs: Floats, xs: Floats, z: float, x: float) -> int:
-    """Index of the chord that comes nearest to a point."""
+    """Return the index of the chord nearest to a point."""
     dz, dx = np.diff(zs), np.diff(xs)
     size = np.maximum(dz * dz + dx * dx, 1e-18)
     share = np.clip(((z - zs[:-1]) * dz + (x - xs[:-1]) * dx) / size, 0.0, 1.0)
@@ -152,7 +158,7 @@ def _nearest_chord(zs: Floats, xs: Floats, z: float, x: float) -> int:
 
 
 def scale_length(most: float, metric: bool) -> tuple[float, str]:
-    """The longest round length up to ``most`` mm, and how it is written in the unit in force."""
+    """Return the longest round length up to ``most`` mm, and its text in the unit in force."""
     unit, name = (1.0, "mm") if metric else (25.4, "in")
     decade = 10.0 ** np.floor(np.log10(max(most / unit, 1e-9)))
     step = max((k for k in (1.0, 2.0, 5.0) if k * decade <= most / unit * (1 + 1e-9)), default=1.0)
@@ -160,7 +166,7 @@ def scale_length(most: float, metric: bool) -> tuple[float, str]:
 
 
 class Ends(NamedTuple):
-    """Where chords begin and end: columns and rows, pixels."""
+    """Starts and ends of chords as columns and rows, in pixels."""
 
     c0: Floats
     r0: Floats
@@ -169,7 +175,10 @@ class Ends(NamedTuple):
 
 
 def clipped(ends: Ends, right: int, bottom: int) -> tuple[Ends, npt.NDArray[np.bool_]]:
-    """The parts of chords within 0…right, 0…bottom, and which chords have one (Liang and Barsky)."""
+    """Return the parts of chords within (0, 0) to (right, bottom), and a mask of the visible chords.
+
+    The method is Liang–Barsky line clipping.
+    """
     dc, dr = ends.c1 - ends.c0, ends.r1 - ends.r0
     enter, leave = np.zeros(len(dc)), np.ones(len(dc))
     inside = np.ones(len(dc), dtype=np.bool_)
@@ -185,7 +194,7 @@ def clipped(ends: Ends, right: int, bottom: int) -> tuple[Ends, npt.NDArray[np.b
 
 
 def stepped(ends: Ends) -> tuple[Indices, Indices, Indices]:
-    """Column, row and number of the chord of every pixel of all chords, in their order."""
+    """Return column, row and chord index of every pixel of all chords, in chord order."""
     dc, dr = ends.c1 - ends.c0, ends.r1 - ends.r0
     steps = np.ceil(np.maximum(np.abs(dc), np.abs(dr))).astype(np.int64)
     count = steps + 1
@@ -197,27 +206,30 @@ def stepped(ends: Ends) -> tuple[Indices, Indices, Indices]:
     return column, row, which
 
 
-_METAL = 1e-4  # mm; less is no metal
-_FINE = 4.0  # parts of a pixel that rows are told apart by
-_BEYOND = 40.0  # pixels beyond the frame that are drawn
+_METAL = 1e-4  # mm; thinner material is ignored
+_FINE = 4.0  # row resolution, in fractions of a pixel
+_BEYOND = 40.0  # pixels outside the frame that are still drawn
 
 
 class Line(NamedTuple):
-    """Points in pixels (n,)."""
+    """Points in pixels. Both arrays have the shape (n,)."""
 
     columns: Floats
     rows: Floats
 
 
 class Metal(NamedTuple):
-    """One piece of a section: what to fill, and the edges of it that are lines of the drawing."""
+    """One area of a section, with the edges that are drawn as lines."""
 
     area: Line
     edges: tuple[Line, ...]
 
 
 def metal_of(half: Half, projection: Projection, *, far: bool) -> list[Metal]:
-    """The metal of one side of the section; ``far``: of that beyond the axis, which is the upper one."""
+    """Return the material of one half of the section.
+
+    ``far`` selects the upper half, beyond the axis.
+    """
     first, last = _seen(half.edges, projection)
     found = []
     edges = half.edges[first : last + 1]
@@ -229,7 +241,7 @@ def metal_of(half: Half, projection: Projection, *, far: bool) -> list[Metal]:
 
 
 def hit_areas(hit: Hit, projection: Projection) -> list[Line]:
-    """What was met where nothing may be met, on both sides of the axis."""
+    """Return the areas of a collision on both sides of the axis."""
     gaps = np.flatnonzero(np.diff(hit.z) > 1.5 * hit.wide) + 1
     found = []
     for run in np.split(np.arange(len(hit.z)), gaps):
@@ -242,7 +254,7 @@ def hit_areas(hit: Hit, projection: Projection) -> list[Line]:
 
 
 def stock_outline(stock: Stock, projection: Projection) -> list[Line]:
-    """The stock before the first cut."""
+    """Return the outline of the stock before the first cut."""
     found = []
     for profile in (stock.outside, stock.bore):
         if profile:
@@ -255,7 +267,7 @@ def stock_outline(stock: Stock, projection: Projection) -> list[Line]:
 
 
 def clamping_areas(clamping: Clamping, stock: Stock, projection: Projection) -> list[Line]:
-    """Chuck or collet on both sides of what it holds, and the tailstock's centre."""
+    """Return the areas of the chuck or collet on both sides, and of the tailstock center."""
     found: list[Line] = []
     if clamping.diameter:
         held = clamping.around(stock)
@@ -285,7 +297,7 @@ def _piece(edges: Floats, low: Floats, high: Floats, projection: Projection, sid
 
 
 def _spread(wanted: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
-    """With the neighbours on both sides."""
+    """Return the mask extended by one element on both sides."""
     wider = wanted.copy()
     wider[1:] |= wanted[:-1]
     wider[:-1] |= wanted[1:]
@@ -305,7 +317,7 @@ def _ring(there: Line, back: Line) -> Line:
 
 
 def _thinned(line: Line) -> Line:
-    """Without the points that lie level between level neighbours, and those that fall on one pixel."""
+    """Return the line without points on straight level runs and without points on the same pixel."""
     c, r = np.rint(line.columns * 2.0), np.rint(line.rows * _FINE)
     keep = np.ones(len(c), dtype=np.bool_)
     keep[1:-1] = (r[1:-1] != r[:-2]) | (r[1:-1] != r[2:])
@@ -322,7 +334,7 @@ def _padded(r: Floats) -> Floats:
 
 
 def _seen(edges: Floats, projection: Projection) -> tuple[int, int]:
-    """The columns that are in the frame: the first, and behind the last."""
+    """Return the range of visible columns: the first, and the last plus one."""
     half = (projection.width / 2 + _BEYOND) / projection.scale
     first = int(np.searchsorted(edges, projection.z - half)) - 1
     last = int(np.searchsorted(edges, projection.z + half))

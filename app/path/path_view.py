@@ -1,8 +1,9 @@
-"""The path of a program as the operator sees it, wherever one is shown: run, editor, lists, offsets.
+"""Path of a program as shown on the run, editor, list and offset pages.
 
-From above X+ is down, Z+ to the right, both sides of X0; beside it what is cut with C locked, on the face of
-the part or on its side unrolled. Feed it with ``show_picture`` or ``show_compared``, tell ``show_tip`` where
-the machine is, and call ``advance`` once a frame. Nothing here computes but where things stand on the screen.
+The view from above has X+ down and Z+ to the right, with both sides of X0. Cuts with C locked are shown next
+to it, on the face or the unrolled side of the part. Set the content with ``show_picture`` or
+``show_compared``, set the machine position with ``show_tip``, and call ``advance`` once per frame. This
+module calculates only screen positions.
 """
 
 from __future__ import annotations
@@ -32,20 +33,20 @@ if TYPE_CHECKING:
     from app.path.polyline import Polyline
     from app.screen.page_base import KeyActions
 
-BAR = 6.8  # units under the part that are the time line's
+BAR = 6.8  # units: height of the time line below the part
 Picked = Callable[[int], None]
 
 
 class PathView(Panel):
-    """Panes side by side, each with its own zoom; keys act on the first, fingers on the one they touch.
+    """Panes side by side, each with its own zoom. Keys act on the first pane, touches on the touched pane.
 
-    ``picked`` is called with the block (from 1) whose line was touched. While measuring the view has the
-    keyboard; keys that mean nothing there go on to the window.
+    ``picked`` is called with the number of the touched block, counted from 1. While measuring, the view has
+    the keyboard focus and passes unused keys to the window.
     """
 
     part_name = "PATH"
     title = "PATH"
-    keeps = False  # whether what is looked at by hand stays when the picture changes
+    keeps = False  # whether adjusted projections remain when the picture changes
 
     def __init__(
         self,
@@ -56,91 +57,92 @@ class PathView(Panel):
     ) -> None:
         super().__init__(look, parent)
         self._picked = picked
-        self.player = player  # of the part; without one it is not shown here
-        self.stock: Press | None = None  # where the stock is said; None: not from here
-        self._bar: PartBar | None = None  # the time line, once the part was shown
-        self._set: Panes | None = None  # comes with the first picture, and what draws it with it
-        self._tip: Tip | None = None  # not drawn before somebody tells it
-        self.legs: tuple[DrawnLeg, ...] = ()  # of an approach
-        self.ruler: Measure | None = None  # what one measures with; None while one does not
+        self.player = player  # player of the part; without a player, the part is not shown
+        # opens the entry of the stock; None if it cannot be opened from this view
+        self.stock: Press | None = None
+        self._bar: PartBar | None = None  # the time line, created when the part is first shown
+        self._set: Panes | None = None  # created with the first picture
+        self._tip: Tip | None = None  # not drawn until the first position is set
+        self.legs: tuple[DrawnLeg, ...] = ()  # legs of an approach
+        self.ruler: Measure | None = None  # None while the user does not measure
         self._pointer = Pointer(look, self._pressed, self._hovers, self._dragged, self._touched, self.magnify)
         self.setAttribute(Qt.WidgetAttribute.WA_AcceptTouchEvents)
 
     @property
     def panes(self) -> Sequence[Pane]:
-        """What is side by side now."""
+        """Visible panes, from left to right."""
         return self._set.now if self._set is not None else ()
 
     @property
     def view(self) -> Projection | None:
-        """What is looked at in the first pane."""
+        """Projection of the first pane, or None without a pane."""
         return self.panes[0].projection if self.panes else None
 
     @property
     def several(self) -> bool:
-        """Whether there is another choice of panes."""
+        """Whether more than one view exists."""
         return self._set is not None and self._set.several
 
     @property
     def comparing(self) -> bool:
-        """Whether two pictures are shown."""
+        """Whether two pictures are compared."""
         return self._set is not None and self._set.before is not None
 
     @property
     def picture(self) -> Picture | None:
-        """The picture that is shown; None while there is none."""
+        """Displayed picture, or None if nothing is displayed."""
         return self._set.picture if self._set is not None else None
 
     @property
     def shows_part(self) -> bool:
-        """Whether the part is what is looked at."""
+        """Whether a view of the part is displayed."""
         return any(pane.aspect in OF_PART for pane in self.panes)
 
     @property
     def drawn(self) -> bool:
-        """Whether there is anything to look at."""
+        """Whether the picture contains any path."""
         return self.picture is not None and len(self.picture.z) > 0
 
     @property
     def in_mm(self) -> bool:
-        """The unit of the program."""
+        """Whether the program uses millimeters."""
         return self.picture is not None and self.picture.metric
 
-    # --- what is shown -------------------------------------------------------------------------------
+    # --- content -------------------------------------------------------------------------------------
 
     def show_picture(self, picture: Picture | None) -> None:
-        """Another program's path, or none."""
+        """Show the path of another program, or no path."""
         self._show(picture, None)
 
     def show_compared(self, before: Picture | None, after: Picture | None) -> None:
-        """One program before and after a change, both on one view with a legend; no tip, nothing done.
+        """Show one program before and after a change in one view with a legend, without tip and progress.
 
-        With ``after`` None there is nothing to show, with ``before`` None ``after`` is shown alone.
+        If ``after`` is None, nothing is shown. If ``before`` is None, only ``after`` is shown.
         """
         self._show(after, before)
 
     def show_approach(self, legs: Sequence[DrawnLeg] | None) -> None:
-        """The approach back into the program, over its path; the first leg is where the tool stands."""
+        """Show the approach over the path. The first leg is the present tool position."""
         if tuple(legs or ()) != self.legs:
             self.legs = tuple(legs or ())
             self._include()
             self.update()
 
     def show_tip(self, tip: Tip) -> None:
-        """Where the run is now."""
+        """Show the tool tip and the progress of the run."""
         if tip != self._tip:
             self._tip = tip
             self._show_tool()
             self.update()
 
     def mark(self, blocks: list[tuple[int, int]]) -> None:
-        """Draw blocks thick: ranges of numbers from 1, the last one in them."""
+        """Draw blocks as thick lines. Each range is (first, last), inclusive, counted from 1."""
         for pane in self.panes:
             pane.mark(blocks)
         self.update()
 
     def advance(self) -> None:
-        """Once a frame: draw on what is not drawn yet, for a few milliseconds at most."""
+        """Draw the missing parts for a few milliseconds at most; called once per frame."""
         if self._set is not None and self._set.advance():
             self.update()
 
@@ -157,7 +159,7 @@ class PathView(Panel):
             self.player.show(picture if before is None else None)
         self._set.show(picture, before)
         if self.ruler is not None and self.ruler.pane in self.panes:
-            self.ruler.renew()  # what is held stays where it is
+            self.ruler.renew()  # the measured points remain
         else:
             self.measure(on=False)
         self._lay_out()
@@ -184,7 +186,7 @@ class PathView(Panel):
         self.update()
 
     def _include(self) -> None:
-        """The approach is seen whole."""
+        """Include the whole approach in the visible area."""
         for pane in self.panes:
             if pane.aspect is Aspect.PATH:
                 pane.include([(leg.z, leg.x) for leg in self.legs])
@@ -195,35 +197,35 @@ class PathView(Panel):
                 pane.stand(self._tip.block, self._place_in(pane, self._tip), self._tip.stood)
 
     def _place_in(self, pane: Pane, tip: Tip) -> Place | None:
-        """Where the tip is seen in a pane."""
+        """Return the position of the tip in a pane."""
         return pane.place_of(tip)
 
     def fit(self) -> None:
-        """The whole part, in every pane."""
+        """Show the whole path in every pane."""
         for pane in self.panes:
             pane.fit()
         self.update()
 
     def restart(self) -> None:
-        """The same again, in other colours."""
+        """Draw the same view again, with new colors."""
         for pane in self.panes:
             pane.restart()
         self.update()
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """Another size: the whole part again."""
+        """Show the whole path after a change of size."""
         self._lay_out()
 
     def room(self) -> QRectF:
-        """The view within its frame; the panes share what the column of buttons leaves of it."""
+        """Return the area inside the frame. The panes use the area that the buttons leave free."""
         u = self.look.u
         bar = BAR if self.shows_part else 0.0
         return self.area().adjusted(0.2 * u, 1.2 * u, -0.2 * u, -(0.2 + bar) * u).toRect().toRectF()
 
-    # --- looking around ------------------------------------------------------------------------------
+    # --- navigation ----------------------------------------------------------------------------------
 
     def next_view(self) -> None:
-        """Another choice of panes, where the program gives one."""
+        """Switch to the next view if there are several."""
         if self._set is not None and self.several:
             measuring = self.ruler is not None
             self.measure(on=False)
@@ -232,34 +234,34 @@ class PathView(Panel):
             self.measure(on=measuring)
 
     def show_part(self) -> None:
-        """The part, where there is one to be shown."""
+        """Switch to a view of the part if one exists."""
         for _ in range(self._set.choices if self._set is not None else 0):
             if not self.shows_part:
                 self.next_view()
 
     def zoom(self, steps: int, at: QPointF | None = None) -> None:
-        """Nearer (positive) or farther, about a point of the widget or about the middle."""
+        """Zoom in (positive steps) or out, around a widget position or the middle."""
         pane = self.pane_at(at)
         if pane is not None:
             pane.zoom(steps, at)
             self.update()
 
     def magnify(self, factor: float, at: QPointF) -> None:
-        """Nearer by a factor about a point of the widget."""
+        """Magnify by a factor around a widget position."""
         pane = self.pane_at(at)
         if pane is not None:
             pane.magnify(factor, at)
             self.update()
 
     def pan(self, across: int, down: int) -> None:
-        """Look further right and down by so many steps."""
+        """Move the visible area to the right and down by a number of steps."""
         pane = self.pane_at(None)
         if pane is not None:
             pane.pan(across, down)
             self.update()
 
     def look_keys(self) -> KeyActions:
-        """Zoom and pan by keys, as on the Automatic page."""
+        """Return the actions of the zoom and pan keys, as on the Automatic page."""
         return {
             "Zoom in": partial(self.zoom, 1),
             "Zoom out": partial(self.zoom, -1),
@@ -270,7 +272,7 @@ class PathView(Panel):
         }
 
     def play_keys(self) -> KeyActions:
-        """Keys of the time line; none where no part is made."""
+        """Return the actions of the time line keys; empty without a player."""
         player = self.player
         if player is None:
             return {}
@@ -282,7 +284,7 @@ class PathView(Panel):
         }
 
     def pane_at(self, at: QPointF | None) -> Pane | None:
-        """The pane under a point, or else the one that is measured in, or the first."""
+        """Return the pane at a position, or else the pane of the measurement, or the first pane."""
         found = self._set.at(at) if self._set is not None and at is not None else None
         if found is None:
             found = self.ruler.pane if self.ruler is not None else next(iter(self.panes), None)
@@ -291,7 +293,7 @@ class PathView(Panel):
     # --- measuring and picking -----------------------------------------------------------------------
 
     def measure(self, *, on: bool | None = None) -> None:
-        """Begin to measure in the last pane, or end it; None: the other way round."""
+        """Start or stop measuring in the last pane. None toggles."""
         if on is None:
             on = self.ruler is None
         if on and self.drawn and self.view is not None:
@@ -313,7 +315,7 @@ class PathView(Panel):
         return ruler
 
     def _pressed(self, at: QPointF) -> Pane | PartBar | None:
-        """On the time line or a pane, unless it is on a button of the view."""
+        """Return the time line or pane at a position, or None if the press was on a button."""
         if self.touch(at):
             return None
         if self._bar is not None and self.shows_part and self._bar.takes(at):
@@ -330,7 +332,7 @@ class PathView(Panel):
         self.update()
 
     def _touched(self, pane: Pane | PartBar, at: QPointF) -> None:
-        """A point to measure from, or the block that is drawn there."""
+        """Measure from the touched point, or select the block that is drawn there."""
         from app.path.path_pane_view import Pane
 
         if not isinstance(pane, Pane):
@@ -348,45 +350,45 @@ class PathView(Panel):
     # --- Qt's calls ----------------------------------------------------------------------------------
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
-        """Keys of measuring; all others are the window's."""
+        """Handle the keys of measuring, and pass all other keys to the window."""
         if self.ruler is not None and self.ruler.key(event):
             self.update()
         else:
             event.ignore()
 
     def focusNextPrevChild(self, _next: bool) -> bool:
-        """Tab is a key of measuring."""
+        """Disable focus changes with Tab, because Tab is a key of measuring."""
         return False
 
     def focusOutEvent(self, event: QFocusEvent) -> None:
-        """Another field has the keyboard: measuring is over. Another window: it waits."""
+        """Stop measuring when another widget gets the focus, but not when another window does."""
         if event.reason() is not Qt.FocusReason.ActiveWindowFocusReason:
             self.measure(on=False)
 
     def event(self, event: QEvent) -> bool:
-        """Fingers; everything else goes its usual way."""
+        """Handle touch events, and pass all other events to the base class."""
         return self._pointer.takes(event) or super().event(event)
 
     def wheelEvent(self, event: QWheelEvent) -> None:
-        """The wheel zooms about the pointer."""
+        """Zoom around the pointer with the wheel."""
         self.zoom(1 if event.angleDelta().y() > 0 else -1, event.position())
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
-        """A button of the view, or the start of a drag."""
+        """Press a button of the view, or start a drag."""
         self._pointer.press(event.position())
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
-        """A drag moves the picture along."""
+        """Move the picture during a drag."""
         self._pointer.move(event.position())
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
-        """A drag ends, or a touch that has not moved means a point."""
+        """End a drag, or handle a touch if the pointer did not move."""
         self._pointer.release(event.position())
 
     # --- drawing -------------------------------------------------------------------------------------
 
     def draw(self, painter: QPainter) -> None:
-        """Panes, title, buttons, legend; a sentence where there is nothing."""
+        """Draw panes, title, buttons and legend, or a sentence without a picture."""
         from app.path import path_marks_view as marks
 
         look, panes = self.look, self.panes
@@ -398,7 +400,7 @@ class PathView(Panel):
             self._draw_pane(painter, pane)
         if (
             self.ruler is not None and self.ruler.pane.aspect not in IN_SPACE
-        ):  # beside what is measured, where there is another pane
+        ):  # The table is drawn in another pane if there is one.
             beside = next((pane for pane in panes if pane is not self.ruler.pane), self.ruler.pane)
             self.ruler.draw_figures(painter, beside.room, self.in_mm)
         self._draw_title(painter)
@@ -413,7 +415,7 @@ class PathView(Panel):
             marks.draw_words(painter, look, panes[0].room, marks.apart_words(apart, self.in_mm))
 
     def _draw_bar(self, painter: QPainter) -> None:
-        """The time line of the part."""
+        """Draw the time line of the part."""
         from app.path.part_bar_view import PartBar
 
         assert self.player is not None
@@ -456,11 +458,12 @@ class PathView(Panel):
             Button(tr("MEAS"), self.measure, self.ruler is not None),
         ]
         if self.several:
-            found.insert(2, Button(tr("VIEW"), self.next_view))  # a low pane has no room for all
+            # A low pane does not have room for all buttons.
+            found.insert(2, Button(tr("VIEW"), self.next_view))
         return found
 
     def _draw_title(self, painter: QPainter) -> None:
-        """Again: the panes have covered the lower half of it."""
+        """Draw the title again, because the panes have covered its lower half."""
         look, u = self.look, self.look.u
         wide = self.width() - 4 * u
         painter.setFont(look.fit(self.title, 1.7, wide, bold=True))

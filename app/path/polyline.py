@@ -1,4 +1,4 @@
-"""One view of a program as a polyline, and what collects it point by point."""
+"""One view of a program as a polyline, and the builder that collects its points."""
 
 from __future__ import annotations
 
@@ -21,23 +21,23 @@ SAME = 1e-7  # mm
 
 
 class Stroke(IntEnum):
-    """What the chord that ends in a point is; ``TURN`` strokes cut both sides of X0."""
+    """Kind of the chord that ends in a point. ``TURN`` strokes cut on both sides of X0."""
 
-    JUMP = 0  # another tool's tip: nothing is drawn
+    JUMP = 0  # change to the tip of another tool, not drawn
     RAPID = 1
     TURN = 2
-    MILL = 3  # fed with the spindle standing
+    MILL = 3  # feed with the spindle stopped
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Polyline:
-    """Points ``z x`` (p,) with the stroke that ends in each; block n ends with point ``first[n] - 1``.
+    """Points ``z``, ``x`` (p,) with the stroke that ends in each. Block n ends with point ``first[n] - 1``.
 
-    ``z`` goes to the right and ``x`` downwards, mm: Z and X seen from above; on the face of the part its own
-    X and minus its Y; on the unrolled side Z and minus the way round. ``first`` is (blocks + 1,). ``bounds``
-    (least z, greatest z, least x, greatest x) of what is cut, or of everything when nothing is. ``centres``
-    (arcs, 2) are z and x of the middles of arcs. ``round`` is how many mm of ``x`` are a degree of C, 0 where
-    ``x`` is no way round.
+    ``z`` is to the right and ``x`` is down, in mm. Seen from above, they are Z and X. On the face they are
+    face X and minus face Y. On the unrolled side they are Z and minus the circumferential length. ``first``
+    has the shape (blocks + 1,). ``bounds`` is (minimum z, maximum z, minimum x, maximum x) of all cuts, or of
+    all points without cuts. ``centres`` (arcs, 2) contains z and x of arc centers. ``round`` is the length of
+    ``x`` in mm per degree of C, or 0 if ``x`` is not a circumferential length.
     """
 
     z: Floats
@@ -50,20 +50,20 @@ class Polyline:
 
     @property
     def blocks(self) -> int:
-        """How many elementary blocks it was made of."""
+        """Number of elementary blocks."""
         return len(self.first) - 1
 
     def points_done(self, blocks: int) -> int:
-        """How many points are behind when so many blocks are."""
+        """Return the number of points of the first ``blocks`` blocks."""
         return int(self.first[max(0, min(blocks, self.blocks))])
 
     def block_of_point(self, point: int) -> int:
-        """The number of the block, from 1, that the chord which ends in a point (from 0) belongs to."""
+        """Return the number of the block, from 1, that contains the chord ending in a point (from 0)."""
         return int(np.searchsorted(self.first, point, side="right"))
 
 
 class PolylineBuilder:
-    """Draws a polyline: ``to`` as often as a block needs it, then ``end_block``."""
+    """Builds a polyline: call ``to`` for each point of a block, then ``end_block``."""
 
     def __init__(self, blocks: int = 0) -> None:
         self.z, self.x, self.stroke = array("d"), array("d"), array("B")
@@ -71,19 +71,19 @@ class PolylineBuilder:
         self.centres = array("d")
 
     def start(self, z: float, x: float) -> None:
-        """Be at a point, by a jump where the pencil is elsewhere."""
+        """Set the start point, with a jump if the last point differs."""
         if self.z and abs(self.z[-1] - z) < SAME and abs(self.x[-1] - x) < SAME:
             return
         self.to(z, x, Stroke.JUMP)
 
     def to(self, z: float, x: float, stroke: int) -> None:
-        """Draw on to a point."""
+        """Append a point with its stroke."""
         self.z.append(z)
         self.x.append(x)
         self.stroke.append(stroke)
 
     def row(self, z: Floats, x: Floats, stroke: int) -> None:
-        """Draw on from point to point, each the end of a block of its own."""
+        """Append points, each of which ends a separate block."""
         first = len(self.z)
         self.z.frombytes(z.tobytes())
         self.x.frombytes(x.tobytes())
@@ -91,11 +91,11 @@ class PolylineBuilder:
         self.first.frombytes(np.arange(first + 1, first + 1 + len(z)).tobytes())
 
     def end_block(self) -> None:
-        """What was drawn since the last call was one block."""
+        """End a block that contains all points since the last call."""
         self.first.append(len(self.z))
 
     def arrays(self) -> tuple[Floats, Floats, npt.NDArray[np.uint8], npt.NDArray[np.int64]]:
-        """``z``, ``x``, ``stroke`` and ``first`` of a polyline."""
+        """Return ``z``, ``x``, ``stroke`` and ``first`` of the polyline."""
         return (
             np.array(self.z),
             np.array(self.x),
@@ -105,12 +105,12 @@ class PolylineBuilder:
 
 
 def bounds_of(z: Floats, x: Floats, stroke: npt.NDArray[np.uint8]) -> Bounds:
-    """The box round what is cut, or round everything when nothing is."""
+    """Return the bounding box of all cuts, or of all points without cuts."""
     if not len(z):
         return 0.0, 0.0, 0.0, 0.0
     cut = np.flatnonzero(stroke >= Stroke.TURN)
     if len(cut):
-        # A stroke's start is the point before it.
+        # A stroke starts at the preceding point.
         index = np.concatenate((cut, np.maximum(cut - 1, 0)))
         z, x = z[index], x[index]
     return float(z.min()), float(z.max()), float(x.min()), float(x.max())
@@ -119,13 +119,13 @@ def bounds_of(z: Floats, x: Floats, stroke: npt.NDArray[np.uint8]) -> Bounds:
 # --- arcs as chords -----------------------------------------------------------------------------------
 
 
-CHORD_ERROR = 0.004  # mm: half a pixel at 125 pixels to the millimetre
-TURN_STEP = 4.0  # degrees of C from point to point where the slides go along with it
-MOST = 720  # points of one turning way
+CHORD_ERROR = 0.004  # mm; half a pixel at 125 pixels per millimeter
+TURN_STEP = 4.0  # degrees of C between two points of a combined move
+MOST = 720  # maximum number of points of one turning move
 
 
 def arc_pieces(radius: float, sweep: float) -> int:
-    """Into how many chords an arc falls so that none leaves it by more than CHORD_ERROR."""
+    """Return the number of chords of an arc that deviate from it by ``CHORD_ERROR`` at most."""
     if radius <= CHORD_ERROR:
         return 4
     step = 2 * math.acos(1 - CHORD_ERROR / radius)
@@ -133,12 +133,15 @@ def arc_pieces(radius: float, sweep: float) -> int:
 
 
 def turn_pieces(degrees: float) -> int:
-    """Into how many chords a way falls along which C turns so far."""
+    """Return the number of chords of a move during which C turns by ``degrees``."""
     return max(1, min(MOST, math.ceil(abs(degrees) / TURN_STEP)))
 
 
 def mill_way(move: PlaneMove, degrees: float) -> list[Spot]:
-    """Points of the mill's way in its own frame from behind the start to the end; ``degrees`` is C's turn."""
+    """Return the points of a mill move in the plane's frame, after the start up to the end.
+
+    ``degrees`` is the rotation of C during the move.
+    """
     if move.centre is None:
         pieces = turn_pieces(degrees)
         (x0, y0, z0), (x1, y1, z1) = move.start, move.end

@@ -1,1 +1,1 @@
-"""What is counted and kept while parts are made: tool lives, cycles and stops."""
+"""Production data: tool life, cycles and stops."""

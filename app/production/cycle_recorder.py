@@ -1,4 +1,4 @@
-"""Cycle times and stops of every part, out of the executor's events; a row a part, a row a stop."""
+"""Recorder of cycle times and stops from the executor's events, one row per part and per stop."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from core.store.production.part_cycles import CycleRecords, CycleRow, StopRow
 from core.store.store_rows import utc_now
 
 COMPLETE, UNCOUNTED, GIVEN_UP, RESTARTED = "COMPLETE", "NOT COUNTED", "GIVEN UP", "RESTARTED"
-BETWEEN = "BETWEEN CYCLES"  # nobody has started the next one
+BETWEEN = "BETWEEN CYCLES"  # the next cycle was not started
 _STANDS = frozenset({State.HOLD.value, State.BLOCK_END.value, State.PROGRAM_STOP.value})
 _GOES = frozenset({State.RUN.value, State.WAIT.value, State.HOLDING.value})
 _BROKEN = frozenset({State.FAULT.value, State.ESTOP.value})
@@ -19,7 +19,7 @@ _BROKEN = frozenset({State.FAULT.value, State.ESTOP.value})
 
 @dataclass(slots=True)
 class _Cycle:
-    """The part under way: its row, when it began, how long it has stood since."""
+    """Cycle of the present part: its row, its start time and its stopped time in seconds."""
 
     row: CycleRow
     began: float
@@ -31,14 +31,14 @@ class _Cycle:
 class _Stop:
     row: StopRow
     began: float
-    named: bool  # whether its reason is more than the name of the state
+    named: bool  # whether the reason is more specific than the name of the state
 
 
 class CycleRecorder:
-    """``hear`` is called for every event, in their order; it posts to the store and never waits.
+    """Recorder of cycles. ``hear`` receives every event in order and posts to the store without waiting.
 
-    Times of day are those of hearing, lengths those of the events. What broke a cycle off counts as its stop
-    until the next cycle is started.
+    Times of day are those of the call, and durations are those of the events. The reason that ends a cycle
+    counts as a stop until the next cycle starts.
     """
 
     def __init__(self, now: Callable[[], str] = utc_now) -> None:
@@ -46,11 +46,11 @@ class CycleRecorder:
         self._program = ""
         self._cycle: _Cycle | None = None
         self._stop: _Stop | None = None
-        self._reason = ""  # told before the machine stood
+        self._reason = ""  # reason that was reported before the machine stopped
         self._numbered = 0
 
     def hear(self, event: Event, cycles: CycleRecords) -> None:
-        """One event."""
+        """Update the present cycle and stop with one event of the executor."""
         if event.kind == "load":
             self._program = Path(event.text).name
         elif event.kind in {"start", "repeat"}:
@@ -65,13 +65,13 @@ class CycleRecorder:
         elif event.kind in {"part", "uncounted"}:
             self._end(event, cycles, COMPLETE if event.kind == "part" else UNCOUNTED)
         elif event.kind == "end":
-            self._end(event, cycles, GIVEN_UP)  # behind a part nothing is left to end
+            self._end(event, cycles, GIVEN_UP)  # no cycle is left to end after a part
             if self._stop is None or self._stop.row.cycle:
                 self._end_stop(event, cycles)
                 self._begin_stop(event, BETWEEN, named=True)
 
     def go_on(self, program: str, t: float, cycles: CycleRecords) -> None:
-        """Record the rest of a part that was begun before this process; it counts as restarted."""
+        """Record the rest of a part that was started before this process. It counts as restarted."""
         self._program = Path(program).name
         self._begin(Event(t, "start", program), cycles)
         assert self._cycle is not None
@@ -124,7 +124,7 @@ class CycleRecorder:
             self._end_stop(event, cycles)
 
     def _break(self, event: Event, cycles: CycleRecords) -> None:
-        """An alarm or the E-stop: the cycle is over, and production stands until the next start."""
+        """End the cycle after an alarm or E-stop. Production is stopped until the next start."""
         self._end(event, cycles, event.text)
         if self._stop is not None and self._stop.row.reason == BETWEEN:
             self._end_stop(event, cycles)
@@ -145,7 +145,7 @@ class CycleRecorder:
         cycles.record_stop(row)
 
     def _name(self, reason: str) -> None:
-        """The reason of the stop that stands, or of the one that is to come."""
+        """Set the reason of the present stop or of the next stop."""
         stop = self._stop
         if stop is None:
             self._reason = reason

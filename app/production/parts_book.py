@@ -1,4 +1,4 @@
-"""What is kept of production, as the desk sees it: tool lives, stops, data of features; and changes of it."""
+"""Production data as the pages see them: tool life, stops and data of optional features, with changes."""
 
 from __future__ import annotations
 
@@ -23,21 +23,24 @@ from core.store.store_rows import Kind
 NONE_KEPT = "MEASURED PARTS CANNOT BE SAVED: NO DATA STORE"
 Read = Callable[[Store, str], Any]
 """What an optional feature reads of the store for a program, on the worker. Raises StoreError."""
-NEWEST = 1000  # readings, cycles and stops that are looked at
+NEWEST = 1000  # maximum number of readings, cycles and stops
 
 
 @dataclass(frozen=True, slots=True)
 class Production:
-    """What is known of production: the lives of all tools, the newest stops, and what features have read."""
+    """Production data: tool life of all tools, the latest stops, and data of optional features."""
 
     program: str = ""
     lives: dict[int, LifeRow] = field(default_factory=dict)
-    stops: tuple[StopRow, ...] = ()  # of all programs, oldest first
-    more: Mapping[str, Any] = field(default_factory=dict)  # by the names of the features
+    stops: tuple[StopRow, ...] = ()  # stops of all programs, oldest first
+    more: Mapping[str, Any] = field(default_factory=dict)  # by the name of the feature
 
 
 def production(store: Store, program: str, tools: Kind, readers: Mapping[str, Read]) -> Production:
-    """What is kept now; ``tools`` is the table of this machine. Takes its time. Raises StoreError."""
+    """Return the stored production data. ``tools`` is the tool table of the machine.
+
+    The call reads the store and can take a while. Raises StoreError.
+    """
     more = {name: read(store, program) for name, read in readers.items()}
     with store.read() as connection:
         lives, stops = tool_lives.lives(connection, tools), part_cycles.stops(connection, None, NEWEST)
@@ -45,42 +48,44 @@ def production(store: Store, program: str, tools: Kind, readers: Mapping[str, Re
 
 
 def tools_of(machine_kind: str) -> Kind:
-    """The table of tools of a machine of this kind."""
+    """Return the kind of tool table for a kind of machine."""
     return Kind.MILL_TOOL if machine_kind == "mill" else Kind.TOOL
 
 
 @dataclass(slots=True)
 class PartsBook:
-    """``look`` is called once a frame; reading is a worker's, writing the store's. ``now`` is what is known.
+    """Access to stored production data. ``look`` is called once per frame, and ``now`` is the latest data.
 
-    Without ``store`` nothing is kept; ``away`` is why, ``locked`` says it where measured parts are shown.
+    A worker reads, and the store writes. Without ``store`` nothing is stored. ``away`` is the reason, and
+    ``locked`` is the message on the pages of measured parts.
     """
 
     store: Store | None = None
     away: str = ""
-    tools: Kind = Kind.TOOL  # the table of this machine's tools
+    tools: Kind = Kind.TOOL  # tool table of this machine
     now: Production = field(default_factory=Production)
-    access: Access = field(default_factory=Access)  # who changes, and whether he may
-    trouble: str = ""  # why the last reading or writing failed
-    loads: int = 0  # how often ``now`` was read
-    readers: dict[str, Read] = field(default_factory=dict)  # of optional features
+    access: Access = field(default_factory=Access)  # user and permissions for changes
+    trouble: str = ""  # reason for the last failure of reading or writing
+    loads: int = 0  # number of times that ``now`` was read
+    readers: dict[str, Read] = field(default_factory=dict)  # readers of optional features
     worker: Latest = field(default_factory=lambda: Latest("measured-parts"))
     _stale: bool = True
     _reading: bool = False
     _saving: list[tuple[Future[Any], Callable[[], None], Callable[[str], None]]] = field(default_factory=list)
-    _behind: Future[None] | None = None  # answered when the writer has come to here
-    _kept: list[Callable[[], None]] = field(default_factory=list)  # on the disk, and not read again yet
+    _behind: Future[None] | None = None  # done when the writer has processed all earlier changes
+    # callbacks for data that is on the disk but not read again yet
+    _kept: list[Callable[[], None]] = field(default_factory=list)
     _reopened: tuple[Store | None, str] | None = None
 
     @property
     def locked(self) -> str:
-        """Why no measured part is kept, in a sentence; empty where they are."""
+        """Reason why measured parts are not stored, or an empty string."""
         if self.store is not None:
             return ""
         return Message("MEASURED PARTS CANNOT BE SAVED: {away}", away=self.away) if self.away else NONE_KEPT
 
     def look(self, program: str) -> None:
-        """Take up what the worker has read and what is on the disk; read anew what has changed."""
+        """Process finished reading and writing, and read changed data again."""
         if self._reopened is not None:
             self.store, self.away = self._reopened
             self._reopened, self._behind, self._stale = None, None, True
@@ -95,7 +100,7 @@ class PartsBook:
             self.worker.ask(lambda _watch: work(), self._read, self._failed)
 
     def _written(self, store: Store) -> bool:
-        """Whether something is to be read anew, and the writer has come to what was posted before."""
+        """Return whether data must be read again and all earlier changes are written."""
         if self._stale and self._behind is None:
             self._stale = False
             try:
@@ -117,7 +122,7 @@ class PartsBook:
         self._tell_done()
 
     def _tell_done(self) -> None:
-        """What is on the disk is told when it is seen too."""
+        """Call the callbacks for changes that are on the disk and read again."""
         told, self._kept = self._kept, []
         for done in told:
             done()
@@ -136,17 +141,17 @@ class PartsBook:
                 failed(str(error))
 
     def refresh(self) -> None:
-        """Something was kept elsewhere."""
+        """Request a new reading because data was stored elsewhere."""
         self._stale = True
 
     @property
     def busy(self) -> bool:
-        """Whether something is on its way to the disk."""
+        """Whether changes are still being written."""
         return bool(self._saving or self._kept)
 
     @property
     def settled(self) -> bool:
-        """Whether ``now`` is what is kept: nothing is on its way to the disk or back."""
+        """Whether ``now`` equals the stored data, with nothing left to write or read."""
         return not (self.busy or self._stale or self._behind is not None or self._reading)
 
     def write(
@@ -157,9 +162,10 @@ class PartsBook:
         failed: Callable[[str], None],
         change: str = "",
     ) -> None:
-        """Have something kept; ``done`` is called by ``look`` when it is on the disk, else ``failed``.
+        """Store a change.
 
-        ``change`` is what the log says of it, where people say who they are.
+        A later ``look`` calls ``done`` once the change is on the disk, or ``failed`` with a reason.
+        ``change`` is the text for the change log, or empty for no entry.
         """
         why = (self.away or NONE_KEPT) if self.store is None else self.access.refusal(act)
         if self.store is None or why:
@@ -177,16 +183,16 @@ class PartsBook:
             failed(str(error))
 
     def keep_use(self, life: LifeRow) -> None:
-        """What an insert has made by now; written as soon as the disk takes it."""
+        """Store the use of a tool as soon as possible."""
         store = self.store
         if store is not None:
             use = (life.number, life.parts, life.seconds, self.tools)
             store.keep_latest(("life", str(life.number)), lambda c: tool_lives.set_use(c, *use))
 
     def reopen(self, store: Store | None, trouble: str) -> None:
-        """Another store is in the place of the one before. From any thread."""
+        """Replace the store; callable from any thread."""
         self._reopened = store, trouble
 
     def close(self) -> None:
-        """End the worker."""
+        """Stop the worker."""
         self.worker.close()

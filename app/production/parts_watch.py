@@ -1,4 +1,4 @@
-"""What the desk sees of tools and parts in every frame: counts, what is due, what stops parts."""
+"""Watch of tools and parts, updated each frame: tool life, due measurements and blocked parts."""
 
 from __future__ import annotations
 
@@ -17,18 +17,21 @@ from core.message import Message, join_messages
 
 
 class Plan(Protocol):
-    """What an optional feature has to say of the parts."""
+    """Plan of an optional feature for the next parts."""
 
     def bar(self, snapshot: Snapshot) -> str:
-        """Why no other part may begin; empty: it may."""
+        """Return the reason why the next part must not start, or an empty string."""
 
     def due(self) -> str:
-        """What the prompt line tells of it; empty: nothing."""
+        """Return the text for the prompt line, or an empty string."""
 
 
 @dataclass(slots=True)
 class PartsWatch:
-    """``see`` is called once a frame, ``due`` by the prompt line; both know only what is at hand."""
+    """Watch of production.
+
+    ``see`` is called once per frame, and ``due`` by the prompt line, without waiting.
+    """
 
     desk: Desk
     book: PartsBook
@@ -36,16 +39,16 @@ class PartsWatch:
     _ends: int = -1
     _changes: int = -1
     _store: object = None
-    _barred: str | None = None  # as the executor was told
-    plans: list[Plan] = field(default_factory=list)  # of optional features
+    _barred: str | None = None  # reason that was last sent to the executor
+    plans: list[Plan] = field(default_factory=list)  # plans of optional features
 
     @property
     def program(self) -> str:
-        """The name of the program on the desk."""
+        """Name of the loaded program."""
         return Path(self.desk.session.now.name).name
 
     def see(self, snapshot: Snapshot, loaded: Loaded) -> None:
-        """One frame."""
+        """Update production data, tool life and the lock of the next part. Called once per frame."""
         if snapshot.ends != self._ends or self.desk.book.changes != self._changes:
             self._ends, self._changes = snapshot.ends, self.desk.book.changes
             self.book.refresh()
@@ -57,7 +60,7 @@ class PartsWatch:
         self._bar(snapshot, loaded)
 
     def _bar(self, snapshot: Snapshot, loaded: Loaded) -> None:
-        """The executor is told before the part ends, so that the next one does not begin."""
+        """Send the lock reason to the executor before the part ends, so that the next part does not start."""
         tools = loaded.proof.tools if loaded.proof is not None else ()
         bars = (self.lives.bar(snapshot, tools), *(plan.bar(snapshot) for plan in self.plans))
         wanted = next(filter(None, bars), "")
@@ -66,14 +69,14 @@ class PartsWatch:
         self._barred = wanted
 
     def due(self) -> str:
-        """What the prompt line tells besides: what to measure, which insert to change; empty: nothing."""
+        """Return the due measurements and tool changes for the prompt line, or an empty string."""
         return join_messages(" · ", filter(None, (*(plan.due() for plan in self.plans), self.lives.due())))
 
     def refuse(self, why: str) -> None:
-        """What was not kept, and why."""
+        """Report the reason why data was not stored."""
         self.desk.say(tr(Message("NOT SAVED: {why}", why=why)))
 
     def close(self) -> None:
-        """End the worker; what inserts have cut since it was kept last is handed to the store."""
+        """Store the remaining tool use and stop the worker."""
         self.lives.keep_all()
         self.book.close()

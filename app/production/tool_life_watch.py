@@ -1,4 +1,4 @@
-"""Tool life while parts run: what each tool has cut is counted, told, and stops the next part when asked."""
+"""Tool life during production: counts the use of each tool, reports it and can block the next part."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from core.store.production import tool_lives
 from core.store.production.tool_lives import LifeRow
 from core.store.store_rows import Kind
 
-KEEP = 10.0  # s at feed after which the count is kept, so that a power cut loses no more
+KEEP = 10.0  # seconds at feed between two stored counts; a power failure loses no more
 
 
 def life_of(row: LifeRow) -> ToolLife:
-    """A kept life as it is reckoned with."""
+    """Return the tool life for a stored row."""
     return ToolLife(
         row.number, row.limit_parts, row.limit_seconds, row.parts, row.seconds, row.warn, row.stops
     )
@@ -28,25 +28,29 @@ def life_of(row: LifeRow) -> ToolLife:
 
 @dataclass(slots=True)
 class ToolLifeWatch:
-    """Looks at every snapshot. Counts are its own once the store has been read; limits are the store's.
+    """Watch of tool life. Counts are maintained here after the store was read, and limits are in the store.
 
-    What is said of an insert holds for a whole tool of a mill.
+    On a mill, the counts apply to a whole tool instead of an insert.
     """
 
     book: PartsBook
-    counted: dict[int, tuple[int, float]] = field(default_factory=dict)  # parts and seconds since the insert
-    _kept: dict[int, float] = field(default_factory=dict)  # seconds that are kept
-    _cut: Mapping[int, float] = field(default_factory=dict)  # of the last snapshot
-    _in_part: set[int] = field(default_factory=set)  # tools that have cut since the last end
+    # parts and seconds since the last change of insert
+    counted: dict[int, tuple[int, float]] = field(default_factory=dict)
+    _kept: dict[int, float] = field(default_factory=dict)  # stored seconds
+    _cut: Mapping[int, float] = field(default_factory=dict)  # cutting seconds of the last snapshot
+    _in_part: set[int] = field(default_factory=set)  # tools that have cut since the last end of a part
     _ends: int = -1
     _told: dict[int, LifeState] = field(default_factory=dict)
-    _changes: int = 0  # of ``counted``
+    _changes: int = 0  # number of changes of ``counted``
     _lives: tuple[object, dict[int, ToolLife]] = field(default=(None, {}))
     _due: tuple[object, str] = (None, "")
     _seen: object = None
 
     def lives(self) -> dict[int, ToolLife]:
-        """Of every tool that has a limit or has cut, as of now; the same object while nothing changes."""
+        """Return the tool life of all tools with a limit or use.
+
+        The same object is returned while nothing changes.
+        """
         of = (self.book.loads, self._changes)
         if self._lives[0] != of:
             self._lives = of, self._found()
@@ -62,11 +66,11 @@ class ToolLifeWatch:
         return found
 
     def see(self, snapshot: Snapshot, say: Callable[[str], None]) -> None:
-        """One frame: seconds at feed, ends of parts, and what is to be told."""
+        """Update the use of tools from a snapshot, and report tool life. Called once per frame."""
         if self._ends < 0:
             self._ends, self._cut = snapshot.ends, snapshot.cutting
         if not self.book.loads and self.book.store is not None:
-            return  # nothing is known of the days before yet; the snapshot's sums wait
+            return  # The stored counts are not known yet; the totals of the snapshot remain until then.
         for number, seconds in snapshot.cutting.items():
             more = seconds - self._cut.get(number, 0.0)
             if number and more > 0.0:
@@ -101,11 +105,11 @@ class ToolLifeWatch:
             self.book.keep_use(LifeRow(number, parts=parts, seconds=seconds))
 
     def keep_all(self) -> None:
-        """The desk shuts."""
+        """Store the use of all tools when TurnDesk closes."""
         self._keep({number for number in self.counted if self._unkept(number)})
 
     def _tell(self, say: Callable[[str], None]) -> None:
-        """Once when it is time to think of the next insert, once when it is spent."""
+        """Report once when a tool reaches its warning limit, and once when its life is used up."""
         if self._seen is self.lives():
             return
         self._seen = self.lives()
@@ -118,7 +122,7 @@ class ToolLifeWatch:
     # --- inserts -------------------------------------------------------------------------------------
 
     def change_insert(self, number: int, why: str, said: Callable[[str], None]) -> None:
-        """A fresh insert is in the holder: counting begins at nought. ``said`` is told what became of it."""
+        """Reset the use of a tool after a change of insert. ``said`` is called with the result."""
         parts, seconds = self.counted.get(number, (0, 0.0))
         known, who = number in self.counted, self.book.access.persistence.who()
 
@@ -140,7 +144,7 @@ class ToolLifeWatch:
         self.book.write(Act.INSERTS, operation, done, said)
 
     def set_used(self, number: int, seconds: float, said: Callable[[str], None]) -> None:
-        """A tool that has cut so long already is in the spindle; 0: a fresh one."""
+        """Set the cutting time of the tool in the spindle in seconds. 0 means a new tool."""
         life = self.lives().get(number)
         if seconds <= 0.0:
             self.change_insert(number, life.words if life is not None else "", said)
@@ -165,14 +169,14 @@ class ToolLifeWatch:
         )
 
     def forget(self) -> None:
-        """Another store is in place: its counts are those that count."""
+        """Discard the counts, because another store replaces the present one."""
         self.counted, self._kept = {}, {}
         self._changes += 1
 
-    # --- what is told and what it stops ------------------------------------------------------------------
+    # --- messages and lock -------------------------------------------------------------------------------
 
     def due(self) -> str:
-        """The tool whose life is nearest its end, where one is to be told of; empty while none is."""
+        """Return the message about the tool nearest its end of life, or an empty string."""
         lives = self.lives()
         if self._due[0] is not lives:
             told = [life for life in lives.values() if life.state in _WORTH_TELLING]
@@ -180,7 +184,7 @@ class ToolLifeWatch:
         return self._due[1]
 
     def bar(self, snapshot: Snapshot, tools: Collection[int]) -> str:
-        """Why no other part that uses these tools may begin; the part under way counts already."""
+        """Return the reason why no part with these tools may start, including the use by the present part."""
         for life in self._stopping(tools):
             after = replace(life, parts=life.parts + 1) if snapshot.counts else life
             if after.state is LifeState.SPENT:
@@ -195,14 +199,14 @@ _WORTH_TELLING = frozenset({LifeState.WARNED, LifeState.SPENT})
 
 
 def notice(life: ToolLife) -> str:
-    """What the operator reads of a life that ends."""
+    """Return the message about a tool life that is ending."""
     if life.state is LifeState.SPENT:
         return tr(Message("TOOL {number} LIFE USED UP: {words}", number=life.number, words=tr(life.words)))
     return tr(Message("TOOL {number} LIFE: {words} USED", number=life.number, words=tr(life.words)))
 
 
 def spent(life: ToolLife, tools: Kind) -> str:
-    """Why no part begins with it."""
+    """Return the reason why no part may start with this tool."""
     if tools is Kind.MILL_TOOL:
         how = "fit a new tool and set its CUR.TIME to 0 in the tool table (F8)"
         return Message(

@@ -1,1 +1,1 @@
-"""The page PROGRAMS: list, preview, copy, rename, delete, import and export of programs; model and view."""
+"""Page PROGRAMS: list, preview, copy, rename, delete, import and export; model and view."""

@@ -1,6 +1,6 @@
-"""Copying, renaming and deleting programs: a name is asked for, or whether it is meant.
+"""Copying, renaming and deleting programs, with a name entry or a confirmation.
 
-The files are changed on a worker, and nothing is ever overwritten.
+A worker changes the files, and no file is ever overwritten.
 """
 
 from __future__ import annotations
@@ -30,7 +30,10 @@ COPY, RENAME = "NAME FOR THE COPY?", "NEW NAME?"
 
 
 def checked_name(name: str, like: Path, takes: Takes = is_program) -> str:
-    """``name`` with the ending of ``like`` where it has none. Raises FileError for what names no program."""
+    """Return ``name``, with the extension of ``like`` if it has none.
+
+    Raises FileError for an invalid name.
+    """
     name = name.strip()
     if not name:
         raise FileError("TYPE A NAME FIRST")
@@ -46,13 +49,13 @@ def checked_name(name: str, like: Path, takes: Takes = is_program) -> str:
 
 
 def without_ending(name: str) -> str:
-    """The name to type on, as ``checked_name`` takes it; whole where what is left has an ending too."""
+    """Return the name without its extension, or the whole name if the rest ends in another extension."""
     left = Path(name).stem
     return name if Path(left).suffix.lower() in ENDINGS - {""} else left
 
 
 def same_name_in(folder: Path, name: str) -> str:
-    """The file of this name, in any case of letters; empty when there is none."""
+    """Return the name of the file that is equal except for case, or an empty string."""
     try:
         names = [path.name for path in folder.iterdir()]
     except OSError:
@@ -61,7 +64,7 @@ def same_name_in(folder: Path, name: str) -> str:
 
 
 def copy_program(source: Path, folder: Path, name: str, takes: Takes = is_program) -> str:
-    """A copy in the operator's folder; its name. Raises FileError."""
+    """Copy a program to the operator's folder and return its name. Raises FileError."""
     name = checked_name(name, source, takes)
     _free(folder, name)
     write_whole(folder / name, _read(source))
@@ -69,7 +72,10 @@ def copy_program(source: Path, folder: Path, name: str, takes: Takes = is_progra
 
 
 def rename_program(source: Path, name: str, persistence: Persistence, takes: Takes = is_program) -> str:
-    """Another name; versions, count and record go along. Raises FileError."""
+    """Rename a program together with its versions, count and record, and return the name.
+
+    Raises FileError.
+    """
     name = checked_name(name, source, takes)
     if name == source.name:
         raise FileError(Message("THE PROGRAM IS ALREADY NAMED {name}", name=name))
@@ -94,7 +100,10 @@ def rename_program(source: Path, name: str, persistence: Persistence, takes: Tak
 
 
 def delete_program(path: Path, persistence: Persistence) -> str:
-    """The file goes, its text stays as a version. Raises FileError, and then the file is still there."""
+    """Archive a program as a version and delete its file.
+
+    If FileError is raised, the file still exists.
+    """
     try:
         persistence.save_version(path.name, _read(path), "deleted")
         path.unlink()
@@ -123,7 +132,10 @@ def _read(path: Path) -> bytes:
 
 @dataclass(slots=True)
 class CopyRenameDelete:
-    """``here`` is the marked program; ``changed`` is told the name to mark when the list is read again."""
+    """Commands on the selected program.
+
+    ``changed`` is called with the name to select after the list was read again.
+    """
 
     desk: Desk
     own: Path
@@ -135,7 +147,7 @@ class CopyRenameDelete:
     entry: Entry = field(default_factory=lambda: Entry(words=True))
 
     def ask(self, question: str) -> None:
-        """Ask for the name of a copy, or for another name."""
+        """Ask for the name of a copy or the new name."""
         here = self.marked_program()
         if here is None:
             self.desk.say(NONE)
@@ -150,12 +162,12 @@ class CopyRenameDelete:
 
     @property
     def fixed(self) -> bool:
-        """Whether the marked program cannot be renamed or deleted now."""
+        """Whether the selected program cannot be renamed or deleted now."""
         here = self.marked_program()
         return here is None or bool(self._fixed(here))
 
     def _fixed(self, program: Program) -> str:
-        """Why a program stays as it is; empty when it may be changed."""
+        """Return the reason why a program cannot be changed, or an empty string."""
         if program.sample:
             return SAMPLE
         found = self.desk.snapshot().interrupted
@@ -168,13 +180,13 @@ class CopyRenameDelete:
         return ""
 
     def answer(self) -> None:
-        """Return: what was typed is the name."""
+        """Execute the command with the typed name."""
         here, name, question = self.marked_program(), self.entry.text, self.question
         takes = self.desk.programs.folders.takes
         if here is None:
             self.question = ""
         elif self.desk.refused(Act.PROGRAMS):
-            return  # what is typed stays until somebody has signed in
+            return  # The entry remains until an authorized user has signed in.
         elif question == COPY:
             self._change(lambda: copy_program(here.path, self.own, name, takes), "COPIED AS {name}")
         else:
@@ -183,7 +195,7 @@ class CopyRenameDelete:
             )
 
     def delete(self) -> None:
-        """The marked program, after asking; its text stays among the versions."""
+        """Delete the selected program after confirmation. Its text remains as a version."""
         here = self.marked_program()
         if here is None or self._fixed(here):
             self.desk.say(self._fixed(here) if here else NONE)
@@ -194,7 +206,7 @@ class CopyRenameDelete:
         self.desk.ask(tr(Message(asked, name=here.name)), lambda: self._delete(here))
 
     def _delete(self, program: Program) -> None:
-        if self._fixed(program):  # it was started meanwhile
+        if self._fixed(program):  # The program was started in the meantime.
             self.desk.say(self._fixed(program))
             return
         self._change(

@@ -1,4 +1,4 @@
-"""``FILE TO BE PROCESSED``: a name is typed, or picked from the list with arrows or a finger."""
+"""Prompt ``FILE TO BE PROCESSED``: a name is typed, or selected in the list by keys or touch."""
 
 from __future__ import annotations
 
@@ -21,7 +21,10 @@ ROW = 6.6  # units: a fingertip
 
 
 class FilePrompt(RowPanel):
-    """Asks for a program. Typing narrows the list; Return takes the exact name, else the marked row."""
+    """Prompt for a program.
+
+    Typing filters the list, and Enter uses the exact name or the selected row.
+    """
 
     title = ASK_FILE
     notch, centred = 1, True
@@ -38,7 +41,7 @@ class FilePrompt(RowPanel):
         self._shelf, self._choose, self._closed = program_folders, choose, closed
         self._entries: tuple[ListedProgram, ...] = ()
         self._row = 0
-        self._moved = False  # a row was marked by hand: it goes before what was typed
+        self._moved = False  # The user selected a row, which has priority over the typed name.
         self.not_found = False
         self.edit = QLineEdit(self)
         self.edit.setMaxLength(250)
@@ -50,22 +53,22 @@ class FilePrompt(RowPanel):
 
     @property
     def message(self) -> str:
-        """What it has to say about the name; empty while all is well."""
+        """Message about the name, or an empty string."""
         return NOT_FOUND if self.not_found else ""
 
     @property
     def wanted(self) -> str:
-        """What F3 edits: the row that was marked by hand, or else the name that was typed; empty: neither."""
+        """Program for F3: the row that the user selected, or the typed name, or an empty string."""
         if self._moved and self._entries:
             return str(self._entries[self._row].path)
         return self.edit.text().strip()
 
     def prompt(self) -> str:
-        """What the keyboard does here; Cycle Start is not offered, since its keys are text or dead."""
+        """Return the prompt. Cycle Start is not mentioned, because its keys are text here."""
         return NOT_FOUND if self.not_found else CHOOSE_FILE
 
     def ask(self) -> None:
-        """Come up empty, with the keyboard."""
+        """Show the empty prompt with the keyboard focus."""
         self.not_found = False
         self.edit.clear()
         self._narrow("")
@@ -74,13 +77,13 @@ class FilePrompt(RowPanel):
         self.edit.setFocus()
 
     def dismiss(self) -> None:
-        """Go, leaving the program that was there."""
+        """Close the prompt. The loaded program remains."""
         if self.isVisible():
             self.hide()
             self._closed()
 
     def eventFilter(self, _watched: QObject, event: QEvent) -> bool:
-        """Keys of the list and the two ends of the question; the rest is text."""
+        """Handle keys of the list, Enter and Esc. All other keys are text."""
         if isinstance(event, QKeyEvent) and event.type() == QEvent.Type.KeyPress:
             return self._key(event)
         return False
@@ -140,18 +143,18 @@ class FilePrompt(RowPanel):
     # --- drawing -------------------------------------------------------------------------------------
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """The line to type in keeps its place under the title."""
+        """Place the entry line below the title."""
         u = self.look.u
         self.edit.setGeometry(round(1.6 * u), round(2.8 * u), round(self.width() - 3.2 * u), round(4.8 * u))
         self.dress()
 
     def dress(self) -> None:
-        """Font and colours of the line to type in."""
+        """Apply font and colors to the entry line."""
         self.edit.setAccessibleName(tr(ASK_FILE))
         dress_line(self.edit, self.look, 2.6, 1.0)
 
     def scroll_by(self, rows: int) -> None:
-        """Move the mark."""
+        """Move the selection."""
         self._mark(self._row + rows)
 
     def draw(self, painter: Painter) -> None:

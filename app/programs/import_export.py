@@ -1,7 +1,7 @@
 """Import and export of programs by folder and USB stick.
 
-What is there already is replaced only when that was allowed, and its text is kept as a version first. A copy
-is told as done when it has been written, brought to the disk and read back.
+An existing program is replaced only with permission, and its text is archived as a version first. A copy is
+reported as done after it was written to the disk and verified.
 """
 
 from __future__ import annotations
@@ -27,19 +27,19 @@ from core.language.source import SourceError, load_source
 from core.message import Message
 from core.store.store_errors import StoreError
 
-LARGEST = 50_000_000  # bytes: no program is larger
+LARGEST = 50_000_000  # bytes; programs are smaller
 
-Told = Callable[[int, int], None]  # so many of so many are done
-Check = Callable[[Path], str]  # the first error that proving finds in a program; empty: none
+Told = Callable[[int, int], None]  # arguments: number of finished programs, total
+Check = Callable[[Path], str]  # returns the first error of a program, or an empty string
 PLACE_FIRST = "OPEN A LOCATION FIRST   ARROWS: SELECT   ENTER: OPEN"
 
 
-# --- the files, on a worker --------------------------------------------------------------------------------
+# --- file operations on a worker ---------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, slots=True)
 class Carried:
-    """What has come of it: names copied, names that stand there and differ, and what proving found."""
+    """Result of a transfer: copied names, existing names with different content, and errors of the proof."""
 
     done: tuple[str, ...] = ()
     differing: tuple[str, ...] = ()
@@ -56,9 +56,10 @@ def import_programs(
     is_drawing: Takes = lambda _name: False,
     told: Told = lambda _done, _of: None,
 ) -> Carried:
-    """Programs into the operator's folder, each proved, and drawings, read later. Raises FileError.
+    """Copy programs into the operator's folder and prove each of them. Drawings are only copied.
 
-    Nothing is written as long as one stands there that differs and ``replace`` is not allowed.
+    Nothing is written while a program with the same name and other content exists, unless ``replace`` is set.
+    Raises FileError.
     """
     texts = {
         checked_name(path.name, path, lambda name: is_program(name) or is_drawing(name)): (
@@ -88,9 +89,10 @@ def export_programs(
     medium: Medium | None = None,
     told: Told = lambda _done, _of: None,
 ) -> Carried:
-    """Programs to a folder or stick, whole and on the medium when this comes back. Raises FileError.
+    """Copy programs to a folder or stick, and return after they are written to the medium.
 
-    ``medium`` is what stood there when it was opened: without it, nothing is written.
+    ``medium`` is the medium at the time when the folder was opened. Another medium is rejected. Nothing is
+    written while a different program with the same name exists, unless ``replace`` is set. Raises FileError.
     """
     texts = {path.name: _bytes(path) for path in sources}
     medium = medium or Medium.of(folder)
@@ -112,7 +114,7 @@ def export_programs(
 
 @contextmanager
 def _on(medium: Medium, done: int, of: int) -> Iterator[None]:
-    """What goes wrong on a stick is told in the words of who holds it, with how many are on it."""
+    """Convert an error on a stick into a message for the operator, with the number of copied programs."""
     try:
         yield
     except FileError as error:
@@ -123,7 +125,7 @@ def _on(medium: Medium, done: int, of: int) -> Iterator[None]:
 
 
 def _program(path: Path) -> bytes:
-    """The text, read as a program first: what is none does not come in."""
+    """Return the bytes of a file that is a valid program text. Raises FileError otherwise."""
     data = _bytes(path)
     try:
         load_source(path)
@@ -150,7 +152,7 @@ def _bytes(path: Path) -> bytes:
 
 
 def _differing(texts: dict[str, bytes], folder: Path) -> tuple[str, ...]:
-    """The names that stand in the folder with another text."""
+    """Return the names of programs that exist in the folder with another text."""
     found = []
     for name, text in texts.items():
         other = same_name_in(folder, name)
@@ -174,12 +176,15 @@ def _keep_old(target: Path, persistence: Persistence, text: bytes) -> None:
         ) from error
 
 
-# --- the chooser of folders, and what came of it ----------------------------------------------------------
+# --- folder chooser and result ----------------------------------------------------------------------------
 
 
 @dataclass(slots=True)
 class ImportExport:
-    """``check`` proves a program that has come in; ``finished`` is told when the list is to be read again."""
+    """Import and export through a folder chooser.
+
+    ``check`` proves an imported program, and ``finished`` is called when the list must be read again.
+    """
 
     desk: Desk
     own: Path
@@ -190,11 +195,11 @@ class ImportExport:
     finished: Callable[[], None] = field(default=lambda: None)
     open: bool = False
     out: bool = False
-    all: tuple[Path, ...] = ()  # what the list shows
-    one: Path | None = None  # what is marked in it
-    _asked: tuple[Path, ...] = ()  # what is being carried
-    _at: Path = Path()  # and where
-    _done_of: tuple[int, int] = (0, 0)  # so many of so many are done, as the worker tells
+    all: tuple[Path, ...] = ()  # programs of the list
+    one: Path | None = None  # selected program of the list
+    _asked: tuple[Path, ...] = ()  # programs that are being copied
+    _at: Path = Path()  # target folder
+    _done_of: tuple[int, int] = (0, 0)  # finished and total programs, as reported by the worker
 
     def begin(self, shown: tuple[Path, ...], marked: Path | None, out: bool) -> None:
         """Open the chooser at the list of places."""
@@ -219,12 +224,12 @@ class ImportExport:
         self.worker.queue(self.chooser.look, self.chooser.show_lines, self.desk.say)
 
     def sheet(self) -> Sheet:
-        """The folder that is looked into."""
+        """Return the table of the open folder."""
         name = self.one.name if self.one else ""
         return chooser_sheet(self.chooser, Message("EXPORT {name}", name=name) if self.out else "IMPORT")
 
     def keys(self) -> Mapping[str, Key]:
-        """The function keys: copy one, copy all, look again."""
+        """Return the function keys for copying and refreshing."""
         if self.out:
             return {
                 "F2": Key("REFRESH", self._look),
@@ -234,7 +239,7 @@ class ImportExport:
         return {"F2": Key("REFRESH", self._look), "F5": Key("ALL", lambda: self._send(self.chooser.programs))}
 
     def typed(self, key: str) -> bool:
-        """Arrows mark, Return opens a folder or takes a program."""
+        """Handle a key: arrows select a line, and Enter opens a folder or imports a program."""
         if key in STEPS:
             self.choose(self.chooser.marked + STEPS[key])
         elif key == "Enter":
@@ -244,13 +249,13 @@ class ImportExport:
         return True
 
     def choose(self, row: int) -> None:
-        """Mark a line; on the marked one a finger is Return."""
+        """Select a line."""
         self._asked = ()
         self.desk.clear()
         self.chooser.marked = max(0, min(len(self.chooser.lines) - 1, row))
 
     def touch(self, row: int) -> None:
-        """A finger marks a line; on the marked one it is Return."""
+        """Select the touched line. A touch on the selected line acts like Enter."""
         if row == self.chooser.marked:
             self._enter()
         else:
@@ -275,7 +280,7 @@ class ImportExport:
             self._send((self.one,))
 
     def escape(self) -> None:
-        """Up to the list of places, then away."""
+        """Go back to the list of places, or close the chooser."""
         if self.chooser.at is None:
             self.shut()
         else:
@@ -298,7 +303,7 @@ class ImportExport:
             self.desk.say(BUSY)
             return
         if not self.out and self.desk.refused(Act.PROGRAMS):
-            return  # the level with which the chooser was opened may have ended
+            return  # The access level may have expired since the chooser was opened.
         self._asked = paths
         self._at = at
         self._done_of = (0, len(paths))
@@ -320,12 +325,15 @@ class ImportExport:
         self.worker.queue(partial(self._carried, work, self.chooser.medium), self._done, self._failed)
 
     def _count(self, done: int, of: int) -> None:
-        """From the worker: what the prompt line shows meanwhile."""
+        """Store the progress for the prompt line; called by the worker."""
         self._done_of = (done, of)
 
     @staticmethod
     def _carried(work: Callable[[], Carried], medium: Medium | None) -> Carried:
-        """On the worker: where the stick is not there any more, that is the reason. Raises FileError."""
+        """Run a transfer on the worker. A missing stick is reported as the cause of a failure.
+
+        Raises FileError.
+        """
         try:
             return work()
         except FileError:
@@ -372,7 +380,7 @@ class ImportExport:
         self.desk.refuse(why)
 
     def prompt(self) -> str:
-        """What the keys do here, for the prompt line."""
+        """Return the prompt, or the progress during a transfer."""
         done, of = self._done_of
         if of:
             words = tr("COPYING PROGRAM {number} OF {of}. DO NOT REMOVE THE USB STICK")

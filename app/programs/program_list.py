@@ -1,4 +1,4 @@
-"""The list of programs: find, sort, look, load, copy, rename, delete, import, export. No Qt, no waiting."""
+"""Model of the program list without Qt: search, sort, preview, load, file commands and transfer."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ DRAWING = "{name} IS A DRAWING. F3: MAKE A PROGRAM FROM IT"
 
 @dataclass(slots=True)
 class ProgramList:
-    """``own`` is the operator's folder."""
+    """Model of the program list. ``own`` is the operator's folder."""
 
     desk: Desk
     own: Path
@@ -48,7 +48,7 @@ class ProgramList:
     all: tuple[Program, ...] = ()
     listed: tuple[Program, ...] = ()
     changer: CopyRenameDelete = field(init=False)
-    _after: str = ""  # the name to mark when the list has been read again
+    _after: str = ""  # name to select after the list was read again
 
     def __post_init__(self) -> None:
         self.transfer.finished = self.look_again
@@ -58,28 +58,28 @@ class ProgramList:
 
     @property
     def question(self) -> str:
-        """What is asked about a name; empty: nothing."""
+        """Question about a name, or an empty string."""
         return self.changer.question
 
     @property
     def entry(self) -> Entry:
-        """The name that is being typed."""
+        """Entry field of the name."""
         return self.changer.entry
 
-    # --- what is shown -------------------------------------------------------------------------------
+    # --- displayed values ----------------------------------------------------------------------------
 
     def opened(self) -> None:
-        """The page comes up: read the folders and the records."""
+        """Read the folders and the records when the page opens."""
         self._after = self.desk.session.now.name
         self.look_again()
 
     def look_again(self) -> None:
-        """Read the folders again; the answer comes with a later frame."""
+        """Read the folders again. The result arrives in a later frame."""
         work = partial(list_programs, self.desk.programs.folders, self.own, self.persistence)
         self.worker.queue(work, self._found, self.desk.refuse)
 
     def look(self) -> None:
-        """Once a frame: take what the worker has found."""
+        """Process the results of the worker; called once per frame."""
         self.worker.poll()
 
     def _found(self, found: tuple[Program, ...]) -> None:
@@ -96,17 +96,17 @@ class ProgramList:
 
     @property
     def program(self) -> Program | None:
-        """The marked program; None where the list is empty."""
+        """Selected program, or None in an empty list."""
         return self.listed[self.marked] if self.marked < len(self.listed) else None
 
     def sheet(self) -> Sheet:
-        """The list, or the chooser of folders over it."""
+        """Return the table of programs, or of the folder chooser while it is open."""
         return self.transfer.sheet() if self.transfer.open else sheet_of(self)
 
     # --- keys ----------------------------------------------------------------------------------------
 
     def keys(self) -> Mapping[str, Key]:
-        """Function keys of this moment."""
+        """Return the present function keys."""
         if self.transfer.open:
             return self.transfer.keys()
         return {
@@ -119,11 +119,11 @@ class ProgramList:
         }
 
     def takes(self, key: str) -> bool:
-        """Return whether a character is part of a name: all are, except while folders are chosen."""
+        """Return whether a character is part of a name, as all are while the folder chooser is closed."""
         return not self.transfer.open and self.find.takes(key)
 
     def typed(self, key: str) -> bool:
-        """Arrows mark, Return loads or answers, letters find."""
+        """Handle a key: arrows select, Enter loads or submits, and letters filter the list."""
         if self.transfer.open:
             return self.transfer.typed(key)
         if key in STEPS and not self.question:
@@ -139,13 +139,13 @@ class ProgramList:
         return True
 
     def choose(self, row: int) -> None:
-        """Mark a row."""
+        """Select a row."""
         if not self.question and self.listed:
             self.desk.clear()
             self.marked = max(0, min(len(self.listed) - 1, row))
 
     def escape(self) -> bool:
-        """Go one step back; False: the page may be left."""
+        """Go back one step. Return False if the page can close."""
         if self.desk.notice:
             self.desk.clear()
         elif self.transfer.open:
@@ -160,19 +160,19 @@ class ProgramList:
         return True
 
     def leave(self) -> None:
-        """The page goes: nothing stays half asked."""
+        """Clear questions and filters when the page closes."""
         self.changer.question = self.find.text = ""
         self.transfer.shut()
         self.preview.of(None)
         self._narrow(self.program.name if self.program else "")
 
     def sort(self) -> None:
-        """F2: sort the list by the next of the orders."""
+        """Sort the list by the next criterion (F2)."""
         self.order = following(ORDERS, self.order)
         self._narrow(self.program.name if self.program else "")
 
     def may_load(self) -> bool:
-        """Whether the marked program can become that of the desk; why not is said."""
+        """Return whether the selected program can be loaded, and show the reason if not."""
         if self.program is None or self.program.drawing:
             self.desk.say(NONE if self.program is None else tr(Message(DRAWING, name=self.program.name)))
             return False
@@ -180,7 +180,10 @@ class ProgramList:
         return programs.can_choose() and programs.folders.find(str(self.program.path)) is not None
 
     def load(self) -> bool:
-        """The marked program becomes that of the desk, or that is asked; True when it can."""
+        """Load the selected program or ask for confirmation.
+
+        Return False if loading is not possible.
+        """
         program = self.program
         return self.may_load() and program is not None and self.desk.programs.choose(str(program.path))
 
@@ -200,7 +203,7 @@ class ProgramList:
             )
 
     def prompt(self) -> str:
-        """What the keys do now, for the prompt line."""
+        """Return the prompt for the present keys."""
         if self.transfer.open:
             return self.transfer.prompt()
         if self.question:
@@ -214,18 +217,18 @@ class ProgramList:
         return "TYPE PART OF A NAME OR USE ARROWS   ENTER: LOAD   ESC: BACK"
 
     def close(self) -> None:
-        """End the workers of the list and of the preview."""
+        """Stop the workers of the list and of the preview."""
         self.worker.close()
         self.preview.close()
 
 
-# --- how the list and the marked program are written -----------------------------------------------------
+# --- rows of the list and details of the selected program ------------------------------------------------
 
 Detail = tuple[str, str]
 
 
 def sheet_of(model: ProgramList) -> Sheet:
-    """The list: name, date, last run, parts, best cycle."""
+    """Return the table with name, date, last run, parts and best cycle."""
     rows = tuple(_row(program) for program in model.listed)
     count = (
         Message(
@@ -260,7 +263,10 @@ def _row(program: Program) -> Row:
 
 
 def details_of(program: Program) -> tuple[Detail, ...]:
-    """All that is known of the marked program; the last two may be long, the others are short."""
+    """Return the details of a program.
+
+    The last two texts can be long, and the others are short.
+    """
     run = program.run
     return (
         ("SIZE", formats.file_size(program.size)),

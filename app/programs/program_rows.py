@@ -1,4 +1,4 @@
-"""The programs that can be chosen: what is known of each, how they are sorted, pictures of the marked one."""
+"""Programs of the list: their data, their sort order, and previews of the selected program."""
 
 from __future__ import annotations
 
@@ -27,7 +27,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Program:
-    """One file: bytes, seconds since 1970; ``sample`` ones are not the operator's and stay as they are."""
+    """Program file with its size in bytes and its time in seconds since 1970.
+
+    Samples are read-only.
+    """
 
     name: str
     path: Path
@@ -35,21 +38,21 @@ class Program:
     changed: float
     sample: bool
     run: RunRow
-    drawing: bool = False  # of which a program can be made
+    drawing: bool = False  # a drawing from which a program can be made
 
     @property
     def key(self) -> tuple[str, float, int]:
-        """Another text is another key: what was drawn of it stays good as long as this is the same."""
+        """Key of the file content. Previews remain valid while the key is unchanged."""
         return str(self.path), self.changed, self.size
 
 
 def list_programs(
     program_folders: ProgramFolders, own: Path, persistence: Persistence
 ) -> tuple[Program, ...]:
-    """Return all programs of the folders and their drawings, each with the record of the text in the file.
+    """Return all programs and drawings of the folders, each with the record of its text.
 
-    It reads every file whose text is not known yet: call it on a worker. Raises StoreError when the store
-    cannot be read.
+    Files with unknown text are read, so call this function on a worker. Raises StoreError if the store cannot
+    be read.
     """
     runs = persistence.runs.read_records_by_text()
     found = []
@@ -65,7 +68,7 @@ def list_programs(
 
 @lru_cache(maxsize=2 * LISTED)
 def _key_in(path: Path, _changed: int, _size: int) -> str:
-    """Return the record key of the text in a file; empty for what is not program text."""
+    """Return the record key of the text in a file, or an empty string if the file is not program text."""
     try:
         return key_of_text(load_source(path).text)
     except SourceError:
@@ -76,12 +79,12 @@ def _status(path: Path) -> os.stat_result | None:
     try:
         return path.stat()
     except OSError:
-        return None  # it has gone between two looks
+        return None  # The file was deleted in the meantime.
 
 
 Rank = tuple[float, str]
 Order = Callable[[Program], Rank]
-# Newest and most on top; the name decides between equals.
+# Newest and largest first; equal programs are sorted by name.
 ORDERS: Mapping[str, Order] = {
     "NAME": lambda p: (0.0, p.name.lower()),
     "DATE": lambda p: (-p.changed, p.name.lower()),
@@ -96,27 +99,27 @@ def _backwards(at: str | None) -> float:
 
 
 def sorted_by(order: str, found: Sequence[Program]) -> tuple[Program, ...]:
-    """In the order of this name."""
+    """Return the programs in the order with this name."""
     return tuple(sorted(found, key=ORDERS[order]))
 
 
 def minute_of(at: str | None) -> str:
-    """A time of the store as a clock on the wall shows it; a dash where there is none."""
+    """Return a time of the store in local time to the minute, or a dash without a time."""
     return formats.local_time(at, seconds=False) if at else formats.NOTHING
 
 
 def minute_of_file(seconds: float) -> str:
-    """The time of a file in the same way."""
+    """Return the time of a file in the same format."""
     return datetime.fromtimestamp(seconds).strftime("%Y-%m-%d %H:%M")
 
 
 KEPT = 40
-LARGEST = 5_000_000  # bytes: a larger program is drawn when it is loaded
+LARGEST = 5_000_000  # bytes; larger programs are drawn only when they are loaded
 Key = tuple[str, float, int]
 
 
 class Thumbnail(NamedTuple):
-    """A small picture: 32 bits a pixel, alpha, red, green, blue from the highest; rows from the top."""
+    """Small picture with 32 bits per pixel (alpha, red, green, blue from the highest), rows from the top."""
 
     pixels: bytes
     width: int
@@ -128,10 +131,13 @@ DrawThumbnail = Callable[[Job, Watch], Thumbnail | None]
 
 @dataclass(slots=True)
 class Preview:
-    """``workshop`` must keep nothing: looking at a program is no run of it."""
+    """Preview of the selected program.
+
+    ``workshop`` must not store anything, because a preview is not a run.
+    """
 
     workshop: LoadingSteps
-    thumbnail: DrawThumbnail | None = None  # None: nobody draws the part
+    thumbnail: DrawThumbnail | None = None  # None: parts are not drawn
     wanted: Key | None = None
     trouble: str = ""
     _made: OrderedDict[Key, Picture | str] = field(default_factory=OrderedDict)
@@ -141,7 +147,10 @@ class Preview:
     _asked: Key | None = None
 
     def of(self, program: Program | None) -> Picture | None:
-        """Its picture, when it is drawn; once a frame. Another one than before gives the old one up."""
+        """Return the picture of a program once it is drawn, else None; called once per frame.
+
+        Another program cancels the previous drawing.
+        """
         self._worker.poll()
         self.trouble = ""
         key = program.key if program is not None else None
@@ -159,7 +168,10 @@ class Preview:
         return made
 
     def part_of(self, program: Program | None) -> Thumbnail | None:
-        """Its finished part, when that is drawn; once a frame, behind the path. None: none, or not yet."""
+        """Return the thumbnail of the finished part, or None without a thumbnail.
+
+        The thumbnail is drawn after the path. Called once per frame.
+        """
         self._drawing.poll()
         key = program.key if program is not None else None
         if key != self._asked and self._drawing.busy:
@@ -184,7 +196,7 @@ class Preview:
 
     @property
     def busy(self) -> bool:
-        """Whether the wanted picture is still being drawn."""
+        """Whether the requested picture is still being drawn."""
         return self.wanted is not None and self.wanted not in self._made
 
     def _begin(self, program: Program) -> None:
@@ -204,7 +216,7 @@ class Preview:
             self._made.popitem(last=False)
 
     def close(self) -> None:
-        """Give up what is being drawn and end the worker."""
+        """Cancel the drawing and stop the workers."""
         self.wanted = None
         self._drawing.close()
         self._worker.close()

@@ -1,4 +1,4 @@
-"""The list of programs at the left; picture and record of the marked one at the right."""
+"""Page PROGRAMS: list of programs on the left, preview and details of the selected program on the right."""
 
 from __future__ import annotations
 
@@ -33,19 +33,19 @@ from core.executor.snapshot import Snapshot
 if TYPE_CHECKING:
     from app.path.path_picture import Picture
 
-# --- what is known of the marked program -------------------------------------------------------------------
+# --- details of the selected program -----------------------------------------------------------------------
 
 
 LABEL = 11.0  # units
-LONG = 2  # rows at the end that have the whole width
+LONG = 2  # rows at the end that use the whole width
 
 
 class RecordPanel(Panel):
-    """Two columns: what, and its figure."""
+    """Panel of details in two columns: label and value."""
 
     title = "DETAILS"
     program: Shown[Program | None] = Shown(None)
-    trouble = Shown("")  # what is wrong with its picture
+    trouble = Shown("")  # state or error of the preview
     part: Shown[Thumbnail | None] = Shown(None)
 
     def draw(self, painter: Painter) -> None:
@@ -64,7 +64,7 @@ class RecordPanel(Panel):
             painter.write(value, text, 1.9, "text")
 
     def _draw_part(self, painter: Painter, high: float) -> None:
-        """The finished part at the right, beside the short rows."""
+        """Draw the finished part on the right, next to the short rows."""
         if self.part is None or high <= 0.0:
             return
         pixels, columns, rows = self.part
@@ -75,24 +75,24 @@ class RecordPanel(Panel):
         painter.drawImage(at, QImage(pixels, columns, rows, 4 * columns, form))
 
 
-SHARE, RECORD = 0.6, 24.0  # of the width for the list; units of height for the record
+SHARE, RECORD = 0.6, 24.0  # ratio of the width for the list; units of height for the details
 LETTERS = 19.0  # units of height for the drawn keyboard
 
 
 class PreviewPath(PathView):
-    """The path of a program that is only looked at."""
+    """Path preview of a program that is not loaded."""
 
     title = "PREVIEW"
 
 
 class PreviewSpace(WorkingPlaneView):
-    """The same for a mill: table, workpiece and path."""
+    """Preview of a mill program: table, workpiece and path."""
 
     title = "PREVIEW"
 
 
 class ProgramsPage(ListPage):
-    """The model decides; this shows it and hands the keys on."""
+    """Page PROGRAMS: shows its model and passes the keys to it."""
 
     NAME = page_table.PROGRAMS
     model: ProgramList
@@ -109,22 +109,22 @@ class ProgramsPage(ListPage):
         self.table.touch_entry = self._turn_letters
 
     def barred(self) -> frozenset[str]:
-        """Return those of the list, and F3 while the editor cannot be entered."""
+        """Return the barred keys of the list, and F3 while the editor cannot be opened."""
         closed = not self.model.transfer.open and editor_barred(self.desk.snapshot())
         return super().barred() | ({"F3"} if closed else set())
 
     def page_keys(self) -> Mapping[str, Key]:
-        """Return those of the model."""
+        """Return the function keys of the model."""
         return self.model.keys()
 
     def labels(self) -> tuple[str, ...]:
-        """Those of the list or of the chooser."""
+        """Return the labels of the list or of the folder chooser."""
         added = {name: key.label for name, key in self.desk.pages.program_keys.items()}
         own = {} if self.model.transfer.open else {"F3": "EDIT", **added}
         return self.labels_of(own, self.page_keys())
 
     def key_actions(self) -> KeyActions:
-        """The function keys of the list, or of the chooser over it."""
+        """Return the actions of the function keys of the list or of the folder chooser."""
         keys = self.page_keys()
         added = {name: partial(self._use, key) for name, key in self.desk.pages.program_keys.items()}
         own: KeyActions = {} if self.model.transfer.open else {"F3": self._edit, **added}
@@ -134,7 +134,7 @@ class ProgramsPage(ListPage):
         self.page_keys()[name].action()
 
     def _edit(self) -> None:
-        """The marked program, or a new one of the name that is typed; to look at it does not load it."""
+        """Edit the selected program without loading it, or a new program with the typed name."""
         here = self.model.program
         editor = self.desk.pages.find(Editor)
         if here is None and editor is not None and self.model.find.text:
@@ -150,7 +150,7 @@ class ProgramsPage(ListPage):
             editor.made_of = None
 
     def _use(self, key: ProgramKey) -> None:
-        """Open the page of the key with the marked program."""
+        """Open the page of the key with the selected program."""
         here = self.model.program
         if here is None or here.drawing:
             self.desk.say(NONE)
@@ -167,25 +167,25 @@ class ProgramsPage(ListPage):
             model.choose(row)
 
     def typed(self, key: str) -> bool:
-        """Return on a program loads it and leads to Automatic; everything else is the model's."""
+        """Handle a key. Enter on a program loads it and opens the Automatic page."""
         model = self.model
         if key == "Enter" and not model.transfer.open and not model.question:
-            # The page first: what is asked about an interrupted job belongs to the page that stays.
+            # The page changes first, because a question about an interrupted job belongs to the new page.
             if model.may_load() and self.host.go(page_table.AUTOMATIC):
                 model.load()
             return True
         return model.typed(key)
 
     def has_field(self) -> bool:
-        """The name that is looked for or asked."""
+        """Return whether a name can be typed."""
         return not self.model.transfer.open
 
     def dress(self) -> None:
-        """The path is drawn anew."""
+        """Redraw the path in the present colors."""
         self.path.restart()
 
     def refresh(self, _snapshot: Snapshot, _view: MachineStatus, _loaded: Loaded) -> None:
-        """List, picture and record of this moment."""
+        """Update list, preview and details."""
         model = self.model
         model.look()
         self.table.show_sheet(model.sheet())
@@ -212,14 +212,14 @@ class ProgramsPage(ListPage):
             self.space.show_instant(at_line(scene, 0), "")
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """List beside picture over record."""
+        """Arrange the parts after a change of size."""
         self._lay_out()
 
     def _turn_letters(self) -> None:
         self._with_letters = not self._with_letters
 
     def opened(self) -> None:
-        """The list; a finger on the entry brings the letters."""
+        """Open the list without the drawn keyboard."""
         self._with_letters = False
         super().opened()
 
@@ -229,7 +229,7 @@ class ProgramsPage(ListPage):
         left, low = round(SHARE * self.width()), round(RECORD * u)
         right = self.width() - left - gap
         keys = 0 if self.letters.isHidden() else max(self.letters.least, round(LETTERS * u))
-        foot = keys or low  # the record makes room for the letters
+        foot = keys or low  # The keyboard takes the place of the details.
         self.table.setGeometry(0, 0, left, self.height() - (keys + gap if keys else 0))
         for part in (self.path, self.space):
             part.setGeometry(left + gap, 0, right, self.height() - foot - gap)

@@ -1,6 +1,6 @@
-"""USB sticks and folders to choose programs from: which are there, what is free, why one cannot be written.
+"""USB sticks and folders as sources of programs: mounted media, free space and write errors.
 
-The kernel's own list of mounts tells (``/proc/self/mountinfo``); elsewhere folders are asked one by one.
+The kernel's list of mounts (``/proc/self/mountinfo``) is used. On other systems, each folder is checked.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ _FULL = frozenset({errno.ENOSPC, errno.EDQUOT})
 
 @dataclass(frozen=True, slots=True)
 class Stick:
-    """One medium: its label and where it is mounted; ``free`` bytes; ``locked``: it takes nothing."""
+    """Mounted medium: label, path and ``free`` space in bytes. ``locked`` means read-only."""
 
     label: str
     path: Path
@@ -38,7 +38,7 @@ class Stick:
 
 @dataclass(frozen=True, slots=True)
 class Mount:
-    """One line of the kernel's list: where, of which block device, with which options."""
+    """Entry of the kernel's list of mounts: path, block device and read-only state."""
 
     path: Path
     device: str
@@ -51,7 +51,10 @@ def sticks(
     mounts: Path = MOUNTS,
     blocks: Path = BLOCKS,
 ) -> tuple[Stick, ...]:
-    """What is plugged in and mounted now, by label; a folder that is no mount is a medium that has gone."""
+    """Return the mounted removable media, sorted by label.
+
+    A folder that is not a mount point is ignored.
+    """
     try:
         listed = tuple(_listed(mounts.read_text(encoding="utf-8", errors="surrogateescape")))
     except OSError:
@@ -65,7 +68,7 @@ def sticks(
 
 
 def _listed(text: str) -> Iterator[Mount]:
-    """The mounts of the kernel's list; a blank in a name stands there as ``\\040``."""
+    r"""Yield the mounts of the kernel's list, which writes a blank in a name as ``\040``."""
     for line in text.splitlines():
         words = line.split()
         if len(words) < 6 or "-" not in words:
@@ -77,12 +80,15 @@ def _listed(text: str) -> Iterator[Mount]:
 
 
 def _below(path: Path, roots: Sequence[Path]) -> bool:
-    """One or two levels down: /media/STICK of some systems, /media/USER/STICK of others."""
+    """Return whether a path is one or two levels below a root, such as /media/STICK or /media/USER/STICK."""
     return any(root in path.parents and len(path.relative_to(root).parts) <= 2 for root in roots)
 
 
 def _removable(device: str, blocks: Path) -> bool:
-    """Whether the disk of a mount is one that can be taken out; a partition asks the disk it is on."""
+    """Return whether the disk of a mount is removable.
+
+    A partition is looked up through its disk.
+    """
     if not device or device.startswith("0:"):
         return False
     try:
@@ -115,14 +121,14 @@ def _free(path: Path) -> int:
         return 0
 
 
-# --- the medium of a copy ---------------------------------------------------------------------------------
+# --- medium of a copy -------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, slots=True)
 class Medium:
-    """The folder that is copied to or from, and its device as it was when it was opened.
+    """Folder for a copy, with its device number at the time of opening.
 
-    A stick that is pulled out leaves its folder behind, which is then one of the control's own disk.
+    A stick that is unplugged leaves its folder, which then belongs to the disk of the control.
     """
 
     folder: Path
@@ -130,19 +136,19 @@ class Medium:
 
     @classmethod
     def of(cls, folder: Path) -> Medium:
-        """As it is now. Raises FileError when it is gone."""
+        """Return the present medium of a folder. Raises FileError if the folder does not exist."""
         try:
             return cls(folder, folder.stat().st_dev)
         except OSError as error:
             raise FileError(why_not(error, folder)) from error
 
     def check(self) -> None:
-        """Raises FileError when another medium is there now, or none."""
+        """Raise FileError if another medium or no medium is present now."""
         if Medium.of(self.folder).device != self.device:
             raise FileError(pulled_out(self.folder))
 
     def room_for(self, size: int) -> None:
-        """Raises FileError when less than so many bytes are free, before anything is written."""
+        """Raise FileError if fewer than ``size`` bytes are free."""
         free = _free(self.folder)
         if size > free:
             raise FileError(
@@ -158,12 +164,12 @@ class Medium:
 
 
 def pulled_out(folder: Path) -> str:
-    """A stick that is not there any more."""
+    """Return the message about a stick that was unplugged."""
     return tr(Message("{place} IS NO LONGER CONNECTED. PLUG IT IN AGAIN AND PRESS F2", place=folder.name))
 
 
 def why_not(error: OSError, folder: Path) -> str:
-    """Why nothing can be read from or written to a medium, in the words of who holds it."""
+    """Return the reason for a failed access to a medium as a message for the operator."""
     if error.errno in _FULL:
         return tr(Message("{place} IS FULL. NO PARTIAL FILE LEFT. USE ANOTHER USB STICK", place=folder.name))
     if error.errno == errno.EROFS:
@@ -180,31 +186,37 @@ MOST = 2000
 
 @dataclass(frozen=True, slots=True)
 class FolderLine:
-    """One line: a place, a folder, the way up, or a program."""
+    """Line of the chooser: a place, a folder, the parent folder or a program."""
 
     name: str
     path: Path
     folder: bool
     size: int = 0
-    locked: bool = False  # a place that takes nothing
+    locked: bool = False  # a read-only place
 
 
 @dataclass(slots=True)
 class FolderChooser:
-    """``at`` is the folder that is looked into, None: the list of places. ``look`` takes its time."""
+    """Folder chooser.
+
+    ``at`` is the open folder, or None for the list of places. ``look`` can take a while.
+    """
 
     home: Path
     plugged: Callable[[], Sequence[Stick]] = sticks
     takes: Takes = is_program
     at: Path | None = None
-    top: Path | None = None  # the place it belongs to; the way up ends there
+    top: Path | None = None  # folder of the open place, where going up ends
     lines: tuple[FolderLine, ...] = ()
     marked: int = 0
-    medium: Medium | None = None  # the place that is open, as it was when it was opened
+    medium: Medium | None = None  # the open place at the time of opening
     trouble: str = field(default="")
 
     def look(self) -> tuple[FolderLine, ...]:
-        """What is there now; raises FileError when the folder cannot be read. On a worker."""
+        """Return the lines of the open folder, on a worker.
+
+        Raises FileError if the folder cannot be read.
+        """
         if self.at is None:
             self.medium = None
             places = [FolderLine(s.label, s.path, True, s.free, s.locked) for s in self.plugged()]
@@ -218,12 +230,12 @@ class FolderChooser:
             raise FileError(why_not(error, self.at)) from error
 
     def show_lines(self, lines: tuple[FolderLine, ...]) -> None:
-        """Take what ``look`` has found."""
+        """Show the lines that ``look`` has returned."""
         self.lines, self.trouble = lines, ""
         self.marked = min(self.marked, max(0, len(lines) - 1))
 
     def go(self, line: FolderLine) -> None:
-        """Into a folder, or up; from the top of a place to the list of places."""
+        """Open a folder, its parent folder, or the list of places from the top of a place."""
         self.marked = 0
         if line.name == UP and self.at == self.top:
             self.at = self.top = None
@@ -234,12 +246,12 @@ class FolderChooser:
 
     @property
     def marked_line(self) -> FolderLine | None:
-        """The marked line; None where there is none."""
+        """Selected line, or None."""
         return self.lines[self.marked] if self.marked < len(self.lines) else None
 
     @property
     def programs(self) -> tuple[Path, ...]:
-        """The programs of the folder that is looked into."""
+        """Programs of the open folder."""
         return tuple(line.path for line in self.lines if not line.folder)
 
 
@@ -252,7 +264,7 @@ def _inside(folder: Path, takes: Takes) -> list[FolderLine]:
 
 
 def chooser_sheet(chooser: FolderChooser, title: str) -> Sheet:
-    """Places, folders and programs."""
+    """Return the table of places, folders and programs."""
     rows = tuple(
         Row(
             (

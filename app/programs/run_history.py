@@ -1,4 +1,4 @@
-"""What each program does, from the snapshots: runs and how they ended, cycle times, proof, parts counted."""
+"""Run history from snapshots: runs with outcome, cycle times, proofs and part counts."""
 
 from __future__ import annotations
 
@@ -18,25 +18,29 @@ from core.store.production.run_records import RunRecords
 from core.store.store_errors import StoreError
 
 COMPLETE, UNCOUNTED, GIVEN_UP, ESTOP = "COMPLETE", "NOT COUNTED", "GIVEN UP", "E-STOP"
-CUT_OFF = "CUT OFF"  # the control ended in its middle: found at the next start
+CUT_OFF = "CUT OFF"  # the control stopped during the run, as detected at the next start
 _RUNNING = frozenset({State.RUN, State.HOLDING, State.WAIT}) | prompt_line.INTERRUPTED
 _SETTLED = frozenset({Phase.READY, Phase.REFUSED})
 
 
 @dataclass(slots=True)
 class RunHistory:
-    """Looks at every snapshot; posts what has happened to the store and never waits for it."""
+    """Recorder of runs; examines every snapshot and posts to the store without waiting."""
 
     persistence: Persistence = field(default_factory=Persistence)
-    running: str = ""  # the program under way
+    running: str = ""  # program that is running
     _parts: int | None = None
     _ends: int = 0
     _timed: int = 0
-    _lines: int = 0  # of MDI, when nothing was under way: a line is no run of the program on the desk
+    # count of MDI lines while nothing was running: an MDI line is not a run of the loaded program
+    _lines: int = 0
     _loaded: Loaded | None = None
 
     def see(self, snapshot: Snapshot, loaded: Loaded) -> None:
-        """One frame. Where the store does not take it the desk says so by itself (``Desk.not_kept``)."""
+        """Record the runs and proofs that a snapshot shows. Called once per frame.
+
+        TurnDesk reports separately if the store rejects a record.
+        """
         try:
             self._run(snapshot)
             self._proof(loaded)
@@ -97,11 +101,11 @@ def _outcome(snapshot: Snapshot) -> str:
 
 
 def note_cut_off_runs(runs: RunRecords) -> None:
-    """At the start, when nothing runs yet: a run without an end is one that the control did not outlive."""
+    """Mark runs without an end as interrupted by a shutdown; called at the start."""
     told = runs.end_cut_off_runs(
         CUT_OFF, "{program}: the control shut down during the last run of this program"
     )
-    with suppress(StoreError):  # a disk that is full gets it later
+    with suppress(StoreError):  # A full disk stores the records later.
         told.result()
 
 
@@ -111,34 +115,34 @@ _MAKING = frozenset({State.RUN, State.WAIT})
 
 @dataclass(slots=True)
 class PartCounter:
-    """One count for each program, kept with its target; 0 is no target.
+    """Part count of each program, stored with its target. Target 0 means no target.
 
-    In the cycle that makes the last part Cycle Repeat is switched off, so that the machine stops by itself.
+    In the cycle of the last part, Cycle Repeat is switched off, so that the machine stops.
     """
 
     persistence: Persistence = field(default_factory=Persistence)
     program: str = ""
     count: int = 0
     target: int = 0
-    of_job: int = 0  # the count at which the job under way is done; it goes before the target
+    of_job: int = 0  # count at which the active job is done; has priority over the target
     _seen: int | None = None
     _announced: int = -1
-    _made: int = -1  # as the executor was told
-    text: str = ""  # digest of the text whose parts are counted
+    _made: int = -1  # count that was last sent to the executor
+    text: str = ""  # digest of the program text whose parts are counted
 
     @property
     def words(self) -> str:
-        """Parts made, and the target where there is one: ``12`` or ``12/100``."""
+        """Number of parts, with the target if there is one: ``12`` or ``12/100``."""
         return f"{self.count}/{self.aim}" if self.aim else str(self.count)
 
     @property
     def aim(self) -> int:
-        """The count at which parts end, 0: none; that of the job under way, or else the target."""
+        """Count at which production ends: that of the active job, or else the target. 0 means no end."""
         return self.of_job or self.target
 
     @property
     def reached(self) -> bool:
-        """Whether all the parts that were asked for are made."""
+        """Whether all requested parts are made."""
         return 0 < self.aim <= self.count
 
     def see(
@@ -148,7 +152,11 @@ class PartCounter:
         say: Callable[[str], None],
         text: str = "",
     ) -> None:
-        """One frame: another program, another part, the last part. ``text``: digest of the loaded text."""
+        """Update the count from a snapshot, once per frame.
+
+        The method handles a change of program, a new part and the last part. ``text`` is the digest of the
+        loaded program text.
+        """
         name = Path(snapshot.program).name
         if name != self.program or text != self.text:
             self._load(name)
@@ -156,7 +164,7 @@ class PartCounter:
             self._seen = snapshot.parts
         if self._seen is not None and snapshot.parts > self._seen:
             self.count += snapshot.parts - self._seen
-            if self.reached and not self.of_job:  # the end of a job is told with what comes next
+            if self.reached and not self.of_job:  # The end of a job is reported together with the next job.
                 words = tr("TARGET REACHED: {count} OF {target} PARTS")
                 say(tr(Message(words, count=self.count, target=self.target)))
         self._seen = snapshot.parts
@@ -164,7 +172,7 @@ class PartCounter:
         self._stop_at(snapshot, post, say)
 
     def _tell_executor(self, snapshot: Snapshot, post: Callable[[Command], None]) -> None:
-        """The executor numbers the part under way by this count."""
+        """Send the count to the executor, which numbers the parts."""
         if self.program and self.count not in {snapshot.made, self._made}:
             post(PartsMade(self.count))
         self._made = self.count
@@ -186,15 +194,15 @@ class PartCounter:
             self.count = self.persistence.runs.count_parts(name)
             kept = self.persistence.read_setting(_key(name))
         except StoreError:
-            return  # the desk says by itself that nothing is kept
+            return  # TurnDesk itself reports that nothing is stored.
         self.target = kept if isinstance(kept, int) and 0 < kept <= MOST else 0
 
     def reload(self) -> None:
-        """Read count and target again, after a restore."""
+        """Reload count and target, for example after a restore."""
         self._load(self.program)
 
     def set_target(self, target: int) -> None:
-        """So many parts, 0: no target. Raises StoreError when it is not kept."""
+        """Set the target number of parts, or 0 for no target. Raises StoreError if it cannot be stored."""
         before, self.target, self._announced = self.target, target, -1
         self.persistence.save_setting(_key(self.program), target or None)
         self.persistence.note_change(
@@ -207,7 +215,10 @@ class PartCounter:
         )
 
     def correct(self, by: int) -> None:
-        """Parts that were made otherwise, or are scrap. Raises StoreError when it is not kept."""
+        """Change the count by parts made elsewhere or by scrap.
+
+        Raises StoreError if it cannot be stored.
+        """
         self.count, self._announced = self.count + by, -1
         self.persistence.runs.add_parts(self.program, by)
         self.persistence.note_change(
@@ -220,7 +231,7 @@ class PartCounter:
         )
 
     def reset(self) -> None:
-        """The count to nought. Raises StoreError when it is not kept."""
+        """Reset the count to zero. Raises StoreError if it cannot be stored."""
         before, self.count, self._announced = self.count, 0, -1
         self.persistence.runs.reset_parts(self.program)
         self.persistence.note_change(

@@ -1,4 +1,4 @@
-"""A program file is there whole or not at all: written beside its place, brought to the disk, put there."""
+"""Atomic writing of program files: written next to the target, flushed to the disk, then renamed."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ from core.message import CodedError, Message, error_code
 
 
 class FileError(CodedError):
-    """It was not done, and the file is as it was; the sentence says why."""
+    """Failed file operation that left the file unchanged. The message states the reason."""
 
 
 def write_whole(path: Path, data: bytes) -> None:
-    """Put ``data`` in the place of the file, which is the old or the new one at every moment.
+    """Replace a file atomically with ``data``, which must be valid program text.
 
-    It is read back as a program first, and keeps the rights of the old one. Raises FileError.
+    The draft is read back as a program first and receives the permissions of the old file. Raises FileError.
     """
-    target = path.resolve()  # what a link names is replaced, not the link
+    target = path.resolve()  # the target of a link is replaced instead of the link
     with ExitStack() as stack:
         try:
             make_folder(target.parent)
@@ -53,7 +53,7 @@ def write_whole(path: Path, data: bytes) -> None:
 
 
 def write_out(target: Path, data: bytes) -> None:
-    """A copy on a medium that may be pulled out: the old file or the new one, read back. Raises FileError."""
+    """Copy a file to a removable medium atomically, and verify it. Raises FileError."""
     try:
         with _beside(target) as draft:
             _fill(draft, data)
@@ -74,7 +74,7 @@ def write_out(target: Path, data: bytes) -> None:
 
 
 def write_new(target: Path, data: bytes) -> None:
-    """A new file; nothing that is there is touched, whoever put it there meanwhile. Raises FileError."""
+    """Write a new file without ever replacing an existing one. Raises FileError if the name exists."""
     try:
         make_folder(target.parent)
     except OSError as error:
@@ -85,7 +85,7 @@ def write_new(target: Path, data: bytes) -> None:
     try:
         with _beside(target) as draft:
             _fill(draft, data)
-            target.hardlink_to(draft)  # fails where the name is taken
+            target.hardlink_to(draft)  # fails if the name exists
             folder_to_disk(target.parent)
     except FileExistsError as error:
         raise FileError(
@@ -99,7 +99,7 @@ def write_new(target: Path, data: bytes) -> None:
 
 
 def settle(folder: Path) -> None:
-    """Until all that was written in the folder is on the medium. Raises FileError."""
+    """Wait until all files of the folder are written to the medium. Raises FileError."""
     try:
         folder_to_disk(folder)
     except OSError as error:
@@ -113,7 +113,10 @@ def settle(folder: Path) -> None:
 
 
 def present(path: Path) -> bytes | None:
-    """What the file holds now; None where there is none. Raises FileError when it cannot be read."""
+    """Return the content of a file, or None if it does not exist.
+
+    Raises FileError if it cannot be read.
+    """
     try:
         return input_bytes(path, LARGEST_FILE)
     except FileNotFoundError:
@@ -127,7 +130,7 @@ def present(path: Path) -> bytes | None:
 
 @contextmanager
 def _beside(target: Path) -> Iterator[Path]:
-    """A place for a file of the same name in a hidden folder beside it, which is gone afterwards."""
+    """Provide a path with the same name in a hidden temporary folder next to the target."""
     with unfinished_folder(target) as folder:
         yield folder / target.name
 

@@ -1,1 +1,1 @@
-"""A proof on paper: one HTML file that opens anywhere, with drawings of part, path and tools."""
+"""Proof report as one self-contained HTML file with drawings of part, path and tools."""

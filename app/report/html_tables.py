@@ -1,4 +1,4 @@
-"""Tables, figures, style and frame of the pages of reports and setup sheets, as HTML."""
+"""HTML tables, drawings, style and frame for reports and setup sheets."""
 
 from __future__ import annotations
 
@@ -90,7 +90,10 @@ PAGE_END = "</body></html>\n"
 
 
 def page_head(title: str, made: str, language: str) -> str:
-    """What stands before the first section; ``made`` is the date, ``language`` as ISO 639-1 has it."""
+    """Return the HTML before the first section.
+
+    ``made`` is the date, ``language`` an ISO 639-1 code.
+    """
     return (
         f'<!DOCTYPE html>\n<html lang="{language}"><head><meta charset="utf-8">'
         '<meta name="viewport" content="width=device-width">'
@@ -100,35 +103,35 @@ def page_head(title: str, made: str, language: str) -> str:
 
 
 def headline(title: str, made: str) -> str:
-    """What it is, and its date."""
+    """Return the title and the date as HTML."""
     return f'<h1>{escape(title)}</h1><p class="made">{escape(made)}</p>'
 
 
 def verdict(look: str, words: str) -> str:
-    """What has come of it: ``good``, ``doubt`` or ``bad``."""
+    """Return the result line with the style ``good``, ``doubt`` or ``bad``."""
     return f'<p class="verdict {look}">{escape(words)}</p>'
 
 
 def figure(drawing: str, caption: str) -> str:
-    """A drawing and what stands under it."""
+    """Return a drawing with a caption as HTML."""
     return f"<figure>{drawing}<figcaption>{escape(caption)}</figcaption></figure>"
 
 
 def pairs(rows: Iterable[tuple[str, str]]) -> str:
-    """Names and their values; both are escaped."""
+    """Return a table of names and values. Both are escaped."""
     lines = "".join(f"<tr><th>{escape(name)}</th><td>{escape(value)}</td></tr>" for name, value in rows)
     return f'<table class="facts">{lines}</table>'
 
 
 def table(head: Iterable[str], rows: Iterable[Sequence[str]]) -> str:
-    """A table; the cells are HTML already."""
+    """Return a table. The cells must be HTML."""
     top = "".join(f"<th>{escape(each)}</th>" for each in head)
     lines = "".join("<tr>" + "".join(f"<td>{cell}</td>" for cell in row) + "</tr>" for row in rows)
     return f"<table><tr>{top}</tr>{lines}</table>"
 
 
 def clock(seconds: float) -> str:
-    """Minutes and seconds."""
+    """Return a duration as minutes and seconds."""
     minutes, rest = divmod(seconds, 60.0)
     return (
         Message("{minutes} min {rest} s", minutes=f"{minutes:.0f}", rest=f"{rest:04.1f}")
@@ -138,5 +141,5 @@ def clock(seconds: float) -> str:
 
 
 def text_hash(source: Source) -> str:
-    """By which the text of a program is known again."""
+    """Return the SHA-256 of a program text, which identifies the text."""
     return sha256(source.text.encode("utf-8", "surrogatepass")).hexdigest()

@@ -1,4 +1,4 @@
-"""The drawings of a report as inline SVG: part before and after, path, a finding's place, a tool."""
+"""Drawings of a report as inline SVG: part before and after, path, location of a finding, and tool."""
 
 from __future__ import annotations
 
@@ -20,7 +20,10 @@ Point = tuple[float, float]
 
 @dataclass(slots=True)
 class Drawing:
-    """A window (z0, r0) to (z1, r1), mm, drawn ``width`` pixels wide or narrower."""
+    """SVG drawing of a window in mm, at most ``width`` × ``highest`` pixels.
+
+    ``low`` and ``high`` are the corners (z, radius) of the window.
+    """
 
     low: Point
     high: Point
@@ -30,29 +33,29 @@ class Drawing:
 
     @property
     def scale(self) -> float:
-        """Pixels a millimetre."""
+        """Scale in pixels per millimeter."""
         wide, high = self.high[0] - self.low[0], self.high[1] - self.low[1]
         return min(self.width / wide, self.highest / high)
 
     def polygon(self, points: Iterable[Point], look: str) -> None:
-        """A closed outline; ``look`` is a class of the page's style."""
+        """Add a closed outline. ``look`` is a class of the page's style."""
         self._parts.append(f'<polygon class="{look}" points="{self._placed(points)}"/>')
 
     def polyline(self, points: Iterable[Point], look: str) -> None:
-        """An open one."""
+        """Add an open line."""
         self._parts.append(f'<polyline class="{look}" points="{self._placed(points)}"/>')
 
     def dot(self, point: Point, look: str) -> None:
-        """A place."""
+        """Add a dot at a point."""
         x, y = self._place(point)
         self._parts.append(f'<circle class="{look}" cx="{x}" cy="{y}" r="3.5"/>')
 
     def axis(self) -> None:
-        """The centre line."""
+        """Add the center line."""
         self.polyline([(self.low[0], 0.0), (self.high[0], 0.0)], "axis")
 
     def svg(self, title: str) -> str:
-        """The drawing; ``title`` is for who cannot see it."""
+        """Return the SVG. ``title`` is the text alternative."""
         scale = self.scale
         wide, high = (self.high[0] - self.low[0]) * scale, (self.high[1] - self.low[1]) * scale
         return (
@@ -74,7 +77,7 @@ class Drawing:
 
 
 def window(points: Sequence[Point], margin: float, least: float = 1.0) -> tuple[Point, Point]:
-    """The window around points with a margin, mm, at least so wide and high."""
+    """Return the window around points with a margin in mm, at least ``least`` wide and high."""
     zs, rs = [z for z, _ in points], [r for _, r in points]
     low, high = (min(zs) - margin, min(rs) - margin), (max(zs) + margin, max(rs) + margin)
     more = [max(least - (b - a), 0.0) / 2 for a, b in zip(low, high, strict=True)]
@@ -84,15 +87,18 @@ def window(points: Sequence[Point], margin: float, least: float = 1.0) -> tuple[
 _WIDE, _HIGH = 900.0, 420.0  # pixels
 _PLACE = 340.0
 _TOOL = 110.0
-_AROUND = 12.0  # mm of metal around a finding, at most
-_BEFORE_PART = 6.0  # mm of path in front of and around the stock that is drawn
+_AROUND = 12.0  # maximum mm of material around a finding
+_BEFORE_PART = 6.0  # mm of path drawn in front of and around the stock
 
 
 Sides = tuple[Piece, Piece]
 
 
 def section(stock: Stock, after: Piece | None, clamping: Clamping | None, sides: Sides | None = None) -> str:
-    """The stock and what is left of it, cut open along the axis; ``sides``: X+ and X- of a milled part."""
+    """Return the section of the stock and the finished part.
+
+    ``sides`` are X+ and X- of a milled part.
+    """
     drawing = _framed(stock, clamping)
     _chuck(drawing, clamping)
     _metal(drawing, stock.outside, stock.bore or None, "stock")
@@ -105,7 +111,7 @@ def path(
     stock: Stock, after: Piece | None, clamping: Clamping | None, moves: Sequence[TipMove],
     sides: Sides | None = None,
 ) -> str:  # fmt: skip
-    """The way of the tools' tips: cuts full, rapids dashed."""
+    """Return the drawing of the tool paths: cuts as solid lines, rapids as dashed lines."""
     drawing = _framed(stock, clamping)
     _chuck(drawing, clamping)
     _part(drawing, after, sides, "faint")
@@ -116,7 +122,7 @@ def path(
 
 
 def place(move: TipMove, metal: Piece, tool: ToolShape | None, clamping: Clamping | None) -> str:
-    """Where a finding is: the metal before the move, the move, and the tool at its end."""
+    """Return the drawing of a finding: the material before the move, the move, and the tool at its end."""
     near = _bounded(move.points, metal.outside)
     drawing = Drawing(*window(near, 3.0, 8.0), width=_PLACE, highest=_PLACE)
     _chuck(drawing, clamping)
@@ -134,7 +140,7 @@ def place(move: TipMove, metal: Piece, tool: ToolShape | None, clamping: Clampin
 
 
 def tool_picture(shape: ToolShape | None) -> str:
-    """A tool's outline about its control point; empty where nothing is known of it."""
+    """Return the outline of a tool around its control point, or an empty string if it is unknown."""
     lines = _outline(shape)
     if lines is None or not lines.cutting:
         return ""
@@ -185,7 +191,7 @@ def _part(drawing: Drawing, after: Piece | None, sides: Sides | None, look: str)
 
 
 def _metal(drawing: Drawing, outside: Sequence[Point], bore: Sequence[Point] | None, look: str) -> None:
-    """Both halves of a section, with the edges that are seen between them."""
+    """Draw both halves of a section."""
     for across in (1.0, -1.0):
         _half(drawing, outside, bore, look, across)
 
@@ -201,7 +207,10 @@ def _half(
 
 
 def _ways(moves: Sequence[TipMove]) -> Iterator[tuple[list[Point], str]]:
-    """Moves that are drawn alike, in one line each; the way from where the slides stood is left out."""
+    """Yield moves of the same style as one line each.
+
+    The first move of the program is omitted.
+    """
     points: list[Point] = []
     look = ""
     for move in moves[1:]:
@@ -216,7 +225,7 @@ def _ways(moves: Sequence[TipMove]) -> Iterator[tuple[list[Point], str]]:
 
 
 def _bounded(points: Sequence[Point], outside: Sequence[Point]) -> list[Point]:
-    """The part of a move that lies near the metal."""
+    """Return the points of a move, limited to the vicinity of the material."""
     if not outside:
         return list(points[-1:])
     back, front = outside[-1][0] - _AROUND, outside[0][0] + _AROUND

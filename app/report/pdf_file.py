@@ -1,4 +1,4 @@
-"""A page as PDF, made by a process of its own: setting text takes its time, and nothing here waits for it."""
+"""PDF output by a separate process, because text layout takes time and the caller must not wait."""
 
 from __future__ import annotations
 
@@ -11,18 +11,21 @@ from tempfile import TemporaryDirectory
 
 from core.message import Message
 
-_LONGEST = 120.0  # s
+_LONGEST = 120.0  # seconds
 
 
 class Paper(StrEnum):
-    """The sizes of paper."""
+    """Paper size."""
 
     A4 = "a4"
     LETTER = "letter"
 
 
 def pdf_of(html: str, title: str, paper: Paper) -> bytes:
-    """The body of a page as a PDF; ``title`` stands under each page. On a worker. Raises OSError."""
+    """Return the PDF of a page's HTML body.
+
+    ``title`` is the footer. Runs on a worker. Raises OSError.
+    """
     with TemporaryDirectory(prefix="turndesk-") as folder:
         path = Path(folder) / "sheet.pdf"
         command = [sys.executable, "-m", "app.screen.pdf_pages", str(path), title, paper.value]

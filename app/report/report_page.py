@@ -1,7 +1,6 @@
-"""The report of a proof as HTML: verdict, drawings, findings, tools, times, stops and offsets on one page.
+"""Report of a proof as one HTML page: result, drawings, findings, tools, times, stops and offsets.
 
-Everything that comes from a program or a file is escaped: a comment may hold HTML. Nothing is loaded from
-anywhere, and nothing runs.
+All text from programs and files is escaped. The page loads nothing and contains no scripts.
 """
 
 from __future__ import annotations
@@ -24,12 +23,12 @@ if TYPE_CHECKING:
     from core.machine.machine_model import Machine
     from core.proving.proof_report import PartReport, Report
 
-_PICTURES = 30  # of findings; each of them stands where its line is told
+_PICTURES = 30  # maximum number of pictures of findings
 _MM_PER_INCH = 25.4
 
 
 class ProgramReport:
-    """The section of one program."""
+    """Report section of one program."""
 
     def __init__(
         self, source: Source, report: Report, part: PartReport | None, record: RunRecord,
@@ -40,7 +39,7 @@ class ProgramReport:
         self._metric = report.metric or report.dialect is not Dialect.OMNITURN
 
     def html(self) -> str:
-        """All of it, as it stands in the page."""
+        """Return the section as HTML."""
         return "".join(
             (
                 self._head(), self._drawings(), self._findings(), self._tools(), self._stops(),
@@ -48,7 +47,7 @@ class ProgramReport:
             )
         )  # fmt: skip
 
-    # --- figures
+    # --- --- values
 
     def _length(self, mm: float) -> str:
         return (
@@ -60,7 +59,7 @@ class ProgramReport:
     def _volume(self, mm3: float) -> str:
         return f"{mm3:.1f} mm³" if self._metric else f"{mm3 / _MM_PER_INCH**3:.4f} in³"
 
-    # --- what it has come to
+    # --- --- result --------
 
     def _head(self) -> str:
         report, times = self._report, self._report.times
@@ -176,7 +175,7 @@ class ProgramReport:
         )
 
     def _places(self, found: Sequence[Diagnostic]) -> dict[int, str]:
-        """Pictures of the findings that the part has, by elementary block."""
+        """Return pictures of the part findings by elementary block."""
         wanted = list(dict.fromkeys(each.n for each in found if each.n))[:_PICTURES]
         if self._part is None or not wanted:
             return {}
@@ -208,7 +207,7 @@ class ProgramReport:
         return name, part_drawings.tool_picture(shape), words, *(f"{each:.1f}" for each in seconds)
 
     def _shape(self, shape: ToolShape | None) -> str:
-        """A tool in words: what of it is stated."""
+        """Return the specified data of a tool as text."""
         if shape is None:
             return "unknown"
         sizes = (
@@ -262,17 +261,17 @@ class ProgramReport:
 
 
 def program_part(name: str, section: str) -> str:
-    """One program under its name."""
+    """Return the section of one program with its heading."""
     return f"<section><h2>{escape(name)}</h2>{section}</section>\n"
 
 
 def not_proved(why: str) -> str:
-    """The section of a program that there is no proof of."""
+    """Return the section of a program that could not be proved."""
     return verdict("bad", "Not proved") + f"<p>{escape(why)}</p>"
 
 
 def compared_part(lines: str) -> str:
-    """What other offsets change, as it is told on the command line."""
+    """Return the effect of other offsets, in the text form of the command line."""
     return f"<h3>With different offsets</h3><pre>{escape(lines)}</pre>"
 
 

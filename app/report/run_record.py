@@ -1,4 +1,4 @@
-"""What a report needs of the pass that proves a program: moves, times by tool, stops, metal."""
+"""Data for a report from the proving pass: moves, times by tool, stops and material."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from core.proving.program_timeline import MotionSpan, RestSpan
 from core.proving.program_tools import PartSetting
 from core.proving.tip_moves import LiveStep, Steps, TipMove, live_move
 
-MOST_MOVES = 20_000  # that are drawn
+MOST_MOVES = 20_000  # maximum number of drawn moves
 _MOST_STOPS = 500
 
 
 @dataclass(slots=True)
 class ToolTime:
-    """Seconds that one tool is at work: cutting, in rapids, and at rest."""
+    """Times of one tool in seconds: cutting, rapid and rest."""
 
     cutting: float = 0.0
     rapid: float = 0.0
@@ -28,13 +28,13 @@ class ToolTime:
 
     @property
     def total(self) -> float:
-        """All of it."""
+        """Total time in seconds."""
         return self.cutting + self.rapid + self.rest
 
 
 @dataclass(frozen=True, slots=True)
 class Stop:
-    """An M00, or M01 where ``optional``: its line, when it comes, s, and what the operator reads."""
+    """Program stop M00, or M01 if ``optional``: line, time in seconds and message to the operator."""
 
     line: int
     at: float
@@ -44,16 +44,16 @@ class Stop:
 
 @dataclass(slots=True)
 class RunRecord:
-    """Sees the spans of a pass in their order."""
+    """Recorder of the spans of a proving pass."""
 
     setting: PartSetting
     moves: list[TipMove] = field(default_factory=list)
     times: dict[int, ToolTime] = field(default_factory=dict)
     stops: list[Stop] = field(default_factory=list)
     secondary: set[int] = field(default_factory=set)  # D numbers that are called
-    settable: set[int] = field(default_factory=set)  # zero offsets, 54 to 59
-    blank: Corners | None = None  # of BLK FORM, on a mill
-    cut_short: bool = False  # there are more moves than are drawn
+    settable: set[int] = field(default_factory=set)  # zero offsets that are called, 54 to 59
+    blank: Corners | None = None  # corners of BLK FORM on a mill
+    cut_short: bool = False  # not all moves are drawn
     _steps: Steps = field(default_factory=Steps)
     _part: PartProof = field(init=False)
     _tool: int = 0
@@ -62,7 +62,7 @@ class RunRecord:
         self._part = PartProof(self.setting)
 
     def see(self, span: MotionSpan | RestSpan) -> None:
-        """The next span of the program."""
+        """Add the moves, times and stops of the next span of the program."""
         self._part.see(span)
         for each in span.times_of_parts():
             if isinstance(each, TimedSeries):
@@ -114,5 +114,5 @@ class RunRecord:
                     self.moves.append(live_move(step))
 
     def metal_at(self, blocks: Collection[int]) -> dict[int, Piece]:
-        """What the chuck held before each of these elementary blocks, where a tool moved in X and Z."""
+        """Return the material before each of these blocks, if a tool moved in X and Z."""
         return self._part.metal_at(blocks)

@@ -1,1 +1,1 @@
-"""The scope: figures of the machine as curves over time, live and from records."""
+"""Scope: machine signals as curves over time, live and from records."""

@@ -1,6 +1,6 @@
-"""Records of the scope on the disk: what is there, saved, opened, and written as a table for others.
+"""Scope records on the disk: listing, saving, opening and exporting.
 
-All of it is a worker's; a full disk and a file that is none are told in a sentence.
+All functions run on a worker. A full disk and an invalid file raise an error with a message for the operator.
 """
 
 from __future__ import annotations
@@ -20,18 +20,18 @@ from core.message import CodedError, Message
 from core.records.record import Record
 from core.records.record_file import ENDING
 
-ALARM_TIME = "alarm time"  # of the words of an alarm's record: on the clock of its samples
-INSTANT = "instant"  # of a record's words: seconds from its first sample to the trigger or the alarm
+ALARM_TIME = "alarm time"  # key of an alarm record: the alarm's time on the clock of the samples
+INSTANT = "instant"  # key of a record: seconds from its first sample to the trigger or the alarm
 MOST = 500
-_ROOM = 20_000_000  # bytes that are left free: the store and the log need the disk more
+_ROOM = 20_000_000  # bytes of disk space reserved for the store and the log
 
 
 class ShelfError(CodedError):
-    """It was not done; the sentence says why and what to do."""
+    """Failed file operation. The message states the reason and the remedy."""
 
 
 class Kept(NamedTuple):
-    """One file: its name, when it was written, how large it is."""
+    """Record file with its path, modification time and size in bytes."""
 
     path: Path
     written: float
@@ -39,12 +39,12 @@ class Kept(NamedTuple):
 
     @property
     def when(self) -> str:
-        """Day and time at which it was written; the year stands in its name."""
+        """Month, day and time of the last modification. The name contains the year."""
         return time.strftime("%m-%d %H:%M:%S", time.localtime(self.written))
 
     @property
     def size_words(self) -> str:
-        """How large, in words."""
+        """Size of the file as text with a unit."""
         return file_size(self.size)
 
 
@@ -56,9 +56,9 @@ WriteTable = Callable[[Record, Callable[[str], object]], None]
 
 @dataclass(slots=True)
 class RecordShelf:
-    """``folder`` holds the records; ``save``, ``open_file`` and ``table`` know the format.
+    """Folder of scope records, with the functions that know the file format.
 
-    What they raise is a sentence: ShelfError, or an error whose text is one.
+    Errors are raised as ShelfError or as an error whose text is a message for the operator.
     """
 
     folder: Path
@@ -69,7 +69,7 @@ class RecordShelf:
     files: tuple[Kept, ...] = field(default=())
 
     def look(self) -> tuple[Kept, ...]:
-        """What is there now, newest first. On a worker."""
+        """Return the record files, newest first, at most ``MOST``; runs on a worker."""
         found = []
         with suppress(FileNotFoundError):
             for entry in os.scandir(self.folder):
@@ -80,13 +80,13 @@ class RecordShelf:
         return tuple(sorted(found, key=lambda each: -each.written)[:MOST])
 
     def keep(self, record: Record, stem: str = "scope") -> Path:
-        """Save a record under the time of day. Raises ShelfError."""
+        """Save a record under a name with date and time, and return its path. Raises ShelfError."""
         path = self._new(stem, ENDING)
         self._guarded(path, lambda: self.save(record, path))
         return path
 
     def write_csv(self, record: Record) -> Path:
-        """The same as a table of figures. Raises ShelfError."""
+        """Write a record as a CSV table and return its path. Raises ShelfError."""
         path = self._new("scope", ".csv")
 
         def write() -> None:
@@ -98,7 +98,7 @@ class RecordShelf:
         return path
 
     def write_picture(self, png: bytes) -> Path:
-        """A picture of the page. Raises ShelfError."""
+        """Save a picture of the page and return its path. Raises ShelfError."""
         path = self._new("scope", ".png")
 
         def write() -> None:
@@ -110,21 +110,21 @@ class RecordShelf:
         return path
 
     def open(self, path: Path) -> Record:
-        """A record that was kept. Raises ShelfError."""
+        """Open a stored record. Raises ShelfError."""
         return self._told(path, lambda: self.open_file(path))
 
     def delete(self, path: Path) -> None:
-        """Take a file away. Raises ShelfError."""
+        """Delete a record file. Raises ShelfError."""
         self._told(path, path.unlink)
 
     def _new(self, stem: str, ending: str) -> Path:
-        """A name that is free, by the time of day."""
+        """Return an unused path with the date and time."""
         named = f"{stem} {time.strftime('%Y-%m-%d %H-%M-%S', time.localtime(self.clock()))}"
         names = (f"{named}{more}{ending}" for more in ("", *(f" {n}" for n in range(2, 100))))
         return next(self.folder / name for name in names if not (self.folder / name).exists())
 
     def _guarded(self, path: Path, write: Callable[[], None]) -> None:
-        """Write where there is room."""
+        """Write a file if there is enough disk space."""
 
         def carefully() -> None:
             self.folder.mkdir(parents=True, exist_ok=True)
@@ -138,7 +138,7 @@ class RecordShelf:
         self._told(path, carefully)
 
     def _told(self, path: Path, work: Callable[[], T]) -> T:
-        """Do it; what goes wrong is told with the file's name."""
+        """Run a file operation and convert an OSError into a ShelfError with the file name."""
         try:
             return work()
         except ShelfError:
@@ -154,7 +154,7 @@ def _draft(path: Path) -> _Draft:
 
 
 class _Draft:
-    """A file beside its place; gone again where it was not finished."""
+    """Temporary file next to its target, deleted if writing fails."""
 
     def __init__(self, path: Path) -> None:
         self._path = path
@@ -169,7 +169,7 @@ class _Draft:
 
 
 def instant_of(record: Record) -> float:
-    """The record's instant 0, of its clock: the trigger or the alarm, else its last sample."""
+    """Return the instant 0 of a record on its clock: the trigger or alarm, or else the last sample."""
     told = record.about.get(INSTANT, "")
     if not len(record.times):
         return 0.0

@@ -1,4 +1,4 @@
-"""The curves of the scope as they are drawn: a lane a quantity, below each other, over one time."""
+"""Chart of the scope: one lane per quantity, one below the other, over a common time axis."""
 
 from __future__ import annotations
 
@@ -16,30 +16,36 @@ from app.scope.time_window import Cursors
 from app.screen.chart import Chart, Plot, curve_colour, line_pen, set_curve
 from app.screen.look import Look
 
-_LEFT = 8.6  # units: width of the figures at the left
-_HIGH, _STEP = 0.66, 1.0  # of a logic line and from one to the next
-_DIM = 0.45  # of its colour that an earlier record keeps
+_LEFT = 8.6  # units: width of the axis values at the left
+_HIGH, _STEP = 0.66, 1.0  # ratios: height of a logic curve and spacing between two
+_DIM = 0.45  # share of its color that the curve of an earlier record has
 _LETTERS = 1.5  # units
 _RIGHT = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
 
 
 class ScopeChart(Chart):
-    """``show_sight`` puts a picture on it; lanes are made anew when other quantities are shown."""
+    """Chart of the scope.
+
+    ``show_sight`` draws a picture, and other quantities rebuild the lanes.
+    """
 
     def __init__(self, look: Look, parent: QWidget) -> None:
         super().__init__(look, parent)
         self._lanes: dict[Quantity, Plot] = {}
         self._curves: dict[tuple[str, bool], pg.PlotCurveItem] = {}
-        self._known: object = None  # what lanes and curves are made for
-        self._waiting: list[Quantity] = []  # lanes that are still to be made
+        self._known: object = None  # signals for which lanes and curves exist
+        self._waiting: list[Quantity] = []  # lanes that are still to be created
         self.sight = Sight()
         self.cursors = Cursors()
-        self.colours: dict[str, int] = {}  # of the signals, by key: the number of the colour
+        self.colours: dict[str, int] = {}  # number of the color by signal key
 
-    # --- what is seen --------------------------------------------------------------------------------
+    # --- drawing -------------------------------------------------------------------------------------
 
     def show_sight(self, sight: Sight, cursors: Cursors) -> bool:
-        """Draw this picture; nothing is worked out here. False: its lanes are still being made, ask again."""
+        """Draw a prepared picture and return whether it was drawn.
+
+        The result is False while lanes are still being created, and the caller then repeats the call.
+        """
         if not (self.ready(len(_quantities(sight))) and self._made_for(sight)):
             return False
         self.sight, self.cursors = sight, cursors
@@ -72,7 +78,7 @@ class ScopeChart(Chart):
         set_curve(item, points.times, values, _connect(points))
 
     def _made_for(self, sight: Sight) -> bool:
-        """Whether lanes and curves are those of this picture; one lane is made a call."""
+        """Return whether lanes and curves match the picture. Each call creates one lane."""
         shown = [*((each, True) for each in sight.earlier), *((each, False) for each in sight.curves)]
         known = tuple((each.signal.key, earlier) for each, earlier in shown)
         if known != self._known:
@@ -89,7 +95,7 @@ class ScopeChart(Chart):
         return not self._waiting
 
     def _make(self, quantity: Quantity, shown: list[tuple[Curve, bool]]) -> None:
-        """The lane of a quantity, with its curves."""
+        """Create the lane of a quantity with its curves."""
         plot = self._lanes[quantity] = self.add()
         plot.axis("bottom").setVisible(not self._waiting)
         plot.axis("left").setStyle(showValues=quantity is not Quantity.LOGIC)
@@ -103,7 +109,7 @@ class ScopeChart(Chart):
         return mixed(full, self.look.colour("panel"), _DIM) if earlier else full
 
     def dress(self) -> None:
-        """Colours and letters of now: everything is made anew with the next picture."""
+        """Apply the present colors and fonts. The next picture rebuilds the chart."""
         super().dress()
         self._known = None
 
@@ -111,34 +117,34 @@ class ScopeChart(Chart):
     def _count(curves: Sequence[Curve]) -> int:
         return sum(each.signal.quantity is Quantity.LOGIC for each in curves)
 
-    # --- places --------------------------------------------------------------------------------------
+    # --- coordinates ---------------------------------------------------------------------------------
 
     @property
     def room(self) -> QRectF:
-        """Where curves are, across all lanes; pixels of the chart."""
+        """Area of the curves across all lanes, in pixels of the chart."""
         rooms = [plot.room() for plot in self.plots]
         return rooms[0].united(rooms[-1]) if rooms else QRectF()
 
     def time_at(self, place: QPointF) -> float:
-        """The instant at a place of the chart, as the window counts it."""
+        """Return the time at a chart position, in seconds of the window."""
         room, sight = self.room, self.sight
         share = (place.x() - room.x()) / max(1.0, room.width())
         return sight.begin + share * (sight.end - sight.begin)
 
     def across(self, instant: float) -> float:
-        """Where an instant lies, in pixels of the chart."""
+        """Return the horizontal chart position of a time, in pixels."""
         room, sight = self.room, self.sight
         return room.x() + (instant - sight.begin) / (sight.end - sight.begin) * room.width()
 
     def quantity_at(self, place: QPointF) -> Quantity | None:
-        """The lane at a place of the chart."""
+        """Return the quantity of the lane at a chart position, or None."""
         found = (each for each, plot in self._lanes.items() if plot.room().bottom() >= place.y())
         return next(found, None)
 
     # --- over the curves -----------------------------------------------------------------------------
 
     def drawForeground(self, painter: QPainter, rect: QRectF) -> None:
-        """Names of the lanes, instant 0 of a record, and the cursors."""
+        """Draw the names of the lanes, instant 0 of a record, and the cursors."""
         super().drawForeground(painter, rect)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing, False)
         if not self.plots or not self.room.width():
@@ -183,7 +189,7 @@ class ScopeChart(Chart):
 
 
 def _quantities(sight: Sight) -> list[Quantity]:
-    """The lanes of a picture from above to below; inputs and outputs last."""
+    """Return the lanes of a picture from top to bottom, with inputs and outputs last."""
     found = list(dict.fromkeys(each.signal.quantity for each in sight.curves))
     return sorted(found, key=lambda each: each is Quantity.LOGIC)
 
@@ -195,6 +201,6 @@ def _connect(points: Points) -> object:
 
 
 def mixed(ink: QColor, ground: QColor, share: float) -> QColor:
-    """A colour between two: an opaque line is drawn faster than one that lets the ground through."""
+    """Return a mix of two colors. Opaque lines are drawn faster than transparent lines."""
     parts = ((ink.red(), ground.red()), (ink.green(), ground.green()), (ink.blue(), ground.blue()))
     return QColor(*(round(share * a + (1.0 - share) * b) for a, b in parts))

@@ -1,7 +1,7 @@
-"""What the scope draws, worked out beside the screen: curves of a record, and of the samples that come in.
+"""Curves of the scope, prepared on a worker from a record or from live samples.
 
-Both give a ``Sight``: arrays that are ready to be drawn, in the units that are shown. Live curves are carried
-on: only what was sampled since the last picture is looked at.
+Both sources produce a ``Sight``: arrays that are ready to draw, in the displayed units. Live curves are
+extended by the samples since the last picture only.
 """
 
 from __future__ import annotations
@@ -19,41 +19,45 @@ from core.executor.snapshot import State
 from core.records.record import Channel, Record
 
 IntArray = npt.NDArray[np.int64]
-DENSE = 2.0  # samples a column from which on columns are drawn; fewer are drawn as they are
+DENSE = 2.0  # number of samples per column above which columns are drawn instead of samples
 
 
 @dataclass(frozen=True, slots=True)
 class Points:
-    """What is drawn: ``pairs`` are lines of two points each; else ``joined`` says where a line goes on.
+    """Points of a curve. ``times`` are seconds of the record's clock.
 
-    ``times`` are seconds of the record's clock.
+    If ``pairs`` is set, each two points are one line. Otherwise ``joined`` marks the points that are
+    connected to the next point.
     """
 
     times: FloatArray
     values: FloatArray
     pairs: bool = False
-    joined: npt.NDArray[np.bool_] | None = None  # None: all
+    joined: npt.NDArray[np.bool_] | None = None  # None: all points are connected
 
 
 @dataclass(slots=True)
 class Columns:
-    """Least and greatest of each column that has samples; column n of ``numbers`` begins at n·``width`` s."""
+    """Minimum and maximum per column. Column n of ``numbers`` starts at n · ``width`` seconds."""
 
     width: float
     numbers: IntArray
     least: FloatArray
     greatest: FloatArray
-    entries: FloatArray  # the sample before the column, nan where it does not go on from it
+    entries: FloatArray  # sample before each column, or nan after a gap
     last: float = np.nan  # sample before the next one
 
     @classmethod
     def none(cls, width: float) -> Columns:
-        """Nothing yet."""
+        """Return an empty set of columns of a width in seconds."""
         nothing = np.empty(0)
         return cls(width, np.empty(0, dtype=np.int64), nothing, nothing, nothing)
 
     def append(self, times: FloatArray, values: FloatArray) -> None:
-        """Take samples that are later than all before; what is not a number leaves a gap."""
+        """Append samples that are later than all earlier samples.
+
+        Values that are not finite leave a gap.
+        """
         if not len(values):
             return
         last, self.last = self.last, float(values[-1])
@@ -82,13 +86,13 @@ class Columns:
         self.entries = np.concatenate([self.entries, before])
 
     def forget(self, before: float) -> None:
-        """What ended before this instant is not shown any more."""
+        """Remove the columns that ended before a time in seconds."""
         cut = int(np.searchsorted(self.numbers, int(np.floor(before / self.width))))
         self.numbers, self.entries = self.numbers[cut:], self.entries[cut:]
         self.least, self.greatest = self.least[cut:], self.greatest[cut:]
 
     def points(self) -> Points:
-        """One upright line a column, and a level one over columns in which nothing was sampled."""
+        """Return one vertical line per column, and a horizontal line over each gap in a connected curve."""
         at = (self.numbers + 0.5) * self.width
         later = 1 + np.flatnonzero((np.diff(self.numbers) > 1) & np.isfinite(self.entries[1:]))
         n = len(at)
@@ -101,7 +105,7 @@ class Columns:
 
 
 def points_of(times: FloatArray, values: FloatArray, width: float) -> Points:
-    """What is drawn of these samples where a pixel is ``width`` s wide."""
+    """Return the points to draw for samples, at a pixel width of ``width`` seconds."""
     if len(times) < 2 or len(times) < DENSE * (times[-1] - times[0]) / width:
         told = np.flatnonzero(np.isfinite(values))
         if len(told) == len(values):
@@ -112,14 +116,14 @@ def points_of(times: FloatArray, values: FloatArray, width: float) -> Points:
     return columns.points()
 
 
-# --- the range of a lane --------------------------------------------------------------------------------
+# --- range of a lane ------------------------------------------------------------------------------------
 
 _EDGE = 0.01
 _ROUND = (1.0, 2.0, 2.5, 5.0, 10.0)
 
 
 def round_range(low: float, high: float, least: float) -> tuple[float, float]:
-    """A range of round figures about these two, ``least`` wide at least, with some room above and below."""
+    """Return a range with round limits around two values, at least ``least`` wide and with a margin."""
     middle, wide = 0.5 * (low + high), max(1.08 * (high - low), least)
     power = 10.0 ** np.floor(np.log10(wide / 4.0))
     step = float(next(power * each for each in _ROUND if power * each >= wide / 4.0 - 1e-12))
@@ -130,10 +134,13 @@ def round_range(low: float, high: float, least: float) -> tuple[float, float]:
 def kept_range(
     before: tuple[float, float] | None, low: float, high: float, least: float
 ) -> tuple[float, float]:
-    """The range of before as long as the curve lies in it and fills a quarter: a lane does not twitch."""
+    """Return the present range while the curve is inside and fills a quarter. Otherwise return a new range.
+
+    This prevents frequent small changes of the scale.
+    """
     if before is not None:
         wide = before[1] - before[0]
-        edge = _EDGE * wide  # a curve on the edge itself is half a line beyond it, and not seen
+        edge = _EDGE * wide  # A curve exactly on the edge would be half hidden.
         inside = before[0] + edge <= low and high <= before[1] - edge
         if inside and (4.0 * (high - low) >= wide or wide <= 4.0 * least):
             return before
@@ -142,37 +149,43 @@ def kept_range(
 
 FloatArray = npt.NDArray[np.float64]
 Range = tuple[float, float]
-GAP = 0.02  # s that a fetch reaches back beyond what derived signals need
-_REST = 0.25  # s; samples of a machine at rest are a tenth of a second apart
+GAP = 0.02  # seconds that a query starts earlier than derived signals need
+_REST = 0.25  # seconds; a machine at rest is sampled every 0.1 s
 ALARMED = (State.FAULT.value, State.ESTOP.value)
 
 
 class LiveSamples(Protocol):
-    """The ring of the last minutes, as the page reads it; from any thread."""
+    """Ring buffer of the samples of the last minutes; readable from any thread."""
 
     @property
     def channels(self) -> tuple[Channel, ...]:
-        """What is recorded."""
+        """Recorded channels."""
         ...
 
     @property
     def last(self) -> float:
-        """Time of the newest sample, minus infinity without one; seconds of the monotonic clock."""
+        """Time of the newest sample in seconds of the monotonic clock, or minus infinity without samples."""
         ...
 
     @property
     def lasts(self) -> float:
-        """Seconds that are kept."""
+        """Length of the ring buffer in seconds."""
         ...
 
     def between(self, begin: float, end: float, names: Collection[str] | None = None) -> Record:
-        """The samples from ``begin`` up to and with ``end``; ``names``: these channels alone."""
+        """Return the samples from ``begin`` to ``end`` inclusive.
+
+        ``names`` restricts the channels.
+        """
         ...
 
 
 @dataclass(frozen=True, slots=True)
 class Curve:
-    """One signal as it is drawn, in the units shown; ``latest`` is its newest figure, nan without one."""
+    """Curve of one signal in displayed units.
+
+    ``latest`` is the newest value, or nan without a value.
+    """
 
     signal: Signal
     points: Points
@@ -181,13 +194,14 @@ class Curve:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Sight:
-    """One picture. Times of curves are seconds less ``zero``; ``begin`` and ``end`` of the window too.
+    """Prepared picture of the scope. Times of curves and window are seconds relative to ``zero``.
 
-    ``ranges`` are those of the lanes, in units shown; ``at`` the figures at the two cursors, by signal.
+    ``ranges`` are the ranges of the lanes in displayed units. ``at`` contains the values at both cursors by
+    signal.
     """
 
     curves: tuple[Curve, ...] = ()
-    earlier: tuple[Curve, ...] = ()  # of the record that is laid over
+    earlier: tuple[Curve, ...] = ()  # curves of the overlaid record
     begin: float = -1.0
     end: float = 0.0
     zero: float = 0.0
@@ -196,15 +210,15 @@ class Sight:
     metric: bool = False
     ranges: Mapping[Quantity, Range] = field(default_factory=dict)
     at: Mapping[str, tuple[float, float]] = field(default_factory=dict)
-    released: float | None = None  # when the trigger was, seconds of the clock
-    level: tuple[float, ...] | None = None  # figures of live curves that are nothing but level lines
+    released: float | None = None  # trigger time in seconds of the clock
+    level: tuple[float, ...] | None = None  # values of live curves if all are constant
 
 
 @dataclass(frozen=True, slots=True)
 class Wanted:
-    """What is to be drawn: signals, window, how many pixels wide, in which units.
+    """Request for a picture: signals, time window, width in pixels and units.
 
-    ``begin`` and ``end`` count from ``zero`` of a record; live, the newest sample is the end.
+    ``begin`` and ``end`` are relative to ``zero`` of a record, or to the newest sample when live.
     """
 
     signals: tuple[Signal, ...]
@@ -214,29 +228,29 @@ class Wanted:
     metric: bool
     trigger: Trigger = field(default_factory=Trigger)
     cursors: tuple[float, float] | None = None
-    ranges: Mapping[Quantity, Range] = field(default_factory=dict)  # those chosen by hand
+    ranges: Mapping[Quantity, Range] = field(default_factory=dict)  # ranges that the user has set
     armed: float = -np.inf  # time of the newest sample when the trigger was armed
 
     @property
     def span(self) -> float:
-        """Seconds that the window is wide."""
+        """Width of the window in seconds."""
         return self.end - self.begin
 
     @property
     def width(self) -> float:
-        """Seconds a pixel."""
+        """Duration of one pixel in seconds."""
         return self.span / max(1, self.pixels)
 
 
 def shown(points: Points, scale: float, zero: float) -> Points:
-    """In the units that are shown, counted from ``zero``."""
+    """Return the points in displayed units, with times relative to ``zero``."""
     return Points(points.times - zero, points.values * scale, points.pairs, points.joined)
 
 
 def ranges_of(
     curves: Sequence[Curve], before: Mapping[Quantity, Range], wanted: Wanted
 ) -> dict[Quantity, Range]:
-    """A range for each lane: the one that was chosen by hand, or one in which its curves lie."""
+    """Return the range of each lane: the range that the user has set, or one that contains the curves."""
     found: dict[Quantity, Range] = {}
     for quantity in dict.fromkeys(each.signal.quantity for each in curves):
         chosen = wanted.ranges.get(quantity)
@@ -254,9 +268,9 @@ def ranges_of(
 
 
 def level_of(curves: Sequence[Curve], begin: float, width: float) -> tuple[float, ...] | None:
-    """The figure of each curve where all are level across the whole window, nan for an empty one; else None.
+    """Return the values of the curves if all are constant across the window, else None.
 
-    Such a picture rolls on without being another one.
+    An empty curve has the value nan. A picture of constant curves does not change while it scrolls.
     """
     levels = []
     for curve in curves:
@@ -270,12 +284,15 @@ def level_of(curves: Sequence[Curve], begin: float, width: float) -> tuple[float
     return tuple(levels)
 
 
-# --- of a record ----------------------------------------------------------------------------------------
+# --- record ---------------------------------------------------------------------------------------------
 
 
 @dataclass(slots=True, eq=False)
 class RecordCurves:
-    """The curves of one record; derived columns are kept. ``zero`` is its instant 0, of its clock."""
+    """Curves of one record, with cached derived columns.
+
+    ``zero`` is the instant 0 on the record's clock.
+    """
 
     record: Record
     zero: float
@@ -284,7 +301,7 @@ class RecordCurves:
     _metric: bool | None = None
 
     def column(self, signal: Signal) -> FloatArray | None:
-        """All figures of a signal, units inside; None: the record has none."""
+        """Return all values of a signal in internal units, or None if the record does not contain it."""
         source = self.record.columns.get(signal.channel)
         if source is None:
             return None
@@ -293,7 +310,7 @@ class RecordCurves:
         return self._columns[signal.key]
 
     def curves(self, wanted: Wanted) -> tuple[Curve, ...]:
-        """As they are drawn in the window."""
+        """Return the curves of the window."""
         times = self.record.times
         begin, end = self.zero + wanted.begin, self.zero + wanted.end
         first = max(0, int(np.searchsorted(times, begin)) - 1)
@@ -308,7 +325,7 @@ class RecordCurves:
         return tuple(found)
 
     def sight(self, wanted: Wanted, overlay: RecordCurves | None = None) -> Sight:
-        """The picture of a window of it, ``overlay`` laid over with its own instant 0."""
+        """Return the picture of a window, with an overlaid record aligned at its own instant 0."""
         curves = self.curves(wanted)
         earlier = overlay.curves(wanted) if overlay is not None else ()
         if self._metric is not wanted.metric:
@@ -333,7 +350,7 @@ class RecordCurves:
         )
 
     def _at(self, signal: Signal, cursors: tuple[float, float], metric: bool) -> tuple[float, float]:
-        """The figures of the samples nearest to both cursors; nan beyond the record."""
+        """Return the values of the samples nearest to both cursors, or nan outside the record."""
         column, times = self.column(signal), self.record.times
         if column is None or not len(times):
             return np.nan, np.nan
@@ -354,7 +371,7 @@ class RecordCurves:
 
 @dataclass(slots=True, eq=False)
 class LiveCurves:
-    """Curves that are carried on; begun anew when window, size or signals are others."""
+    """Live curves that are extended with each picture, and restarted when window, size or signals change."""
 
     source: LiveSamples
     _of: object = None
@@ -362,11 +379,11 @@ class LiveCurves:
     _done: dict[str, float] = field(default_factory=dict)
     _latest: dict[str, float] = field(default_factory=dict)
     _ranges: Mapping[Quantity, Range] = field(default_factory=dict)
-    _watched: float = np.nan  # up to where the trigger has looked
-    _trigger: tuple[Trigger, float] | None = None  # and when it was armed
+    _watched: float = np.nan  # time up to which the trigger has examined the samples
+    _trigger: tuple[Trigger, float] | None = None  # the trigger and its arming time
 
     def sight(self, wanted: Wanted, overlay: RecordCurves | None = None) -> Sight:
-        """The picture of the last seconds, up to the newest sample."""
+        """Return the picture of the last seconds up to the newest sample."""
         newest = self.source.last
         width = wanted.width
         known = (wanted.signals, wanted.span, wanted.pixels, wanted.metric)
@@ -377,7 +394,7 @@ class LiveCurves:
             self._ranges = {}
         if not np.isfinite(newest):
             return Sight(begin=-wanted.span, end=0.0, metric=wanted.metric)
-        end = np.ceil(newest / width) * width  # whole columns, or the curve would flicker
+        end = np.ceil(newest / width) * width  # Partial columns would make the curve flicker.
         rate = self._carry_on(wanted, newest)
         curves = []
         for signal in wanted.signals:
@@ -406,7 +423,7 @@ class LiveCurves:
         )
 
     def _carry_on(self, wanted: Wanted, newest: float) -> float:
-        """Take what has come; the rate of the samples."""
+        """Add the new samples to the columns, and return the sample rate."""
         start = newest - wanted.span
         back = max((each.span for each in wanted.signals), default=0.0) + GAP
         done = min((self._done.get(each.key, start) for each in wanted.signals), default=start)
@@ -430,7 +447,10 @@ class LiveCurves:
         return record.rate
 
     def _released(self, wanted: Wanted, newest: float) -> float | None:
-        """When the trigger was released by what has come; what lay before it was armed counts for nothing."""
+        """Return the time at which new samples fired the trigger, or None.
+
+        Samples from before the trigger was armed are ignored.
+        """
         trigger = wanted.trigger
         if (trigger, wanted.armed) != self._trigger:
             self._trigger = trigger, wanted.armed
@@ -455,6 +475,6 @@ class LiveCurves:
 
 
 def alarmed_of(record: Record) -> frozenset[int]:
-    """The figures of the channel ``state`` that mean an alarm or E-stop."""
+    """Return the values of the channel ``state`` that mean an alarm or an E-stop."""
     words = record.about.get("states", "").split("|")
     return frozenset(i for i, word in enumerate(words) if word in ALARMED)

@@ -1,4 +1,4 @@
-"""The scope in the list of special functions, F10: what is recorded, and the way to its page."""
+"""Entry of the scope in the list of special functions (F10)."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from app.scope.scope_model import Scope
 from app.special.special_functions import PageFunction
 from core.message import Message
 
-PAGE = "SCOPE"  # its name in app.screen.page_table
+PAGE = "SCOPE"  # name of the page in app.screen.page_table
 
 
 class ScopeFunction(PageFunction):
-    """What is recorded, and how much of it."""
+    """Special function that shows the recorded duration and opens the scope."""
 
     name = "SCOPE"
     use = "axis and spindle curves"
@@ -23,7 +23,7 @@ class ScopeFunction(PageFunction):
     )
 
     def facts(self) -> tuple[Row, ...]:
-        """How long and how many channels."""
+        """Return the rows with the recorded duration and the number of channels."""
         scope = self.desk.pages.find(Scope)
         live = scope.live if scope is not None else None
         if live is None:
@@ -34,5 +34,5 @@ class ScopeFunction(PageFunction):
         )
 
     def prompt(self) -> str:
-        """How the page is opened."""
+        """Return the prompt that names the keys."""
         return "ENTER: OPEN SCOPE   ESC: BACK TO LIST"

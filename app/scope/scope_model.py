@@ -1,6 +1,6 @@
-"""The scope: what it shows of the machine, live or frozen, its trigger and cursors, a record laid over.
+"""Model of the scope: live or frozen curves, trigger, cursors and an overlaid record.
 
-Nothing is computed on the screen's thread: ``look`` asks a worker for the next picture, takes the last.
+All curves are calculated on a worker. ``look`` requests the next picture and stores the last one.
 """
 
 from __future__ import annotations
@@ -24,17 +24,17 @@ from core.executor.snapshot import Snapshot
 from core.message import Message
 from core.records.record import Record
 
-MOST_SHOWN = 8  # curves; inputs and outputs come beside them
+MOST_SHOWN = 8  # curves; inputs and outputs are counted separately
 MOST_LOGIC = 12
-FROZEN = 60.0  # s that are taken when the curves are frozen, or three windows
-LEVEL_FOR = 1.0  # s after which level lines are looked at again where nothing seems to have happened
-ZOOM = 1.5  # a step of a lane's range
+FROZEN = 60.0  # minimum seconds that are frozen; otherwise three windows
+LEVEL_FOR = 1.0  # seconds after which constant curves are updated even without a change
+ZOOM = 1.5  # factor of one step of a lane's range
 FORGOTTEN = tr("CURVES ARE LIVE. F2: FREEZE THEM FIRST")
 NO_SAMPLES = tr("NO SCOPE DATA ON THIS MACHINE. F9: OPEN A SCOPE RECORD")
 
 
 class Side(Enum):
-    """What stands beside the curves."""
+    """Content of the area next to the curves."""
 
     READINGS = "readings"
     CURVES = "curves"
@@ -44,7 +44,10 @@ class Side(Enum):
 
 @dataclass(slots=True)
 class Scope:
-    """``live`` is the ring of the last minutes; None: only files can be looked at."""
+    """Model of the scope page.
+
+    ``live`` is the ring buffer, or None if only files can be shown.
+    """
 
     desk: Desk
     live: LiveSamples | None
@@ -56,21 +59,22 @@ class Scope:
     trigger: Trigger = field(default_factory=Trigger)
     side: Side = Side.READINGS
     chosen: tuple[str, ...] = ()
-    marked: int = 0  # which of the curves shown is the one that keys act on
+    marked: int = 0  # index of the displayed curve on which keys act
     pixels: int = 800
     sight: Sight = field(default_factory=Sight)
     signals: tuple[Signal, ...] = ()
     frozen: RecordCurves | None = None
     overlay: RecordCurves | None = None
-    name: str = ""  # of the file that is open
-    over_name: str = ""  # of the one that is laid over
+    name: str = ""  # name of the open file
+    over_name: str = ""  # name of the overlaid file
     armed: bool = False
-    _armed_at: float = -np.inf  # of the samples' clock
-    _ranges: dict[Quantity, Range] = field(default_factory=dict)  # chosen by hand
+    _armed_at: float = -np.inf  # on the clock of the samples
+    _ranges: dict[Quantity, Range] = field(default_factory=dict)  # set by the user
     _released: float | None = None
-    _drawn: object = None  # what was last asked for of a record
+    _drawn: object = None  # last request for a record
     _carried: LiveCurves | None = None
-    _asked: tuple[Wanted, Snapshot, float] | None = None  # for the last live picture, and when
+    # request, snapshot and time of the last live picture
+    _asked: tuple[Wanted, Snapshot, float] | None = None
 
     def __post_init__(self) -> None:
         if self.live is not None:
@@ -81,29 +85,29 @@ class Scope:
 
     @property
     def is_live(self) -> bool:
-        """Whether the curves roll."""
+        """Whether the curves are live."""
         return self.frozen is None
 
     @property
     def metric(self) -> bool:
-        """Whether lengths are shown in mm, as everywhere on the desk."""
+        """Whether lengths are displayed in mm."""
         return self.desk.settings.units.metric(self.desk.snapshot().modal.metric)
 
     @property
     def shown(self) -> tuple[Signal, ...]:
-        """The signals that are shown, in the order of the list."""
+        """Displayed signals in the order of the list."""
         return tuple(each for each in self.signals if each.key in self.chosen)
 
     @property
     def marked_signal(self) -> Signal | None:
-        """The curve that keys act on."""
+        """Signal on which keys act, or None."""
         shown = self.shown
         return shown[min(self.marked, len(shown) - 1)] if shown else None
 
     # --- every frame ---------------------------------------------------------------------------------
 
     def look(self) -> None:
-        """Take the picture that has come, and ask for the next; called once a frame."""
+        """Store the finished picture and request the next one; called once per frame."""
         self.worker.poll()
         self.filing.poll()
         if self.worker.busy:
@@ -134,7 +138,7 @@ class Scope:
         )
 
     def _follow(self, wanted: Wanted) -> None:
-        """The next live picture, or, once a trigger's window is full, the frozen one."""
+        """Request the next live picture, or freeze the curves once the trigger's window is full."""
         carried, live, overlay = self._carried, self.live, self.overlay
         if carried is None or live is None:
             return
@@ -149,7 +153,10 @@ class Scope:
             self.worker.ask(lambda _: carried.sight(wanted, overlay), taken, self.desk.say)
 
     def _stays(self, wanted: Wanted) -> bool:
-        """Level lines of a machine that tells what it told when they were asked for, not long ago."""
+        """Return whether the picture of constant curves is still valid.
+
+        The picture is valid for a short time while the machine state is unchanged.
+        """
         if self._asked is None or self.sight.level is None or self.armed:
             return False
         asked, snapshot, at = self._asked
@@ -157,9 +164,12 @@ class Scope:
         return recent and asked == wanted and snapshot.tells_as(self.desk.snapshot())
 
     def _take(self, sight: Sight, of: tuple[Trigger, float] | None = None) -> None:
-        """``of``: the trigger looked for, and when it was armed; set anew meanwhile, it releases nothing."""
+        """Store a picture.
+
+        ``of`` is the trigger of the request, ignored if the trigger has changed since.
+        """
         if sight.live is not self.is_live:
-            return  # it was asked for before
+            return  # requested before the change between live and frozen
         self.sight = sight
         if self.armed and self._released is None and of == (self.trigger, self._armed_at):
             self._released = sight.released
@@ -168,12 +178,12 @@ class Scope:
 
     @property
     def has_samples(self) -> bool:
-        """Whether there is something to freeze, or something frozen."""
+        """Whether there are samples to freeze or a frozen record."""
         live = self.live is not None and bool(np.isfinite(self.live.last))
         return self.frozen is not None or live
 
     def freeze_key(self) -> None:
-        """F2: freeze what is seen, or let the curves roll again."""
+        """Freeze the curves, or return to live curves (F2)."""
         self.desk.clear()
         if self.frozen is not None:
             self.go_live()
@@ -183,7 +193,7 @@ class Scope:
             self._freeze_at(None, self.window.span)
 
     def go_live(self) -> None:
-        """The curves roll; an armed trigger waits again."""
+        """Return to live curves and rearm the trigger."""
         if self.live is None:
             self.desk.say(NO_SAMPLES)
             return
@@ -197,7 +207,7 @@ class Scope:
         self._other_signals(signals_of(self.live.channels))
 
     def _freeze_at(self, instant: float | None, span: float) -> None:
-        """Take what was sampled about an instant, or the last samples; the worker copies it."""
+        """Freeze the samples around an instant, or the last samples, copied by the worker."""
         live = self.live
         assert live is not None
         most = max(FROZEN, 3.0 * span)
@@ -218,7 +228,10 @@ class Scope:
         self.worker.ask(take, done, self.desk.say)
 
     def show_record(self, record: Record, name: str, window: tuple[float, float] | None = None) -> None:
-        """Look at a record from now on; ``window`` in seconds of its instant 0, else all of it."""
+        """Show a record.
+
+        ``window`` is in seconds relative to its instant 0, and None shows everything.
+        """
         if not len(record.times):
             self.desk.say(tr("THE RECORD CONTAINS NO SAMPLES FOR THIS TIME RANGE"))
             return
@@ -233,7 +246,7 @@ class Scope:
         self._other_signals(signals_of(record.channels))
 
     def _other_signals(self, signals: tuple[Signal, ...]) -> None:
-        """Of another machine there may be others; what is not there is not shown."""
+        """Replace the available signals and remove displayed signals that no longer exist."""
         self.signals = signals
         there = {each.key for each in signals}
         kept = tuple(each for each in self.chosen if each in there)
@@ -243,7 +256,7 @@ class Scope:
     # --- curves --------------------------------------------------------------------------------------
 
     def toggle(self, signal: Signal) -> None:
-        """Show a curve, or no longer."""
+        """Show or hide a curve."""
         self.desk.clear()
         if signal.key in self.chosen:
             self.chosen = tuple(each for each in self.chosen if each != signal.key)
@@ -258,19 +271,19 @@ class Scope:
         self.chosen = (*self.chosen, signal.key)
 
     def mark(self, number: int) -> None:
-        """Keys act on this curve."""
+        """Select the curve on which keys act."""
         self.marked = max(0, min(number, len(self.shown) - 1))
 
     def stretch(self, steps: int, quantity: Quantity | None = None) -> None:
-        """The lane of the marked curve nearer (positive) or farther, about its middle."""
+        """Magnify the lane of the selected curve around its middle. Negative steps reduce it."""
         self.stretch_by(ZOOM**steps, quantity)
 
     def stretch_by(self, factor: float, quantity: Quantity | None = None) -> None:
-        """The lane nearer by a factor."""
+        """Magnify a lane by a factor."""
         self._change_range(quantity, lambda low, high: _about(low, high, 1.0 / factor))
 
     def shift(self, steps: float, quantity: Quantity | None = None) -> None:
-        """The lane's window up by so many tenths."""
+        """Move the range of a lane up by steps of 10 %."""
 
         def change(low: float, high: float) -> Range:
             by = PAN * steps * (high - low)
@@ -287,7 +300,7 @@ class Scope:
         self._ranges[quantity] = change(*now)
 
     def fit(self) -> None:
-        """All of a record, and every lane by its curves."""
+        """Show the whole record, with all lanes scaled to their curves."""
         self.desk.clear()
         self._ranges.clear()
         if self.frozen is not None:
@@ -296,30 +309,30 @@ class Scope:
     # --- the window ----------------------------------------------------------------------------------
 
     def zoom(self, steps: int, at: float | None = None) -> None:
-        """Nearer or farther by steps, about an instant, the moved cursor or the middle."""
+        """Zoom in or out by steps, around a time, the selected cursor or the middle."""
         if at is None and self.cursors.shown:
             at = self.cursors.times[self.cursors.at]
         self.window.zoom(steps, 0.0 if self.is_live else at)
 
     def magnify(self, factor: float, at: float) -> None:
-        """As two fingers spread."""
+        """Magnify by the factor of a pinch gesture."""
         self.window.magnify(factor, 0.0 if self.is_live else at)
 
     def pan(self, by: float) -> None:
-        """So many seconds later; curves that roll are frozen first."""
+        """Move the window by a number of seconds. Live curves are frozen first."""
         if self.is_live:
             self.freeze_key()
             return
         self.window.pan(by)
 
     def pan_steps(self, steps: int) -> None:
-        """By tenths of the window."""
+        """Move the window by steps of 10 %."""
         self.pan(steps * PAN * self.window.span)
 
     # --- cursors -------------------------------------------------------------------------------------
 
     def cursors_key(self) -> None:
-        """F5: two cursors, or none again. They stand on frozen curves."""
+        """Show or hide the two cursors on frozen curves (F5)."""
         self.desk.clear()
         if self.cursors.shown:
             self.cursors.at = -1
@@ -329,7 +342,7 @@ class Scope:
             self.cursors.put_into(self.window)
 
     def step_cursor(self, pixels: int) -> None:
-        """The moved cursor by so many pixels; the window goes along."""
+        """Move the selected cursor by pixels. The window follows."""
         now = self.cursors.times[self.cursors.at]
         to = now + pixels * self.window.span / max(1, self.pixels)
         self.cursors.move(max(self.window.most[0], min(to, self.window.most[1])))
@@ -338,19 +351,19 @@ class Scope:
     # --- trigger -------------------------------------------------------------------------------------
 
     def set_trigger(self, trigger: Trigger) -> None:
-        """Another trigger; it is armed as long as it is one and the curves roll."""
+        """Set the trigger, and arm it while the curves are live."""
         self.trigger = trigger
         self._arm()
 
     def _arm(self) -> None:
-        """From this sample on: what was sampled before, or while the curves stood, releases nothing."""
+        """Arm the trigger from the newest sample on. Earlier samples do not fire it."""
         self.armed = self.trigger.when is not When.OFF and self.is_live
         self._armed_at = self.live.last if self.live is not None else -np.inf
         self._released = None
 
     @property
     def trigger_words(self) -> str:
-        """How it stands with the trigger."""
+        """State of the trigger as text."""
         if self.trigger.when is When.OFF:
             return ""
         if self._released is not None:
@@ -360,7 +373,7 @@ class Scope:
     # --- files ---------------------------------------------------------------------------------------
 
     def what_is_seen(self) -> Record | None:
-        """The record between the edges of the window; None, and said, while the curves are live."""
+        """Return the record of the visible window, or None with a message while the curves are live."""
         frozen = self.frozen
         if frozen is None:
             self.desk.say(FORGOTTEN)
@@ -374,13 +387,13 @@ class Scope:
         return replace(cut, about=told)
 
     def save(self) -> None:
-        """What is seen, as a record that can be opened again."""
+        """Save the visible window as a record."""
         record = self.what_is_seen()
         if record is not None:
             self.filing.queue(lambda: self.shelf.keep(record), self._written, self.desk.refuse)
 
     def write_csv(self) -> None:
-        """What is seen, as a table."""
+        """Write the visible window as a CSV table."""
         record = self.what_is_seen()
         if record is not None:
             self.filing.queue(lambda: self.shelf.write_csv(record), self._written, self.desk.refuse)
@@ -390,14 +403,14 @@ class Scope:
         self.list_files()
 
     def list_files(self) -> None:
-        """Look what is there."""
+        """Update the list of files."""
         self.filing.queue(self.shelf.look, self._listed, self.desk.refuse)
 
     def _listed(self, files: tuple[Kept, ...]) -> None:
         self.shelf.files = files
 
     def open_alarm(self, name: str) -> None:
-        """The seconds before an alarm; it may still be being written."""
+        """Open the record of an alarm, which may still be in the process of writing."""
         recorder = self.desk.control.recordings
         folder, shelf = self.shelf.folder, self.shelf
         self.side = Side.READINGS
@@ -411,7 +424,7 @@ class Scope:
         self.filing.queue(work, done, self.desk.refuse)
 
     def open(self, kept: Kept) -> None:
-        """Look at a record of the disk."""
+        """Open a record from the disk."""
         path, shelf = kept.path, self.shelf
 
         def done(record: Record) -> None:
@@ -421,7 +434,10 @@ class Scope:
         self.filing.queue(lambda: shelf.open(path), done, self.desk.refuse)
 
     def lay_over(self, kept: Kept) -> None:
-        """An earlier record over this one, their instants 0 upon each other; the same again takes it away."""
+        """Overlay an earlier record, aligned at instant 0.
+
+        The same record again removes the overlay.
+        """
         self.desk.clear()
         if self.over_name == kept.path.name:
             self.overlay, self.over_name = None, ""
@@ -434,7 +450,7 @@ class Scope:
         self.filing.queue(lambda: shelf.open(path), done, self.desk.refuse)
 
     def delete(self, kept: Kept) -> None:
-        """Take a file away, after asking."""
+        """Delete a record file after confirmation."""
         if self.desk.refused(Act.RECORDS):
             return
 
@@ -450,12 +466,12 @@ class Scope:
         self.desk.ask(question, yes)
 
     def write_picture(self, png: Callable[[], bytes]) -> None:
-        """A picture of the page, made into a file by a worker: ``png`` gives its bytes there."""
+        """Save a picture of the page on a worker. ``png`` returns its bytes."""
         shelf = self.shelf
         self.filing.queue(lambda: shelf.write_picture(png()), self._written, self.desk.refuse)
 
     def close(self) -> None:
-        """End the workers; what is being written is written."""
+        """Stop the workers after pending writes are finished."""
         self.worker.close()
         self.filing.close()
 

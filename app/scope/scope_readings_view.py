@@ -1,4 +1,4 @@
-"""Beside the curves of the scope: which colour is which signal, and its figure now, or at both cursors."""
+"""Values next to the scope's curves: color, name and value now or at both cursors."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ from app.screen.sheet_panel import RowPanel
 from app.screen.window_layout import FINGER
 from core.message import Message
 
-_ROW = 5.6  # units at most
-_READ = 0.1  # s that a live figure stands
+_ROW = 5.6  # units: maximum height of a row
+_READ = 0.1  # seconds between two updates of a live value
 
 
 class Readings(RowPanel):
-    """A row a curve; a finger marks it."""
+    """List with one row per curve. A touch selects a row."""
 
     title = "VALUES"
     notch = 1
@@ -38,7 +38,7 @@ class Readings(RowPanel):
         self.figures: tuple[tuple[str, ...], ...] = ()
 
     def show_sight(self, sight: Sight) -> None:
-        """The figures of this picture; a live one changes ten times a second, or nobody could read it."""
+        """Show the values of a picture. Live values change at most ten times per second."""
         scope = self.scope
         latest = {each.signal.key: each.latest for each in sight.curves}
         figures = tuple(self._words(each, latest, sight) for each in scope.shown)
@@ -66,12 +66,12 @@ class Readings(RowPanel):
         return (f"{formats.fixed(value, places)} {unit}" if math.isfinite(value) else "",)
 
     def scroll_by(self, rows: int) -> None:
-        """Mark the next curves, or the ones before."""
+        """Select the curve a number of rows further down. Negative numbers go up."""
         self._choose(self.scope.marked + rows)
 
     @property
     def high(self) -> float:
-        """Of a row, in pixels: a fingertip at least."""
+        """Height of a row in pixels, at least that of a fingertip."""
         return max(float(FINGER), _ROW * self.look.u)
 
     def draw(self, painter: Painter) -> None:
@@ -92,7 +92,7 @@ class Readings(RowPanel):
             self.place(box, partial(self._choose, number), kind="row", on=number == marked)
 
     def _between(self, painter: Painter, room: QRectF) -> QRectF:
-        """What lies between the cursors; the room below."""
+        """Draw the time between the cursors and return the area below."""
         u, apart = self.look.u, self.scope.cursors.apart
         hertz = Message("{item} Hz", item=f"{1.0 / abs(apart):.4g}") if apart else formats.NOTHING
         row = QRectF(room.x(), room.y(), room.width(), 2.6 * u)

@@ -1,4 +1,4 @@
-"""Beside the curves of the scope: the list of all signals, the trigger, the records on the disk."""
+"""Tables next to the scope's curves: all signals, the trigger, and the records on the disk."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _RELEASE, _SIGNAL, _LEVEL, _PLACE = range(4)  # rows of the trigger
 
 @dataclass(slots=True)
 class ScopeSheets:
-    """Rows are marked by arrows or a finger; Return, or a second touch, does what the row is for."""
+    """Tables of the scope page. Enter or a second touch executes the selected row."""
 
     scope: Scope
     marked: dict[Side, int] = field(default_factory=dict)
@@ -26,12 +26,12 @@ class ScopeSheets:
 
     @property
     def at(self) -> int:
-        """The marked row."""
+        """Index of the selected row."""
         return max(0, min(self.marked.get(self.scope.side, 0), self.count - 1))
 
     @property
     def count(self) -> int:
-        """How many rows there are."""
+        """Number of rows."""
         scope = self.scope
         return {
             Side.READINGS: len(scope.shown),
@@ -41,7 +41,7 @@ class ScopeSheets:
         }[scope.side]
 
     def open(self, side: Side) -> None:
-        """Another table; the same again goes back to the readings."""
+        """Open a table. The same table again returns to the readings."""
         self.scope.desk.clear()
         self.entry.text = ""
         self.scope.side = Side.READINGS if self.scope.side is side else side
@@ -49,7 +49,7 @@ class ScopeSheets:
             self.scope.list_files()
 
     def sheet(self) -> Sheet:
-        """The table of this instant."""
+        """Return the present table."""
         side = self.scope.side
         if side is Side.CURVES:
             return self._curves()
@@ -113,7 +113,7 @@ class ScopeSheets:
     # --- keys ----------------------------------------------------------------------------------------
 
     def keys(self) -> Mapping[str, Key]:
-        """Function keys while the records are listed."""
+        """Return the function keys while the records are listed."""
         if self.scope.side is not Side.FILES:
             return {}
         scope = self.scope
@@ -139,15 +139,15 @@ class ScopeSheets:
 
     @property
     def asks(self) -> bool:
-        """Whether a figure is asked for."""
+        """Whether a value is to be entered."""
         return self.scope.side is Side.TRIGGER and bool(self._trigger().question)
 
     def takes(self, key: str) -> bool:
-        """Whether a character is a figure that is asked for."""
+        """Return whether a character is part of the value to be entered."""
         return self.asks and self.entry.takes(key)
 
     def typed(self, key: str) -> bool:
-        """Arrows mark, Return does, figures are typed."""
+        """Handle a key: arrows select a row, Enter executes the row, and digits edit the entry."""
         if self.asks and self.entry.type(key):
             self.scope.desk.clear()
             return True
@@ -166,7 +166,7 @@ class ScopeSheets:
             self.scope.mark(row)
 
     def choose(self, row: int) -> None:
-        """A finger: on a curve it acts at once, elsewhere on the marked row."""
+        """Handle a touch: a curve acts at once, and other rows act on a second touch."""
         if row >= self.count:
             return
         again = row == self.at
@@ -175,7 +175,7 @@ class ScopeSheets:
             self.act()
 
     def act(self) -> None:
-        """Return on the marked row."""
+        """Execute the selected row."""
         scope = self.scope
         scope.desk.clear()
         if scope.side is Side.CURVES:
@@ -203,7 +203,7 @@ class ScopeSheets:
             self.scope.set_trigger(trigger.following_share())
 
     def _enter(self) -> None:
-        """Take the figure that was typed, or say why it is none."""
+        """Accept the typed value, or report why the value is invalid."""
         scope, trigger = self.scope, self.scope.trigger
         if trigger.when is When.LINE:
             line = line_of(self.entry.text)
@@ -225,7 +225,7 @@ class ScopeSheets:
         self.entry.text = ""
 
     def escape(self) -> bool:
-        """One step back; False from the readings without cursors."""
+        """Go back one step. Return False at the readings without cursors."""
         scope = self.scope
         if scope.desk.notice:
             scope.desk.clear()
@@ -240,7 +240,7 @@ class ScopeSheets:
         return True
 
     def prompt(self) -> str:
-        """What keys do now."""
+        """Return the prompt for the present keys."""
         if self.scope.side is Side.READINGS:
             if self.scope.cursors.shown:
                 return tr("ARROWS: MOVE CURSOR   TAB: OTHER CURSOR   CTRL+ARROWS: PAN")

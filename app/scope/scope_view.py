@@ -1,4 +1,4 @@
-"""The scope page: curves over time, their figures beside them; how they are zoomed, panned and measured."""
+"""Scope page: curves over time with their values, and zoom, pan and measuring."""
 
 from __future__ import annotations
 
@@ -32,22 +32,22 @@ from core.message import Message, join_messages
 if TYPE_CHECKING:
     from app.scope.scope_chart_view import ScopeChart
 
-_READINGS, _TABLE, _PAD, _HEAD = 34.0, 56.0, 28.4, 3.4  # units: widths, height of the line above
-_NOTCH = 120  # of the mouse's wheel, as Qt has it
-_NEAR, _STILL = 22.0, 6.0  # pixels: a finger takes a cursor; what is no drag yet
-_LEAST = 24.0  # pixels between two fingers
-_LANES = 4  # that are made ahead: of following error, velocity and spindle, and one more
+_READINGS, _TABLE, _PAD, _HEAD = 34.0, 56.0, 28.4, 3.4  # units: widths of the areas, height of the head line
+_NOTCH = 120  # wheel angle of one notch in Qt
+_NEAR, _STILL = 22.0, 6.0  # pixels: distance for touching a cursor, and travel before a press becomes a drag
+_LEAST = 24.0  # pixels: minimum finger distance
+_LANES = 4  # lanes created in advance: following error, velocity, spindle and one more
 
 
 def _chart_class() -> type[ScopeChart]:
-    """On a worker: pyqtgraph takes a third of a second."""
+    """Import the chart class on a worker, because importing pyqtgraph takes 0.3 s."""
     from app.scope.scope_chart_view import ScopeChart
 
     return ScopeChart
 
 
 class HeadLine(Panel):
-    """The rate, the window, what is shown, and the trigger."""
+    """Head line with sample rate, window, displayed data and trigger."""
 
     ground = "panel"
     words: Shown[tuple[str, str, bool]] = Shown(("", "", False))
@@ -63,7 +63,7 @@ class HeadLine(Panel):
 
 
 class CurveRoom(QWidget):
-    """What takes fingers, wheel and mouse; the chart that lies in it only draws."""
+    """Area that handles touch, wheel and mouse. Its chart only draws."""
 
     part_name = "CHART"
 
@@ -74,17 +74,17 @@ class CurveRoom(QWidget):
         self._down: QPointF | None = None
         self._last = QPointF()
         self._dragging = False
-        self._cursor = -1  # that the finger holds
+        self._cursor = -1  # index of the cursor that is being dragged
         self._spread: tuple[float, float] | None = None
         self.setAttribute(Qt.WidgetAttribute.WA_AcceptTouchEvents)
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """The chart fills it."""
+        """Resize the chart to the area."""
         if self.chart is not None:
             self.chart.setGeometry(self.rect())
 
     def wheelEvent(self, event: QWheelEvent) -> None:
-        """Time about the pointer; with Shift the lane under it."""
+        """Zoom the time around the pointer, or with Shift the lane under the pointer."""
         notches = event.angleDelta().y() or event.angleDelta().x()
         steps = round(notches / _NOTCH) or (1 if notches > 0 else -1)
         if self.chart is None:
@@ -97,19 +97,19 @@ class CurveRoom(QWidget):
         event.accept()
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
-        """On a cursor, or on the curves."""
+        """Start a press on a cursor or on the curves."""
         self._press(event.position())
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
-        """Held down it takes along what it went down on."""
+        """Move the cursor or the curves during a drag."""
         self._move(event.position())
 
     def mouseReleaseEvent(self, _event: QMouseEvent) -> None:
-        """Let go."""
+        """End a drag."""
         self._down = None
 
     def event(self, event: QEvent) -> bool:
-        """One finger is as the mouse, two zoom."""
+        """Handle one finger like the mouse, and two fingers as a zoom."""
         if not isinstance(event, QTouchEvent):
             return super().event(event)
         spots = [point.position() for point in event.points()]
@@ -149,7 +149,7 @@ class CurveRoom(QWidget):
                 self.scope.pan(chart.time_at(QPointF(0, 0)) - chart.time_at(QPointF(by.x(), 0)))
 
     def _two(self, one: QPointF, other: QPointF) -> None:
-        """As the fingers spread: time across, the lane between them up and down."""
+        """Zoom the time by horizontal finger motion, or the lane by vertical finger motion."""
         self._down = None
         way = (abs(one.x() - other.x()), abs(one.y() - other.y()))
         before, self._spread = self._spread, way
@@ -165,7 +165,7 @@ class CurveRoom(QWidget):
 
 
 class ScopePage(ListPage):
-    """The model decides; this shows it and hands the keys on."""
+    """Scope page: shows its model and passes the keys to it."""
 
     NAME = page_table.SCOPE
     model: _ScopeKeys
@@ -181,18 +181,18 @@ class ScopePage(ListPage):
         self.pad = KeyPad(self.look, self.touched, own=None, parent=self)
         self._laid: object = None
         self._drawn: object = None
-        self._undrawn = True  # what is to be seen is not drawn yet
+        self._undrawn = True  # the present picture is not drawn yet
         scope.filing.queue(_chart_class, self._chart_there, self.desk.say)
 
     def _chart_there(self, chart_class: type[ScopeChart]) -> None:
-        """What draws curves was loaded beside the screen, 0.3 s of it."""
+        """Insert the chart after its class was loaded."""
         chart = chart_class(self.look, self.curves)
         self.curves.chart = chart
         chart.setGeometry(self.curves.rect())
         chart.show()
 
     def ahead(self) -> bool:
-        """The chart, then its lanes."""
+        """Create the chart and its lanes in steps, before the page is first shown."""
         self.scope.filing.poll()
         chart = self.curves.chart
         return chart is None or not chart.ready(_LANES)
@@ -203,7 +203,7 @@ class ScopePage(ListPage):
     # --- keys ----------------------------------------------------------------------------------------
 
     def labels(self) -> tuple[str, ...]:
-        """Those of the records while they are listed."""
+        """Return the labels of the displayed table."""
         return self.labels_of({}, self.page_keys())
 
     def page_keys(self) -> Mapping[str, Key]:
@@ -222,7 +222,7 @@ class ScopePage(ListPage):
         }
 
     def key_actions(self) -> KeyActions:
-        """Function keys, zoom and pan."""
+        """Return the actions of the function keys and of zoom and pan."""
         scope = self.scope
         return {
             **{name: key.action for name, key in self.page_keys().items()},
@@ -238,29 +238,29 @@ class ScopePage(ListPage):
         }
 
     def lively(self) -> bool:
-        """Live curves go on, lanes are being made; level lines that roll are the same picture again."""
+        """Return whether the picture changes: live curves that are not constant, or unfinished lanes."""
         return self._undrawn or (self.scope.is_live and self.scope.sight.level is None)
 
     def has_field(self) -> bool:
-        """A level or a line that is asked for."""
+        """Return whether a level or a line number is to be entered."""
         return self.sheets.asks
 
     def escape(self) -> bool:
-        """One step back; from the curves as the window does."""
+        """Go back one step. Return False from the curves."""
         return self.sheets.escape()
 
     def _analyse(self) -> None:
         self.host.go(page_table.ANALYSES)
 
     def _picture(self) -> None:
-        """The page as it is seen; a worker makes the file of it."""
+        """Save a picture of the page. A worker encodes it."""
         image = self.grab().toImage()
         self.scope.write_picture(partial(_png, image))
 
     # --- every frame ---------------------------------------------------------------------------------
 
     def refresh(self, _snapshot: Snapshot, _view: MachineStatus, _loaded: Loaded) -> None:
-        """The last picture that is ready; the next one is asked for."""
+        """Draw the last finished picture and request the next one."""
         scope, chart = self.scope, self.curves.chart
         if chart is not None and chart.room.width() > 1.0:
             scope.pixels = round(chart.room.width())
@@ -289,15 +289,15 @@ class ScopePage(ListPage):
         return join_messages("  ·  ", (what, rate, span, over)), scope.trigger_words, scope.armed
 
     def dress(self) -> None:
-        """Other colours are in force."""
+        """Apply the present colors."""
         if self.curves.chart is not None:
             self.curves.chart.dress()
         self._drawn = None
 
-    # --- places --------------------------------------------------------------------------------------
+    # --- layout --------------------------------------------------------------------------------------
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """Everything again."""
+        """Lay out and draw everything again."""
         self._laid = None
         self._lay_out_if()
         self.dress()
@@ -327,13 +327,13 @@ class ScopePage(ListPage):
 
 
 class _ScopeKeys:
-    """What the page asks of its model, as every list gives it."""
+    """Adapter between the page and its models."""
 
     def __init__(self, scope: Scope, sheets: ScopeSheets) -> None:
         self._scope, self._sheets = scope, sheets
 
     def typed(self, key: str) -> bool:
-        """Cursors first, then the table."""
+        """Pass a key to the cursors or to the table."""
         scope = self._scope
         if scope.cursors.shown and scope.side is Side.READINGS and key in {"Left", "Right"}:
             scope.step_cursor(1 if key == "Right" else -1)
@@ -342,31 +342,31 @@ class _ScopeKeys:
             scope.cursors.other()
             return True
         if scope.side is Side.READINGS and key in {"Page up", "Page down"}:
-            return False  # they shift the lane
+            return False  # These keys shift the lane.
         return self._sheets.typed(key)
 
     def takes(self, key: str) -> bool:
-        """Whether a character is a figure that is asked for."""
+        """Return whether a character is part of the value to be entered."""
         return self._sheets.takes(key)
 
     def opened(self) -> None:
-        """The page comes up as it was left."""
+        """Do nothing, because the page reopens as it was left."""
 
     def escape(self) -> bool:
-        """One step back."""
+        """Go back one step, and return whether there was a step."""
         return self._sheets.escape()
 
     def prompt(self) -> str:
-        """What keys do now."""
+        """Return the prompt for the present keys."""
         return self._sheets.prompt()
 
     def leave(self) -> None:
-        """Nothing stays half entered."""
+        """Clear the entry."""
         self._sheets.entry.text = ""
 
 
 def _seen(sight: Sight) -> object:
-    """Where two are equal the pictures are."""
+    """Return a value that is equal for pictures that look the same."""
     if sight.level is None:
         return sight
     figures = [(each.signal.key, f"{level!r}") for each, level in zip(sight.curves, sight.level, strict=True)]
@@ -374,14 +374,14 @@ def _seen(sight: Sight) -> object:
 
 
 def span_words(seconds: float) -> str:
-    """A span of time in the unit that suits it."""
+    """Return a duration as text with a suitable unit."""
     if seconds < 1.0:
         return Message("{seconds} ms", seconds=formats.fixed(1000.0 * seconds, 0 if seconds >= 0.01 else 1))
     return f"{formats.fixed(seconds, 0 if math.isclose(seconds, round(seconds)) else 1)} s"
 
 
 def _png(image: QImage) -> bytes:
-    """The file of a picture; on a worker."""
+    """Encode an image as PNG; runs on a worker."""
     buffer = QBuffer()
     buffer.open(QIODevice.OpenModeFlag.WriteOnly)
     QImageWriter(buffer, QByteArray(b"png")).write(image)

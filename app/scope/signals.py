@@ -1,6 +1,6 @@
-"""Signals of the scope: what can be shown of a machine, each with its quantity, unit and source.
+"""Signals of the scope with their quantity, unit and source.
 
-Most are channels of a record as they are; velocity, acceleration and ripple are derived from them.
+Most signals are channels of a record. Velocity, acceleration and ripple are derived from channels.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ FloatArray = npt.NDArray[np.float64]
 
 
 class Quantity(Enum):
-    """What is measured; signals of one share a lane. Name, metric unit, inch unit, least range shown."""
+    """Measured quantity with its name, metric unit, inch unit and minimum range; one lane per quantity."""
 
     POSITION = ("POSITION", "mm", "in", 1e-3)
     ERROR = ("FOLLOWING ERROR", "mm", "in", 1e-3)
@@ -44,25 +44,25 @@ class Quantity(Enum):
 
     @property
     def title(self) -> str:
-        """Its name in English."""
+        """English name of the quantity."""
         return str(self.value[0])
 
     @property
     def least(self) -> float:
-        """The smallest range that is worth showing, in units inside."""
+        """Smallest useful range in internal units."""
         return float(self.value[3])
 
     @property
     def length(self) -> bool:
-        """Whether it is shown in inch where the desk shows inch."""
+        """Whether the unit depends on the choice of millimeters or inches."""
         return self.unit(True) != self.unit(False)
 
     def unit(self, metric: bool) -> str:
-        """The unit it is shown in, in the operator's language."""
+        """Return the display unit in the operator's language."""
         return tr(self.value[1] if metric else self.value[2])
 
     def scale(self, metric: bool) -> float:
-        """By what a figure inside is multiplied to be shown."""
+        """Return the factor from internal units to display units."""
         if self is Quantity.OVERRIDE:
             return 100.0
         if self in {Quantity.QUEUE, Quantity.LATENESS}:
@@ -70,7 +70,7 @@ class Quantity(Enum):
         return 1.0 / MM_PER_INCH if self.length and not metric else 1.0
 
     def places(self, metric: bool) -> int:
-        """Places behind the point that figures of it have."""
+        """Return the number of decimals."""
         return _PLACES[self] + (1 if self.length and not metric else 0)
 
 
@@ -103,10 +103,10 @@ def _as_it_is(_times: FloatArray, values: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True, slots=True)
 class Signal:
-    """One curve: the channel it comes from, what is made of it, and ``span``: of how many seconds.
+    """One curve: its channel, its calculation, and the calculation window ``span`` in seconds.
 
-    ``letter`` is its axis, empty of the machine's own; ``word`` says what it is, in English; ``raw``
-    words are names of the machine file.
+    ``letter`` is the axis, or empty for signals of the machine. ``word`` is the English name. ``raw`` is set
+    if the name comes from the machine file and is not translated.
     """
 
     key: str
@@ -120,17 +120,17 @@ class Signal:
 
     @property
     def title(self) -> str:
-        """Its name, in the operator's language."""
+        """Name of the signal in the operator's language."""
         word = self.word if self.raw else tr(self.word)
         return f"{self.letter} {word}" if self.letter else word
 
     @property
     def note(self) -> str:
-        """Over what time it is taken; empty where it stands as it was sampled."""
+        """Text about the calculation window, or an empty string for directly sampled signals."""
         return tr(Message("{ms} ms window", ms=f"{1000.0 * self.span:g}")) if self.span else ""
 
     def values(self, times: FloatArray, column: FloatArray) -> FloatArray:
-        """Its figures at these times, of the channel's; units inside."""
+        """Return the values of the signal for the samples of its channel, in internal units."""
         return self.derive(times, column)
 
 
@@ -203,7 +203,7 @@ _MACHINE = (
 
 
 def signals_of(channels: Sequence[Channel]) -> tuple[Signal, ...]:
-    """Everything that can be shown of these channels, in the order of the list."""
+    """Return all signals that the channels provide, in the order of the list."""
     there = {each.name: each for each in channels}
     found: list[Signal] = []
     for channel in channels:
@@ -219,9 +219,10 @@ def signals_of(channels: Sequence[Channel]) -> tuple[Signal, ...]:
 
 
 def first_chosen(signals: Sequence[Signal]) -> tuple[str, ...]:
-    """What is shown before anybody has chosen: following errors and velocities of the slides, the spindle.
+    """Return the keys of the signals that are shown first.
 
-    As many as the list of figures shows on the smallest screen.
+    They are the following errors and velocities of the axes, and the spindle, as many as the smallest screen
+    can list.
     """
     slides = [each.letter for each in signals if each.quantity is Quantity.ERROR][:3]
     wanted = [f"{letter} {name}" for name in ("following error", "velocity") for letter in slides]

@@ -1,4 +1,4 @@
-"""The time window of the scope with two cursors, and the trigger that stops the curves."""
+"""Time window of the scope with two cursors, and the trigger that freezes the curves."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from app.desk.translation import tr
 SPANS = (
     *(0.01, 0.02, 0.05, 0.1, 0.2, 0.5),
     *(1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 300.0),
-)  # s: steps of zooming
+)  # zoom steps in seconds
 LEAST = SPANS[0]
-PAN = 0.1  # of the window, a step
+PAN = 0.1  # ratio of the window per step
 
 
 @dataclass(slots=True)
 class Window:
-    """Seconds from ``begin`` to ``end``, counted from instant 0 of the record; live the newest sample is 0.
+    """Time window in seconds relative to instant 0 of the record, or to the newest sample when live.
 
-    ``most`` is the whole of it: where a record begins and ends.
+    ``most`` is the largest possible window: the start and end of the record.
     """
 
     begin: float = -10.0
@@ -31,16 +31,16 @@ class Window:
 
     @property
     def span(self) -> float:
-        """Seconds that are seen."""
+        """Width of the window in seconds."""
         return self.end - self.begin
 
     @property
     def middle(self) -> float:
-        """Its middle."""
+        """Middle of the window in seconds."""
         return 0.5 * (self.begin + self.end)
 
     def zoom(self, steps: int, at: float | None = None) -> None:
-        """Nearer (positive) or farther by steps of round spans; ``at`` stays where it is."""
+        """Zoom in (positive steps) or out through round spans. The time ``at`` stays in place."""
         near = [each for each in SPANS if each < self.span * 0.999]
         far = [each for each in SPANS if each > self.span * 1.001]
         for _ in range(abs(steps)):
@@ -49,7 +49,7 @@ class Window:
             self.magnify(self.span / span, at)
 
     def magnify(self, factor: float, at: float | None = None) -> None:
-        """Nearer by a factor about an instant, the middle without one."""
+        """Magnify by a factor around a time, or around the middle."""
         at = self.middle if at is None else at
         whole = self.most[1] - self.most[0]
         span = min(max(self.span / factor, LEAST), max(whole, LEAST))
@@ -59,18 +59,18 @@ class Window:
         self._stay()
 
     def pan(self, by: float) -> None:
-        """So many seconds later; it stays on the record."""
+        """Move the window by a number of seconds, within the record."""
         self.begin, self.end = self.begin + by, self.end + by
         self._stay()
 
     def whole(self) -> None:
-        """All of it."""
+        """Show the whole record."""
         self.begin, self.end = self.most
         if self.span < LEAST:
             self.begin = self.end - LEAST
 
     def show(self, instant: float) -> None:
-        """Look aside as far as is needed to see an instant."""
+        """Pan as far as necessary to show a time."""
         if not self.begin <= instant <= self.end:
             self.pan(instant - self.middle)
 
@@ -82,33 +82,36 @@ class Window:
 
 @dataclass(slots=True)
 class Cursors:
-    """Two instants; ``at`` is the one that keys move, 0 or 1, and -1 while none is shown."""
+    """Two cursors in seconds.
+
+    ``at`` is the index of the cursor that keys move, or -1 while hidden.
+    """
 
     times: tuple[float, float] = (0.0, 0.0)
     at: int = -1
 
     @property
     def shown(self) -> bool:
-        """Whether they are there."""
+        """Whether the cursors are shown."""
         return self.at >= 0
 
     @property
     def apart(self) -> float:
-        """Seconds from the first to the second."""
+        """Time from the first to the second cursor in seconds."""
         return self.times[1] - self.times[0]
 
     def put_into(self, window: Window) -> None:
-        """A quarter and three quarters into the window."""
+        """Place the cursors at one quarter and three quarters of the window."""
         quarter = 0.25 * window.span
         self.times, self.at = (window.begin + quarter, window.end - quarter), 0
 
     def move(self, to: float, which: int | None = None) -> None:
-        """One of them, else the one that keys move, to an instant."""
+        """Move a cursor to a time. The default is the active cursor."""
         self.at = self.at if which is None else which
         self.times = (to, self.times[1]) if self.at == 0 else (self.times[0], to)
 
     def other(self) -> None:
-        """Keys move the other one."""
+        """Activate the other cursor."""
         if self.shown:
             self.at = 1 - self.at
 
@@ -117,7 +120,7 @@ FloatArray = npt.NDArray[np.float64]
 
 
 class When(Enum):
-    """What releases it."""
+    """Trigger event."""
 
     OFF = tr("OFF: CURVES KEEP UPDATING")
     RISES = tr("SIGNAL RISES ABOVE LEVEL")
@@ -128,16 +131,20 @@ class When(Enum):
 
     @property
     def by_level(self) -> bool:
-        """Whether it looks at a signal and a level."""
+        """Whether the event depends on a signal and a level."""
         return self in {When.RISES, When.FALLS, When.BEYOND}
 
 
-SHARES = (0.1, 0.5, 0.9)  # of the window that lies before it
+SHARES = (0.1, 0.5, 0.9)  # shares of the window before the trigger
 
 
 @dataclass(frozen=True, slots=True)
 class Trigger:
-    """``signal`` is a signal's key, ``level`` in units inside, ``before`` the share of the window before."""
+    """Trigger of the scope.
+
+    ``signal`` is the key of a signal, ``level`` is in internal units, and ``before`` is the share of the
+    window before the event.
+    """
 
     when: When = When.OFF
     signal: str = ""
@@ -147,20 +154,21 @@ class Trigger:
 
     @property
     def wants(self) -> str:
-        """The signal or channel that it looks at; empty while it is off."""
+        """Key of the signal or channel that the trigger examines, or an empty string while it is off."""
         if self.when.by_level:
             return self.signal
         return {When.ALARM: "state", When.LINE: "line"}.get(self.when, "")
 
     def following_share(self) -> Trigger:
-        """The next choice of where it lies in the window."""
+        """Return a copy with the next position in the window."""
         at = SHARES.index(self.before) if self.before in SHARES else -1
         return replace(self, before=SHARES[(at + 1) % len(SHARES)])
 
     def released(self, times: FloatArray, values: FloatArray, alarmed: frozenset[int]) -> float | None:
-        """The time of the first sample that releases it, None: none does. The very first cannot.
+        """Return the time of the first sample that fires the trigger, or None.
 
-        ``alarmed`` are the figures of the channel ``state`` that mean an alarm or E-stop.
+        The first sample cannot fire the trigger. ``alarmed`` contains the values of the channel ``state``
+        that mean an alarm or an E-stop.
         """
         if self.when is When.OFF or len(values) < 2:
             return None

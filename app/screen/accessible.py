@@ -1,7 +1,7 @@
-"""What assistive technology, and a test, can read of the painted parts of the screen and press on them.
+"""Accessible interfaces of the painted parts of the screen, for assistive technology and tests.
 
-Qt gives every stock widget a name and a role. A ``Panel`` paints its texts and its targets, so that it
-provides them here: the panel itself, and one child for each target.
+Qt gives every standard widget a name and a role. A ``Panel`` paints its own texts and targets. This module
+therefore provides an interface for the panel, and a child for each target.
 """
 
 from __future__ import annotations
@@ -22,32 +22,32 @@ from app.desk.translation import tr
 from app.screen.panel import Panel, Spot, no_press
 
 Role, Text = QAccessible.Role, QAccessible.Text
-Maybe = Any  # or None, which Qt takes and its stubs do not
+Maybe = Any  # Or None, which Qt accepts although its type stubs do not.
 _ROLES = {"key": Role.Button, "row": Role.ListItem, "lamp": Role.CheckBox, "slider": Role.Slider}
 
 
 def install() -> None:
-    """Make Qt ask here first for the accessible interface of a widget."""
+    """Register the factory that creates the accessible interfaces of panels and pages."""
     QAccessible.installFactory(_interface_of)
 
 
 def _interface_of(kind: str, shown: QObject) -> QAccessibleInterface | None:
-    """Return the interface of a widget; Qt has one for each widget of a more special kind than QWidget."""
+    """Return the accessible interface of a plain QWidget, or None. Qt has interfaces for other classes."""
     if kind != "QWidget" or not isinstance(shown, QWidget):
         return None
     return AccessiblePanel(shown) if isinstance(shown, Panel) else AccessiblePart(shown)
 
 
 def announce(shown: QWidget, text: str) -> None:
-    """Let a screen reader, if there is one, say a text that has appeared."""
+    """Let a screen reader speak a text that has appeared. Without a screen reader, nothing happens."""
     if QAccessible.isActive() and text:
         QAccessible.updateAccessibility(QAccessibleAnnouncementEvent(shown, text))
 
 
 class AccessiblePart(QAccessibleWidget):
-    """A page or another widget that holds panels.
+    """A page or another widget that contains panels.
 
-    Without a ``part_name`` it has the name of the widget that holds it.
+    Without a ``part_name``, it has the name of its parent widget.
     """
 
     def __init__(self, part: QWidget, role: QAccessible.Role = Role.Grouping) -> None:
@@ -55,7 +55,7 @@ class AccessiblePart(QAccessibleWidget):
         self._part = part
 
     def text(self, kind: QAccessible.Text) -> str:
-        """Return the name in the language of the operator."""
+        """Return the name in the operator's language."""
         part: QWidget | None = self._part if kind is Text.Name else None
         while part is not None:
             name: str = getattr(part, "part_name", "") or part.accessibleName() or part.windowTitle()
@@ -66,7 +66,7 @@ class AccessiblePart(QAccessibleWidget):
 
 
 class AccessiblePanel(AccessiblePart):
-    """A panel: its title, all texts that it shows as the description, and its targets."""
+    """A panel, with its title as name, its texts as description, and its targets as children."""
 
     def __init__(self, panel: Panel) -> None:
         super().__init__(panel, Role.List if panel.lists else Role.Grouping)
@@ -74,7 +74,7 @@ class AccessiblePanel(AccessiblePart):
         self._spots: dict[int, AccessibleSpot] = {}
 
     def text(self, kind: QAccessible.Text) -> str:
-        """Return the title, or for the description all texts outside the targets."""
+        """Return the title, or all texts outside the targets for the description."""
         if kind is Text.Name:
             return self._panel.words_of_name() or super().text(kind)
         return self._panel.words_outside() if kind is Text.Description else super().text(kind)
@@ -84,7 +84,7 @@ class AccessiblePanel(AccessiblePart):
         return super().childCount() + len(self._panel.spots())
 
     def child(self, index: int) -> Maybe:
-        """Return a child: the widgets first, then the targets."""
+        """Return a child by its index. The child widgets precede the targets."""
         number = index - super().childCount()
         if number < 0:
             return super().child(index)
@@ -102,7 +102,7 @@ class AccessiblePanel(AccessiblePart):
         return super().indexOfChild(child)
 
     def childAt(self, x: int, y: int) -> Maybe:
-        """Return the child at a position on the screen."""
+        """Return the child at a position on the screen, or None."""
         for index in range(self.childCount()):
             child = self.child(index)
             if child is not None and child.rect().contains(x, y):
@@ -111,14 +111,14 @@ class AccessiblePanel(AccessiblePart):
 
 
 class _Press(QAccessibleActionInterface):
-    """Presses a target as a finger does."""
+    """Action that presses a target as a touch does."""
 
     def __init__(self, spot: AccessibleSpot) -> None:
         super().__init__()
         self._spot = spot
 
     def actionNames(self) -> list[str]:
-        """Return the one action, where there is one."""
+        """Return the press action, or no action for a control that can be dragged."""
         held = self._spot.isValid() and self._spot.spot.press is no_press
         return [] if held else [QAccessibleActionInterface.pressAction()]
 
@@ -128,12 +128,12 @@ class _Press(QAccessibleActionInterface):
             self._spot.spot.press()
 
     def keyBindingsForAction(self, _name: str) -> list[str]:
-        """Return no keys: the texts name them."""
+        """Return no key bindings, because the painted texts name the keys."""
         return []
 
 
 class AccessibleSpot(QAccessibleInterface):
-    """One target of a panel, by its number: after each painting it is what the panel shows there."""
+    """One target of a panel, by its index. After each painting, it describes what the panel shows there."""
 
     def __init__(self, panel: Panel, number: int) -> None:
         super().__init__()
@@ -142,35 +142,35 @@ class AccessibleSpot(QAccessibleInterface):
 
     @property
     def spot(self) -> Spot:
-        """The target as it was painted last."""
+        """The target as it was last painted."""
         return self._panel.spots()[self.number]
 
     def isValid(self) -> bool:
-        """Return whether the panel still shows so many targets."""
+        """Return whether the panel still shows a target with this index."""
         return isValid(self._panel) and self.number < len(self._panel.spots())
 
     def object(self) -> Maybe:
-        """Return None: a target is not a widget."""
+        """Return None, because a target is not a widget."""
         return None
 
     def parent(self) -> Maybe:
-        """Return the panel."""
+        """Return the accessible interface of the panel."""
         return QAccessible.queryAccessibleInterface(self._panel) if isValid(self._panel) else None
 
     def child(self, _index: int) -> Maybe:
-        """Return None: a target has no children."""
+        """Return None, because a target has no children."""
         return None
 
     def childAt(self, _x: int, _y: int) -> Maybe:
-        """Return None: a target has no children."""
+        """Return None, because a target has no children."""
         return None
 
     def childCount(self) -> int:
-        """Return 0: a target has no children."""
+        """Return 0, because a target has no children."""
         return 0
 
     def indexOfChild(self, _child: QAccessibleInterface) -> int:
-        """Return -1: a target has no children."""
+        """Return -1, because a target has no children."""
         return -1
 
     def text(self, kind: QAccessible.Text) -> str:
@@ -178,20 +178,20 @@ class AccessibleSpot(QAccessibleInterface):
         return self._panel.words_on(self.spot) if kind is Text.Name and self.isValid() else ""
 
     def setText(self, _kind: QAccessible.Text, _text: str) -> None:
-        """Leave the text as it is: the panel paints it."""
+        """Do nothing, because the panel paints its own text."""
 
     def rect(self) -> QRect:
-        """Return the place on the screen."""
+        """Return the rectangle of the target on the screen."""
         if not self.isValid():
             return QRect()
         return self.spot.box.toRect().translated(self._panel.mapToGlobal(QPoint()))
 
     def role(self) -> QAccessible.Role:
-        """Return the role of what is pressed here."""
+        """Return the accessible role of the target."""
         return _ROLES[self.spot.kind] if self.isValid() else Role.NoRole
 
     def state(self) -> QAccessible.State:
-        """Return whether it is lit, selected or disabled."""
+        """Return whether the target is disabled, checked or selected."""
         state = QAccessible.State()
         if not self.isValid():
             state.invalid = True
@@ -205,12 +205,12 @@ class AccessibleSpot(QAccessibleInterface):
         return state
 
     def actionInterface(self) -> QAccessibleActionInterface:
-        """Return what presses the target."""
+        """Return the action that presses the target."""
         return self._press
 
     def interface_cast(self, kind: QAccessible.InterfaceType) -> Maybe:
-        """Return the interface that assistive technology asks for.
+        """Return the requested accessible interface, or a null pointer.
 
-        For no interface Qt needs a null pointer: it would take None for the address of an interface.
+        Qt needs a null pointer, because it would treat None as the address of an interface.
         """
         return self._press if kind is QAccessible.InterfaceType.ActionInterface else VoidPtr(0)

@@ -1,8 +1,8 @@
-"""Charts of figures over time or over parts: plots by pyqtgraph in the colours and the font of the desk.
+"""Charts of values over time or over parts, drawn by pyqtgraph in the colors and font of TurnDesk.
 
-Whoever imports this imports pyqtgraph, 0.3 s of it: only a ``_view`` that has a chart does, no page at the
-start of the desk. A chart draws and does nothing else: fingers, wheel and keys go to the widget behind it,
-which sets the ranges, so that no stock menu can take the keyboard and no drag can lose the curve.
+Importing pyqtgraph takes 0.3 s, so only a ``_view`` module that has a chart imports this module. A chart only
+draws. Touches, the wheel and keys go to the parent widget, which sets the ranges. A context menu can
+therefore not take the keyboard, and dragging cannot move the curve out of view.
 """
 
 from __future__ import annotations
@@ -20,46 +20,47 @@ from app.desk.status.formats import fixed
 from app.desk.translation import tr
 from app.screen.look import CURVES, FAMILY, LEAST, Look
 
-_TICK, _NAME = 1.6, 1.5  # units: height of the figures on an axis, of the name of a plot
+_TICK, _NAME = 1.6, 1.5  # Units: height of the numbers on an axis, and of the name of a plot.
 FloatArray = npt.NDArray[np.float64]
 
 
 def curve_colour(look: Look, number: int) -> QColor:
-    """The colour of the curve of this number, from 0 on; after eight they begin again."""
+    """Return the color of a curve by its index, counted from 0. After eight curves, the colors repeat."""
     colours = CURVES[look.palette.name]
     return QColor(colours[number % len(colours)])
 
 
 def line_pen(colour: QColor, style: Qt.PenStyle = Qt.PenStyle.SolidLine) -> QPen:
-    """A pen one pixel wide: a wider one takes Qt four times as long."""
+    """Return a pen one pixel wide. Qt needs four times as long for a wider pen."""
     pen = QPen(colour, 1.0, style)
     pen.setCosmetic(True)
     return pen
 
 
 class Axis(pg.AxisItem):  # type: ignore[misc]
-    """An axis whose figures are written as everywhere on the desk: a true minus, and no prefix of a unit."""
+    """An axis whose numbers have TurnDesk's format: a true minus sign and no SI prefix."""
 
     def __init__(self, orientation: str) -> None:
         super().__init__(orientation)
         self.enableAutoSIPrefix(False)
-        self.setCacheMode(QGraphicsItem.CacheMode.DeviceCoordinateCache)  # its letters are drawn once
+        self.setCacheMode(QGraphicsItem.CacheMode.DeviceCoordinateCache)  # Draw the labels only once.
 
     def figures(self, low: float, high: float, size: float) -> list[float]:
-        """Where figures stand on it between two values, ``size`` pixels apart."""
+        """Return the values that have labels between ``low`` and ``high`` on an axis of ``size`` pixels."""
         levels = self.tickValues(low, high, size) if high > low and size > 0.0 else []
         return [float(value) for _spacing, values in levels[:1] for value in values]
 
     def tickStrings(self, values: Sequence[float], _scale: float, spacing: float) -> list[str]:
-        """The figures, with as many places as their distance asks for."""
+        """Return the labels, with as many decimals as their spacing requires."""
         places = max(0, int(np.ceil(-np.log10(spacing) - 1e-6))) if spacing > 0.0 else 0
         return [fixed(value, places) for value in values]
 
 
 class Plot(pg.GraphicsWidget):  # type: ignore[misc]
-    """One plot of a chart: curves with an axis at the left and one below. The ranges are its owner's alone.
+    """One plot of a chart, with curves, a left axis and a bottom axis. Its owner sets the ranges.
 
-    No PlotItem of pyqtgraph: its menus, which nobody may open here, take three quarters of its time.
+    It replaces the PlotItem of pyqtgraph, which spends three quarters of its time on menus that are not used
+    here.
     """
 
     def __init__(self) -> None:
@@ -79,15 +80,15 @@ class Plot(pg.GraphicsWidget):  # type: ignore[misc]
             self.layout.addItem(axis, *place)
 
     def axis(self, side: str) -> Axis:
-        """The axis at the ``left`` or the ``bottom``."""
+        """Return the axis at the ``left`` or the ``bottom``."""
         return self._axes[side]
 
     def put(self, item: QGraphicsItem) -> None:
-        """Have an item among the curves, in their units."""
+        """Add an item to the plot, in the units of the axes."""
         self.vb.addItem(item)
 
     def empty(self) -> None:
-        """As it was made."""
+        """Remove all curves and restore the initial state of the axes."""
         self.vb.clear()
         self.vb.invertY(False)
         for axis in self._axes.values():
@@ -97,19 +98,19 @@ class Plot(pg.GraphicsWidget):  # type: ignore[misc]
                 axis.setLabel("")
 
     def curve(self, pen: QPen) -> pg.PlotCurveItem:
-        """A curve that takes ready arrays: see ``set_curve``."""
+        """Add a curve and return it. Set its points with ``set_curve``."""
         found = pg.PlotCurveItem(pen=pen, antialias=False, skipFiniteCheck=True)
-        found.setSegmentedLineMode("on")  # lines, no path: half the time
+        found.setSegmentedLineMode("on")  # Drawing lines takes half as long as drawing a path.
         self.put(found)
         return found
 
     def room(self) -> QRectF:
-        """Where its curves are drawn, in pixels of the chart."""
+        """Return the rectangle in which the curves are drawn, in pixels of the chart."""
         found: QRectF = self.vb.sceneBoundingRect()
         return found
 
     def grid(self) -> list[QLineF]:
-        """A line at each figure of both axes, in pixels of the chart."""
+        """Return a grid line for each label of both axes, in pixels of the chart."""
         room, ((x0, x1), (y0, y1)) = self.room(), self.vb.viewRange()
         lines = []
         for value in self.axis("bottom").figures(x0, x1, room.width()):
@@ -121,7 +122,7 @@ class Plot(pg.GraphicsWidget):  # type: ignore[misc]
         return lines
 
     def value_at(self, place: QPointF) -> tuple[float, float]:
-        """What stands at a place of the chart: across and up, in the units of the axes."""
+        """Return the horizontal and vertical axis values at a position in pixels of the chart."""
         (x0, x1), (y0, y1) = self.vb.viewRange()
         room = self.room()
         across = (place.x() - room.x()) / max(1.0, room.width())
@@ -130,12 +131,12 @@ class Plot(pg.GraphicsWidget):  # type: ignore[misc]
 
 
 def set_curve(curve: pg.PlotCurveItem, x: FloatArray, y: FloatArray, connect: object = "all") -> None:
-    """Give a curve its points; ``connect`` is all, pairs, or an array with 0 where a line ends."""
+    """Set the points of a curve. ``connect`` is all, pairs, or an array with 0 where a line ends."""
     curve.setData(x=x, y=y, connect=connect, skipFiniteCheck=True)
 
 
 class Chart(pg.GraphicsLayoutWidget):  # type: ignore[misc]
-    """Plots below each other; see the module. ``dress`` follows theme and size of the window."""
+    """A column of plots. Call ``dress`` when the theme or the size of the window changes."""
 
     def __init__(self, look: Look, parent: QWidget) -> None:
         super().__init__(parent)
@@ -147,18 +148,22 @@ class Chart(pg.GraphicsLayoutWidget):  # type: ignore[misc]
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
         self.viewport().setAttribute(Qt.WidgetAttribute.WA_AcceptTouchEvents, False)
         self.setAntialiasing(False)
-        self.setCacheMode(QGraphicsView.CacheModeFlag.CacheNone)  # of the background: the grid moves
+        # The background is not cached, because the grid moves.
+        self.setCacheMode(QGraphicsView.CacheModeFlag.CacheNone)
         self.dress()
 
     def ready(self, count: int) -> bool:
-        """Whether so many plots are at hand; one is made a call: all at once take longer than a frame."""
+        """Return whether ``count`` plots exist.
+
+        Each call creates one missing plot, so that no call takes a frame.
+        """
         if len(self.plots) + len(self._spare) < count:
             self._spare.append(Plot())
             return False
         return True
 
     def add(self) -> Plot:
-        """One more plot, below the others."""
+        """Add a plot below the others and return it."""
         plot = self._spare.pop() if self._spare else Plot()
         self.addItem(plot, row=len(self.plots), col=0)
         self.plots.append(plot)
@@ -166,7 +171,7 @@ class Chart(pg.GraphicsLayoutWidget):  # type: ignore[misc]
         return plot
 
     def empty(self) -> None:
-        """No plot any more; those that were are kept for the next."""
+        """Remove all plots. They are reused later."""
         self.clear()
         for plot in self.plots:
             plot.empty()
@@ -174,16 +179,16 @@ class Chart(pg.GraphicsLayoutWidget):  # type: ignore[misc]
         self.plots.clear()
 
     def share_left(self, units: float) -> None:
-        """All left axes as wide as this, in units: the plots stand exactly below each other."""
+        """Set the width of all left axes in units, so that the plots are aligned."""
         for plot in self.plots:
             plot.axis("left").setWidth(round(units * self.look.u))
 
     def dress(self) -> None:
-        """Colours and letters of now."""
+        """Apply the present colors and font sizes."""
         margin = round(0.4 * self.look.u)
-        top = round(0.6 * _TICK * self.look.u)  # half a figure stands above the highest line
+        top = round(0.6 * _TICK * self.look.u)  # Half of the top label is above the highest line.
         self.ci.layout.setContentsMargins(margin, top, margin, margin)
-        self.ci.layout.setSpacing(round(1.2 * self.look.u))  # figures of two axes never touch
+        self.ci.layout.setSpacing(round(1.2 * self.look.u))  # Keep the labels of two axes apart.
         self.setAccessibleName(tr("CHART"))
         self.setBackground(self.look.colour("panel"))
         for plot in self.plots:
@@ -203,12 +208,10 @@ class Chart(pg.GraphicsLayoutWidget):  # type: ignore[misc]
                 "font-family": FAMILY,
             }
             if axis.labelText:
-                axis.setLabel(
-                    axis.labelText
-                )  # in its style of now; without words it would be set all the same
+                axis.setLabel(axis.labelText)  # Setting an empty text would show an empty label.
 
     def name(self, painter: QPainter, text: str, room: QRectF) -> None:
-        """What a plot shows, in its upper left corner, on a ground of its own."""
+        """Draw the name of a plot in its upper left corner, on a filled background."""
         u = self.look.u
         painter.setFont(self.look.font(_NAME, bold=True))
         wide = QFontMetricsF(painter.font()).horizontalAdvance(text)
@@ -218,7 +221,7 @@ class Chart(pg.GraphicsLayoutWidget):  # type: ignore[misc]
         painter.drawText(box, Qt.AlignmentFlag.AlignCenter, text)
 
     def drawBackground(self, painter: QPainter, rect: QRectF) -> None:
-        """The ground, and a line at each figure of an axis: all at once, in a tenth of the time of Qt's."""
+        """Draw the background and all grid lines together, in a tenth of the time of pyqtgraph's grid."""
         super().drawBackground(painter, rect)
         painter.setPen(line_pen(self.look.colour("ghost")))
         for plot in self.plots:

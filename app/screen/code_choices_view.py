@@ -1,4 +1,4 @@
-"""The codes of a language as a list to choose from: the editor and MDI show it."""
+"""List of the codes of a programming language, which the editor and MDI show."""
 
 from __future__ import annotations
 
@@ -14,15 +14,18 @@ from app.screen.panel import Shown
 from app.screen.sheet_panel import RowPanel
 from core.language.code_book import Entry
 
-CODE_LINE = 5.2  # units: a finger's height, two lines of text
-LINE = 2.7  # units: a line of an example
-MOST_LINES = 9  # of an example
-WORD_LINE = 2.3  # units: a word of the marked code, with its meaning
-_ONE_COLUMN = 6  # words that stand below each other
+CODE_LINE = 5.2  # Units: a fingertip, which is two lines of text.
+LINE = 2.7  # Units: one line of an example.
+MOST_LINES = 9  # Maximum lines of an example.
+WORD_LINE = 2.3  # Units: one word of the selected code, with its meaning.
+_ONE_COLUMN = 6  # Maximum number of words in a single column.
 
 
 class CodeChoices(RowPanel):
-    """The choices, and of the marked one its words and lines that use it. ``take`` writes the marked code."""
+    """List of code choices, with the words and an example of the selected choice.
+
+    ``take`` inserts the selected code in the text.
+    """
 
     notch, centred, keyed = 1, True, False
     _shown: Shown[tuple[object, ...]] = Shown(())
@@ -33,32 +36,32 @@ class CodeChoices(RowPanel):
         self.hide()
 
     def refresh(self) -> None:
-        """Once a frame: drawn anew when other choices are shown or another one is marked."""
+        """Redraw the list if the choices or the selection have changed; called once a frame."""
         self._shown = (self._help.choices, self._help.marked)
 
     def _foot(self) -> float:
-        """Pixels that words and example of the marked choice take."""
+        """Return the height of the words and the example in pixels."""
         return self._example() + self._rows_of_words() * WORD_LINE * self.look.u
 
     def _example(self) -> float:
-        """Pixels that the example takes."""
+        """Return the height of the example in pixels."""
         chosen = self._help.chosen
         lines = chosen.example.splitlines()[:MOST_LINES] if chosen is not None else []
         return (len(lines) * LINE + 1.4) * self.look.u if lines else 0.0
 
     def _drawn(self) -> float:
-        """Pixels that a picture takes."""
+        """Return the height of a drawing in pixels. Subclasses may override this."""
         return 0.0
 
     def _rows_of_words(self) -> int:
-        """As many as leave the marked code its place."""
+        """Return the number of word rows that leave enough room for the selected code."""
         count, u = len(self._help.words), self.look.u
         wanted = count if count <= _ONE_COLUMN else -(-count // 2)
         room = self.height() - self._example() - self._drawn() - (3.2 + CODE_LINE) * u
         return max(0, min(wanted, int(room / (WORD_LINE * u))))
 
     def _write_words(self, painter: Painter) -> None:
-        """Above the example, in two columns where they are many."""
+        """Draw the words above the example, in two columns if there are many."""
         u, rows = self.look.u, self._rows_of_words()
         columns = 1 if len(self._help.words) <= _ONE_COLUMN else 2
         wide = (self.width() - 3.2 * u) / columns
@@ -99,11 +102,11 @@ class CodeChoices(RowPanel):
         self.place(box, partial(self._press, number), kind="row", on=marked)
 
     def scroll_by(self, rows: int) -> None:
-        """Move the mark."""
+        """Move the selection by a number of rows."""
         self._help.mark(self._help.marked + rows)
 
     def _press(self, number: int) -> None:
-        """A finger marks a row; on the marked one it takes it."""
+        """Select the touched row, or insert its code if the row is already selected."""
         if number == self._help.marked:
             self._taken()
         else:
@@ -111,7 +114,7 @@ class CodeChoices(RowPanel):
 
 
 def write_entry(painter: Painter, box: QRectF, entry: Entry, code: str, words: str) -> None:
-    """The form above, the meaning below."""
+    """Draw the form of a code, with its meaning below."""
     upper = box.adjusted(0, 0, 0, -box.height() / 2)
     painter.write(upper, entry.form, 1.9, code, raw=True, fit=False)
     painter.write(

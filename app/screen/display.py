@@ -1,7 +1,7 @@
-"""Whether a display can be opened: tried in a child process first, because Qt aborts where it cannot.
+"""Test whether a display can be opened, in a child process, because Qt aborts the process if it cannot.
 
-An X server that is gone, a compositor that does not run, a library that is missing or a platform that Qt does
-not have would all end the program with a core dump; here they are one sentence.
+A missing X server, compositor, library or Qt platform would otherwise end the program with a core dump. This
+module returns an error text instead.
 """
 
 from __future__ import annotations
@@ -17,24 +17,24 @@ from pathlib import Path
 
 from core.message import Message
 
-_PATIENCE = 15.0  # s for a display that does not answer
+_PATIENCE = 15.0  # Seconds that a display has to respond.
 _CHUNK = 1 << 14
 
 
 def trouble() -> str:
-    """Why no window can be opened here, and what to do; empty when one can."""
+    """Return why no window can be opened, with a remedy. Empty if a window can be opened."""
     if sys.platform != "linux":
         return ""
-    from PySide6 import QtGui  # before the child is made: it has it then
+    from PySide6 import QtGui  # Import before the fork, so that the child process has the module.
 
     if QtGui.QGuiApplication.instance() is not None or not hasattr(os, "fork"):
-        return ""  # it is open already
+        return ""  # The display is already open.
     opened, said = _tried(QtGui)
     return "" if opened else _why(said)
 
 
 def _tried(gui: object) -> tuple[bool, str]:
-    """A child that opens the display and ends; whether it could, and what Qt said."""
+    """Open the display in a child process. Return whether this succeeded, and the messages of Qt."""
     reads, writes = os.pipe()
     child = os.fork()
     if child == 0:
@@ -47,7 +47,7 @@ def _tried(gui: object) -> tuple[bool, str]:
 
 
 def _open(gui: object, writes: int) -> None:
-    """In the child: nothing of the parent may be run through or written by it."""
+    """Open the display and exit. This runs in the child process and must not run cleanup of the parent."""
     try:
         import resource
 
@@ -62,7 +62,7 @@ def _open(gui: object, writes: int) -> None:
 
 
 def _heard(reads: int, child: int) -> str:
-    """What the child says until it ends; one that hangs on a dead display is ended."""
+    """Return the output of the child process. Kill the process if the display does not respond."""
     said, end = b"", time.monotonic() + _PATIENCE
     while (left := end - time.monotonic()) > 0.0:
         if not select.select([reads], [], [], left)[0]:
@@ -77,7 +77,7 @@ def _heard(reads: int, child: int) -> str:
 
 
 def _why(said: str) -> str:
-    """Of what Qt says, what a person can act on."""
+    """Return the error text with a remedy for the messages of Qt."""
     platform = os.environ.get("QT_QPA_PLATFORM", "")
     if "Could not find the Qt platform plugin" in said:
         return Message(
@@ -105,7 +105,7 @@ def _why(said: str) -> str:
 
 
 def _missing_library() -> str:
-    """A library that the window system's part of Qt needs and this computer has not; empty: all are there."""
+    """Return the error for a library that Qt's X11 plugin needs and that is missing. Empty if all exist."""
     import PySide6
 
     part = Path(PySide6.__file__).parent / "Qt" / "plugins" / "platforms" / "libqxcb.so"

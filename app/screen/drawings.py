@@ -1,4 +1,4 @@
-"""Drawings of a tool's outline and of its tip, and of a shape whose dimensions are the fields."""
+"""Drawings of tool outlines and tips, and of sketches whose dimensions are input fields."""
 
 from __future__ import annotations
 
@@ -27,14 +27,18 @@ _INKS = {
     "left": ("alarm", 0.5),
 }
 _GROUNDS = {"part": "key", "tool": "here"}
-_FIGURE = 1.9  # units: height of a figure
+_FIGURE = 1.9  # Units: height of a number.
 _ARROW = 0.7
-_ACROSS = (0.12, 0.32)  # of the line of a diameter, from below: figures of two do not lie on each other
-_ROOM = 5.0  # units about the drawing, for dimensions
+_ACROSS = (0.12, 0.32)  # Positions on the line of a diameter, from below, so that two numbers do not overlap.
+_ROOM = 5.0  # Units around the drawing, for dimensions.
 
 
 class SketchPanel(Panel):
-    """``figures`` by word, ``here`` is the word of the marked field, ``wrong`` those with something wrong."""
+    """Panel that draws a sketch with its dimensions.
+
+    ``shown`` contains the sketch, the values by dimension word, the word of the selected field, and the words
+    of fields with errors.
+    """
 
     title = "DRAWING"
     shown: Shown[tuple[Sketch, tuple[tuple[str, str], ...], str, frozenset[str]]] = Shown(
@@ -48,7 +52,10 @@ class SketchPanel(Panel):
         beside: Callable[[tuple[float, float]], None],
         parent: QWidget,
     ) -> None:
-        """``beside`` is told of a finger that is on no figure, as a point of the sketch."""
+        """Create the panel. ``touch`` gets the word of a touched dimension.
+
+        ``beside`` gets the point of any other touch, in coordinates of the sketch.
+        """
         super().__init__(look, parent)
         self._touch, self._beside = touch, beside
         self._scale, self._middle, self._centre = 1.0, (0.0, 0.0), QPointF()
@@ -68,7 +75,7 @@ class SketchPanel(Panel):
                 self._dimension(painter, dim, said[dim.word], ink, share, marked=dim.word == here)
 
     def _fit(self, drawn: Sketch) -> None:
-        """The whole drawing in the middle of the panel, as large as it goes."""
+        """Center the drawing in the panel at the largest possible scale."""
         points = [p for each in drawn.outlines for p in each.points]
         points += [(dim.a[0], dim.a[1] + dim.away) for dim in drawn.dims]
         low = min(p[0] for p in points), min(p[1] for p in points)
@@ -84,7 +91,7 @@ class SketchPanel(Panel):
         return QPointF(x, self._centre.y() - (point[1] - self._middle[1]) * self._scale)
 
     def touch(self, at: QPointF) -> bool:
-        """A figure, or else the place itself."""
+        """Handle a touch on a dimension or on any other point of the sketch."""
         if not super().touch(at):
             away = at - self._centre
             self._beside((self._middle[0] + away.x() / self._scale, self._middle[1] - away.y() / self._scale))
@@ -123,7 +130,7 @@ class SketchPanel(Panel):
         self._figure(painter, middle, dim.before + figure, ink, dim.word, marked=marked)
 
     def _arrow(self, painter: Painter, line: QLineF) -> None:
-        """At the first point of a line."""
+        """Draw an arrowhead at the first point of a line."""
         if line.length() < 1e-6:
             return
         for turn in (20.0, -20.0):
@@ -146,7 +153,7 @@ class SketchPanel(Panel):
         self.place(self._finger_about(box), partial(self._touch, word))
 
     def _finger_about(self, box: QRectF) -> QRectF:
-        """A finger's place about a figure, within the panel."""
+        """Return a rectangle around a number that is large enough for a touch and inside the panel."""
         least = max(5.0 * self.look.u, FINGER)
         side, up = (max(0.0, least - have) / 2.0 for have in (box.width(), box.height()))
         place = box.adjusted(-side, -up, side, up)
@@ -156,17 +163,17 @@ class SketchPanel(Panel):
 
 
 def _is_diameter(dim: Dim) -> bool:
-    """Whether it goes across the axis."""
+    """Return whether the dimension line crosses the axis at a right angle."""
     return dim.b is not None and dim.a[1] < 0.0 < dim.b[1] and dim.a[0] == dim.b[0]
 
 
-_AROUND = 1.9  # how much more than the cutting edges the picture shows of a tool with an insert
+_AROUND = 1.9  # Size of the drawing relative to the cutting edges, for a tool with an insert.
 
 
 def draw_outline(painter: Painter, box: QRectF, outline: ToolOutline, *, small: bool = False) -> None:
-    """Body and cutting edges of a tool, and the control point; Z to the right, X downwards.
+    """Draw the body, cutting edges and control point of a tool. Z points right and X points down.
 
-    ``small``: without the arrows of the axes, and a smaller cross.
+    ``small`` omits the arrows of the axes and draws a smaller cross.
     """
     look, u = painter.look, painter.look.u
     place = _placing(box, outline)
@@ -190,7 +197,10 @@ def draw_outline(painter: Painter, box: QRectF, outline: ToolOutline, *, small: 
 
 
 def _placing(box: QRectF, outline: ToolOutline) -> QTransform:
-    """From (z, x) in mm to the box: round tools whole, of others the edges and what lies around them."""
+    """Return the transform from (z, x) in mm to the box.
+
+    Axial tools are shown completely, other tools only around their cutting edges.
+    """
     cutting = _polygon(outline.cutting[0]).boundingRect()
     for points in outline.cutting[1:]:
         cutting = cutting.united(_polygon(points).boundingRect())
@@ -198,7 +208,7 @@ def _placing(box: QRectF, outline: ToolOutline) -> QTransform:
     if outline.axial and outline.body:
         cutting = cutting.united(_polygon(outline.body[0]).boundingRect())
     scale = min(box.width() / cutting.width(), box.height() / cutting.height()) / share
-    # Where the body lies beside the edges, the picture looks that way.
+    # Shift the center of the drawing toward the body.
     middle = cutting.center()
     if outline.body and not outline.axial:
         whole = _polygon(outline.body[0]).boundingRect().center() - middle
@@ -214,7 +224,7 @@ def _polygon(points: FloatArray) -> QPolygonF:
 
 
 def _axes(painter: Painter, box: QRectF) -> None:
-    """Z+ to the right and X+ downwards, in the corner that is the chuck's."""
+    """Draw the arrows Z+ to the right and X+ down, in the upper left corner."""
     u = painter.look.u
     at, long = QPointF(box.x() + 1.2 * u, box.y() + 1.2 * u), 3.0 * u
     painter.setPen(painter.look.pen("soft", 0.14))
@@ -224,14 +234,14 @@ def _axes(painter: Painter, box: QRectF) -> None:
     painter.write(QRectF(at.x() - 0.6 * u, at.y() + long, 3 * u, 2 * u), "X+", 1.4, "soft", raw=True)
 
 
-_SPREAD = 0.7  # radians from the tool's axis to its flanks
+_SPREAD = 0.7  # Radians from the tool's axis to its flanks.
 
 
 def draw_tip(painter: Painter, box: QRectF, quadrant: int, colour: str = "text") -> None:
-    """The tip in a square: body away from the tip, nose circle, and a dot where X and Z are set."""
+    """Draw a tool tip: the body, the nose circle, and a dot at the point where X and Z are set."""
     side = min(box.width(), box.height())
     centre, radius = box.center(), 0.16 * side
-    z, x = TIP_DIRECTIONS[quadrant]  # X+ is down on the screen
+    z, x = TIP_DIRECTIONS[quadrant]  # X+ points down on the screen.
     middle = centre + QPointF(0.22 * side * z, 0.22 * side * x)
     painter.save()
     painter.setClipRect(box)
@@ -249,7 +259,7 @@ def draw_tip(painter: Painter, box: QRectF, quadrant: int, colour: str = "text")
 
 
 def _body(nose: QPointF, away: float, radius: float, side: float) -> QPainterPath:
-    """Two flanks that touch the nose circle and run out of the picture."""
+    """Return two flanks that touch the nose circle and extend out of the drawing."""
     path = QPainterPath(_on(nose, away + math.pi / 2 + _SPREAD, radius))
     path.lineTo(_on(_on(nose, away + math.pi / 2 + _SPREAD, radius), away + _SPREAD, 2 * side))
     path.lineTo(_on(_on(nose, away - math.pi / 2 - _SPREAD, radius), away - _SPREAD, 2 * side))

@@ -1,4 +1,4 @@
-"""What all entries look like: what is asked, what was typed, old → new; keys and keyboards for fingers."""
+"""Input fields with a question and the entered text, and touch keyboards."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ NAMES_WIDE: Rows = (
     (*"qwertyuiop", "Enter"),
     (*"asdfghjkl-", "Esc"),
     "zxcvbnm._ ",
-)  # where the whole width is free: a row less leaves more of a list
+)  # For the full width. One row fewer leaves more room for a list.
 PROGRAMS: Rows = (
     (*"1234567890-.", "Back"),
     (*"QWERTYUIOP()", "Enter"),
@@ -35,7 +35,7 @@ LINES: Rows = (
     "ASDFGHJKL+/}",
     "ZXCVBNM=~ ",
     ("Back", "Left", "Right", "Up", "Down", "Enter"),
-)  # of MDI: no row is longer than fingers allow beside the modal state
+)  # For MDI. The rows are short enough to fit next to the modal state.
 _CODES = {
     "Back": Qt.Key.Key_Backspace,
     "Enter": Qt.Key.Key_Return,
@@ -48,7 +48,7 @@ _ARROWS = {"Up": "↑", "Down": "↓", "Left": "←", "Right": "→"}
 
 
 class LetterPad(Panel):
-    """Every key does what the key of the keyboard does; hidden until somebody asks for it."""
+    """A touch keyboard whose keys act like keys of the keyboard. It is hidden at first."""
 
     part_name = "KEYBOARD"
 
@@ -59,11 +59,14 @@ class LetterPad(Panel):
 
     @property
     def least(self) -> int:
-        """Height in which every key takes a finger, pixels."""
+        """The height in pixels at which every key is large enough for a fingertip."""
         return self.look.keys_high(len(self._rows))
 
     def write_into(self, field: QWidget) -> None:
-        """A finger on a key leaves a stock field the keyboard, which Qt would give to the window."""
+        """Keep the focus in this standard field when a key is touched.
+
+        Otherwise Qt would give the focus to the window.
+        """
         self.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
         self.setFocusProxy(field)
 
@@ -84,7 +87,7 @@ class LetterPad(Panel):
 
 
 def strike(key: str, target: QWidget) -> None:
-    """A key of ``PROGRAMS`` goes down and comes up in a widget, as one of the keyboard would."""
+    """Send the press and release of a key of ``PROGRAMS`` to a widget, like a real key."""
     code = _CODES.get(key)
     text = "\r" if key == "Enter" else "" if code is not None else key
     number = code if code is not None else Qt.Key(ord(key))
@@ -94,21 +97,24 @@ def strike(key: str, target: QWidget) -> None:
 
 @dataclass(frozen=True, slots=True)
 class EntryWords:
-    """What an entry shows: which, question, typed text, old → new, and what other keys do."""
+    """The texts of an entry.
+
+    They are its subject, question, input text, change (old → new) and a hint for other keys.
+    """
 
     which: str = ""
     question: str = ""
     text: str = ""
     change: str = ""
     foot: str = ""
-    refused: bool = field(init=False)  # the next character replaces the text
+    refused: bool = field(init=False)  # The next character replaces the text.
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "refused", isinstance(self.text, RefusedText))
 
 
 class EntryPanel(Panel):
-    """Redrawn when one of its words has changed."""
+    """A panel with one input field. It is redrawn when one of its texts changes."""
 
     ground = "panel"
     asked = Shown(EntryWords())
@@ -136,9 +142,9 @@ class EntryPanel(Panel):
 def draw_entry(
     painter: Painter, inside: QRectF, text: str, *, size: float = 2.8, cursor: bool = True
 ) -> None:
-    """Draw what is typed, in letters of ``size`` units, and a caret where the entry has the keyboard.
+    """Draw an input text, ``size`` units high, with a caret if the field has the keyboard.
 
-    A refused text is drawn as selected, because the next character replaces it.
+    A rejected text is drawn as selected, because the next character replaces it.
     """
     u, selected = painter.look.u, painter.look.caret and isinstance(text, RefusedText)
     painter.setFont(painter.look.fit(text, size, inside.width() - u, bold=True))
@@ -153,13 +159,13 @@ def draw_entry(
 
 
 def draw_entry_box(painter: Painter, box: QRectF, text: str, size: float = 2.8) -> None:
-    """A frame to type in, and what is typed."""
+    """Draw an input field with its frame and text."""
     painter.box(box, "accent", 0.2, "ground")
     draw_entry(painter, box.adjusted(painter.look.u, 0, -painter.look.u, 0), text, size=size)
 
 
 def dress_line(edit: QLineEdit, look: Look, size: float, left: float) -> None:
-    """A stock line to type in, in font and colours of now; ``left`` units before its text."""
+    """Apply the present font and colors to a line edit, with ``left`` units of padding before its text."""
     u, colours = look.u, look.palette
     edit.setFont(look.font(size, bold=True))
     edit.setStyleSheet(
@@ -169,30 +175,30 @@ def dress_line(edit: QLineEdit, look: Look, size: float, left: float) -> None:
     )
 
 
-# --- the keys of a finger ----------------------------------------------------------------------------------
+# --- number pad --------------------------------------------------------------------------------------------
 
 
-_FREE = "C"  # the place that a page gives its own meaning
+_FREE = "C"  # The key to which a page gives its own meaning.
 _KEYS: Rows = ("789/", "456*", "123-", "0.(+", (_FREE, "Esc", ")", "Back"), ("Enter",))
 _SHOWN = {"-": "−", "*": "×", "/": "÷", "Back": "DEL", "Enter": "ENTER"}
 
 
 class KeyPad(LetterPad):
-    """Digits and what belongs to them."""
+    """A touch keyboard for numbers and arithmetic."""
 
     part_name = "NUMBER PAD"
-    own: Shown[tuple[str, str] | None] = Shown(None)  # a key that the page gives, and the word on it
+    own: Shown[tuple[str, str] | None] = Shown(None)  # Key name and label of the page's own key.
 
     def __init__(
         self, look: Look, press: Callable[[str], None], *, own: tuple[str, str] | None, parent: QWidget
     ) -> None:
-        """``own``: a key of this page and the word on it; None leaves its place empty."""
+        """Create the pad. ``own`` is the name and label of the page's own key, or None for an empty place."""
         super().__init__(look, press, parent, _KEYS)
         self.own = own
         self.show()
 
     def draw_key(self, painter: Painter, box: QRectF, key: str) -> None:
-        """Draw a key; the place of the page's own one stays empty where there is none."""
+        """Draw one key. The place of the page's own key remains empty without such a key."""
         key, shown = (self.own or ("", "")) if key == _FREE else (key, _SHOWN.get(key, key.upper()))
         if key:
             ink = "text" if key.isdigit() or key == "." else "accent"

@@ -1,4 +1,4 @@
-"""What every part of the screen draws with: themes, the bundled fonts, the unit of size, the language."""
+"""Themes, bundled fonts, unit of size and language, for everything that draws on the screen."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from core.message import Message
 
 @dataclass(frozen=True, slots=True)
 class Palette:
-    """Colours as ``#rrggbb``. ``on_…`` is the ink upon a filled patch of that colour."""
+    """Colors as ``#rrggbb``. ``on_…`` is the text color on a background of that color."""
 
     name: str
     ground: str
@@ -59,7 +59,7 @@ class Palette:
     ghost: str
     centre: str
     tip: str
-    estop: str = "#c81e1e"  # a real E-stop is red on yellow in any light (IEC 60204-1)
+    estop: str = "#c81e1e"  # An E-stop is red on yellow in every theme (IEC 60204-1).
     estop_rim: str = "#7a0d0d"
     estop_plate: str = "#ffd400"
     estop_ground: str = "#14161a"
@@ -124,7 +124,7 @@ LIGHT = Palette(
 )
 PALETTES = {palette.name: palette for palette in (DARK, LIGHT)}
 
-# Of curves on a chart, on the colour ``panel``: neighbours differ in lightness as well as in hue.
+# Colors of chart curves on the color ``panel``. Adjacent colors differ in lightness and in hue.
 CURVES = {
     "dark": (
         *("#74d4f7", "#f5b638", "#35c4a2", "#ff7f50"),
@@ -137,21 +137,24 @@ CURVES = {
 }
 
 
-# B612 has figures of one width, and an O that cannot be taken for a 0. (In B612 Mono both are alike, and its
-# point is followed by a gap, so that X.69 reads as X. 69.)
+# B612 has digits of equal width, and an O that differs from a 0. In B612 Mono both look alike, and a gap
+# follows the decimal point, so that X.69 looks like X. 69.
 FAMILY = "B612"
 LEFT = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
 RIGHT = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
-LEAST = 1.35  # units: the smallest text
-DESK_DPI = 96.0  # dots per inch of a monitor that does not say
-LEAST_ROW = 20.0  # pixels: a line of text
-SQUEEZED = 0.6  # a translation may be set in letters of this share of their size
+LEAST = 1.35  # Units: the smallest text.
+DESK_DPI = 96.0  # Dots per inch of a monitor that does not report its size.
+LEAST_ROW = 20.0  # Pixels: a line of text.
+SQUEEZED = 0.6  # A translation may be drawn at this fraction of its text size.
 CENTRE = Qt.AlignmentFlag.AlignCenter
 
 
 @cache
 def load_fonts() -> tuple[str, ...]:
-    """Make the bundled fonts known to Qt; the families found. Without them a bare system shows boxes."""
+    """Register the bundled fonts with Qt and return their families.
+
+    Without them, a system without fonts shows boxes instead of characters.
+    """
     families: list[str] = []
     for file in sorted(files("resources").joinpath("fonts").iterdir(), key=lambda f: f.name):
         if file.name.endswith(".otf"):
@@ -161,52 +164,52 @@ def load_fonts() -> tuple[str, ...]:
 
 
 class Look:
-    """Shared by all widgets of a window; ``u`` changes with its size."""
+    """Colors, fonts and sizes that all widgets of a window share. ``u`` changes with the window's size."""
 
     def __init__(self, palette: Palette, u: float = 12.0) -> None:
         self.palette = palette
         self.u = u
-        self.caret = False  # an entry of the page in front has the keyboard; only then its caret is drawn
-        self.mm = DESK_DPI / 25.4  # pixels of a millimetre of the glass
+        self.caret = False  # An input field of the current page has the keyboard, so its caret is drawn.
+        self.mm = DESK_DPI / 25.4  # Pixels per millimeter of the screen.
         self._colours: dict[str, QColor] = {}
         self._fonts: dict[tuple[float, bool], QFont] = {}
 
     def resize(self, u: float) -> None:
-        """Take another unit of size, in pixels."""
+        """Set the unit of size in pixels."""
         if u != self.u:
             self.u = u
             self._fonts.clear()
 
     def row(self, units: float, mm: float, *, touch: bool = False) -> float:
-        """Height of a row of a list, pixels: ``units`` of the window, but not above ``mm`` of the glass.
+        """Return the height of a list row in pixels.
 
-        So a larger glass shows more rows and not only larger ones. What is touched is never lower than a
-        fingertip on the smallest screen.
+        The height is ``units`` of the window, but at most ``mm`` on the screen. A larger screen thus shows
+        more rows. A row for ``touch`` is never lower than a fingertip on the smallest screen.
         """
         high = min(units * self.u, mm * self.mm)
         return max(high, float(FINGER)) if touch else max(high, min(units * self.u, LEAST_ROW))
 
     def keys_high(self, rows: int) -> int:
-        """Height of so many rows of drawn keys, pixels, each as high as a fingertip."""
+        """Return the height of a number of rows of touch keys in pixels, each as high as a fingertip."""
         return math.ceil(rows * FINGER + (rows - 1) * 0.6 * self.u)
 
     def measure(self, dots_per_inch: float) -> None:
-        """Take the size of the glass; what a monitor says of itself wrongly is limited to what there is."""
+        """Set the resolution of the screen. Values outside 75…350 dots per inch are limited."""
         self.mm = min(max(dots_per_inch, 75.0), 350.0) / 25.4
 
     def repaint(self, palette: Palette) -> None:
-        """Take the colours of another palette."""
+        """Use the colors of another palette."""
         self.palette = palette
         self._colours.clear()
 
     def colour(self, name: str) -> QColor:
-        """A colour of the palette, the caller's own: it may be made faint."""
+        """Return a copy of a palette color, which the caller may change."""
         if name not in self._colours:
             self._colours[name] = QColor(getattr(self.palette, name))
         return QColor(self._colours[name])
 
     def font(self, size: float, *, bold: bool = False) -> QFont:
-        """A bundled font, ``size`` in units (height of the em)."""
+        """Return the bundled font with an em height of ``size`` units."""
         key = (size, bold)
         if key not in self._fonts:
             font = QFont(FAMILY)
@@ -216,13 +219,13 @@ class Look:
         return self._fonts[key]
 
     def pen(self, name: str, width: float = 0.12) -> QPen:
-        """A pen of a palette colour, ``width`` in units, at least one pixel."""
+        """Return a pen of a palette color. ``width`` is in units, at least one pixel."""
         return QPen(self.colour(name), max(1.0, width * self.u))
 
     def fit(self, text: str, size: float, width: float, *, bold: bool = False) -> QFont:
-        """The font of this size, or the largest smaller one in which ``text`` is not wider than ``width``.
+        """Return the font of this size, or a smaller one in which ``text`` is not wider than ``width``.
 
-        Never so small that it cannot be read: text that is too long even then is elided where it is put.
+        The font stays large enough to read. A text that is still too long is elided when it is drawn.
         """
         font = self.font(size, bold=bold)
         wide = width_of(tr(text), font)
@@ -234,9 +237,9 @@ class Look:
 
 
 def put(painter: QPainter, rect: QRectF, flags: Qt.AlignmentFlag, text: str) -> None:
-    """Draw one line of our own text in the operator's language; see ``put_raw``.
+    """Draw one line of TurnDesk's own text in the operator's language. See ``put_raw``.
 
-    A translation that is longer than its place is made smaller, as far as it can still be read.
+    A translation that is too wide is drawn smaller, as far as it remains readable.
     """
     shown, font = tr(text), painter.font()
     wide = width_of(shown, font) if shown != text else 0.0
@@ -251,9 +254,9 @@ def put(painter: QPainter, rect: QRectF, flags: Qt.AlignmentFlag, text: str) -> 
 
 
 def put_raw(painter: QPainter, rect: QRectF, flags: Qt.AlignmentFlag, text: str) -> None:
-    """Draw one line of anybody's text as it is: program lines, comments, names, what is being typed.
+    """Draw one line of untranslated text, such as program lines, comments, names and input.
 
-    Its capitals are centred on the middle of ``rect``; it is elided when it is too long.
+    Its capitals are centered vertically in ``rect``. A text that is too long is elided.
     """
     font = painter.font()
     if Painter.notes and isinstance(painter, Painter):
@@ -271,7 +274,10 @@ def put_raw(painter: QPainter, rect: QRectF, flags: Qt.AlignmentFlag, text: str)
 
 
 def width_of(text: str, font: QFont) -> float:
-    """How wide a line of text is in one of our fonts, pixels: Qt would shape it anew for every question."""
+    """Return the width of a line of text in pixels.
+
+    The result is cached, because Qt shapes the text each time.
+    """
     return _width(text, *_face(font))
 
 
@@ -291,21 +297,22 @@ def _capitals(family: str, pixels: int, bold: bool) -> float:
 
 def _metrics(family: str, pixels: int, bold: bool) -> QFontMetricsF:
     font = QFont(family)
-    if pixels > 0:  # else the size of the desk's own font
+    if pixels > 0:  # Otherwise the default font size applies.
         font.setPixelSize(pixels)
     font.setBold(bold)
     return QFontMetricsF(font)
 
 
 class Painter(QPainter):
-    """A painter that knows colours, fonts and unit of a look."""
+    """A painter that uses the colors, fonts and unit of a look."""
 
-    notes: ClassVar[bool] = False  # whether all painters note what they write, for assistive technology
+    # Whether all painters record the texts that they draw, for assistive technology.
+    notes: ClassVar[bool] = False
 
     def __init__(self, device: QPaintDevice, look: Look) -> None:
         super().__init__(device)
         self.look = look
-        self.written: list[tuple[QRectF, str]] = []  # texts and their places, where they are noted
+        self.written: list[tuple[QRectF, str]] = []  # Recorded texts and their rectangles.
 
     def __enter__(self) -> Self:
         super().__enter__()
@@ -324,10 +331,10 @@ class Painter(QPainter):
         margin: float = 0.0,
         fit: bool = True,
     ) -> None:
-        """Draw one line of text in an ink of the palette: ``size`` units high, or smaller to fit.
+        """Draw one line of text in a palette color, ``size`` units high, or smaller if necessary.
 
-        It is fitted into ``rect``, with ``margin`` units left over, or else elided. ``raw`` text is anybody's
-        and is not translated: see ``put_raw``. Ink and font stay for what is drawn next.
+        The text is fitted into ``rect`` minus ``margin`` units, or elided. ``raw`` text is not translated,
+        see ``put_raw``. Color and font remain set.
         """
         look = self.look
         room = rect.width() - margin * look.u
@@ -336,23 +343,26 @@ class Painter(QPainter):
         (put_raw if raw else put)(self, rect, at, text)
 
     def wrap(self, rect: QRectF, flags: int | Qt.AlignmentFlag | Qt.TextFlag, text: str) -> None:
-        """Draw a text of several lines in the pen and font of now."""
+        """Draw a text with several lines in the present pen and font."""
         self.written.append((QRectF(rect), text))
         self.drawText(rect, int(flags), text)
 
     def fill(self, rect: QRectF, ground: str) -> None:
-        """Fill a rectangle with a colour of the palette."""
+        """Fill a rectangle with a palette color."""
         self.fillRect(rect, self.look.colour(ground))
 
     def box(self, rect: QRectF, line: str, width: float, ground: str) -> None:
-        """A filled rectangle with an edge ``width`` units wide; without a ``ground`` it is hollow."""
+        """Draw a filled rectangle with an edge ``width`` units wide. An empty ``ground`` leaves it hollow."""
         self.setPen(self.look.pen(line, width))
         self.setBrush(self.look.colour(ground) if ground else Qt.BrushStyle.NoBrush)
         self.drawRect(rect)
 
 
 def dress(palette: Palette) -> None:
-    """Fusion with our own palette, for the few stock widgets; setColorScheme does nothing on bare xcb."""
+    """Use the Fusion style with TurnDesk's palette for the standard widgets.
+
+    Qt's setColorScheme has no effect on a plain X server.
+    """
     QApplication.setStyle("Fusion")
     look = Look(palette)
     colours = QPalette()
@@ -372,11 +382,15 @@ def dress(palette: Palette) -> None:
     QApplication.setPalette(colours)
 
 
-# --- signs of states ----------------------------------------------------------------------------------
+# --- state symbols ------------------------------------------------------------------------------------
 
 
 def draw_sign(painter: QPainter, box: QRectF, tone: Tone, colour: QColor) -> None:
-    """The sign of a state: triangle runs, bars pause, dots wait, barred triangle alarms, square is ready."""
+    """Draw the symbol of a state.
+
+    Running is a triangle, paused is two bars, waiting is dots, an alarm is a triangle with a bar, ready is a
+    square.
+    """
     side = min(box.width(), box.height())
     square = QRectF(box.center().x() - side / 2, box.center().y() - side / 2, side, side)
     painter.save()
@@ -443,13 +457,17 @@ CONTEXT = "turndesk"
 
 
 def speak_in(language: str) -> None:
-    """From now on texts are shown in this language. Raises FileNotFoundError for one without a catalogue."""
+    """Show texts in this language from now on. Raises FileNotFoundError if it has no catalog."""
     speak(None if language == ENGLISH else catalogue(language), language)
 
 
 @cache
 def catalogue(language: str) -> Translate:
-    """Return the catalog of a language, read once; it returns an empty text for one that it does not have."""
+    """Return the translation function of a language. The catalog is read once.
+
+    The function returns an empty text for a text without a translation. Raises FileNotFoundError without a
+    catalog.
+    """
     folder = files("resources") / "translations"
     translator = QTranslator()
     if not translator.load(str(folder / f"turndesk_{language}.qm")):

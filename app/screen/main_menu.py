@@ -1,4 +1,4 @@
-"""F1, the main menu: one large target for each page, with the key that opens it."""
+"""The main menu (F1), with a large target for each page and the key that opens it."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ COLUMNS = 2
 
 
 class MenuPage(Page):
-    """The page that opens all others, by key or finger."""
+    """The page that opens all other pages, by key or touch."""
 
     NAME = page_table.MENU
 
@@ -39,11 +39,11 @@ class MenuPage(Page):
         self.list = _Tiles(self.look, host.press, self._entries, self)
 
     def labels(self) -> tuple[str, ...]:
-        """Those of the entries that this machine has."""
+        """Return the labels of the pages that this machine has."""
         return self._labels
 
     def barred(self) -> frozenset[str]:
-        """Return the keys of editor and MDI while they would be refused."""
+        """Return the keys of the editor and MDI while those pages cannot be opened."""
         snapshot, named = self.desk.snapshot(), self.desk.session.now.path is not None
         found = {
             page_table.EDITOR: editor_barred(snapshot, named=named),
@@ -52,41 +52,41 @@ class MenuPage(Page):
         return frozenset(key for key, each in self._keys.items() if found.get(each.name))
 
     def refresh(self, snapshot: Snapshot, view: MachineStatus, loaded: Loaded) -> None:
-        """Dim the tiles of pages that do not open now."""
+        """Dim the tiles of pages that cannot be opened now."""
         super().refresh(snapshot, view, loaded)
         self.list.barred = self.barred()
 
     def key_actions(self) -> KeyActions:
-        """The function keys of the entries."""
+        """Return the actions of the menu's keys."""
         return {OF_MENU.get(key, key): partial(self._open, entry.name) for key, entry in self._keys.items()}
 
     def _open(self, name: str) -> None:
-        self.desk.clear()  # an answer to the key before has been read
+        self.desk.clear()  # The message for the previous key has been read.
         self.host.go(name)
 
     def prompt(self) -> str:
-        """How a page is chosen."""
+        """Return the instruction for choosing a page."""
         return "PRESS A FUNCTION KEY OR TAP A PAGE. ESC: AUTOMATIC"
 
     def esc_holds(self) -> bool:
-        """Return False: Esc opens the Automatic page, also while something moves."""
+        """Return False, because Esc opens the Automatic page even while the machine moves."""
         return False
 
     def escape(self) -> bool:
-        """Back to the Automatic page."""
+        """Open the Automatic page."""
         self.host.go(page_table.AUTOMATIC)
         return True
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """The tiles fill the page."""
+        """Let the tiles fill the page."""
         self.list.setGeometry(self.rect())
 
 
 class _Tiles(Panel):
-    """The entries in two columns."""
+    """The menu entries in two columns."""
 
     title = page_table.MENU
-    barred: Shown[frozenset[str]] = Shown(frozenset())  # keys of pages that do not open now
+    barred: Shown[frozenset[str]] = Shown(frozenset())  # Keys of pages that cannot be opened now.
 
     def __init__(
         self, look: Look, press: Callable[[str], None], entries: Sequence[PageEntry], parent: QWidget

@@ -1,41 +1,49 @@
-"""What a page of the main window is, and where another one is plugged in.
+"""Base class of the pages of the main window, and how a page is added.
 
-A page is a ``Page`` (a QWidget) that fills the room between the always visible parts: title, position, feed,
-spindle, lamps, dock, prompt and function keys belong to the ``Frame``. To plug one in, add an entry to
-``PAGES`` in ``app.screen.page_table``. It is made when it is first opened. What a page gives:
+A page is a ``Page`` (a QWidget) in the room that the fixed parts of the window leave. Title, position, feed,
+spindle, lamps, station dock, prompt line and function keys belong to the ``Frame``. To add a page, add an
+entry to ``PAGES`` in ``app.screen.page_table``. The page is created when it is first opened. A page may
+override the following members:
 
-``NAME``      its name in ``app.screen.page_table``; the title line shows it.
-``LABELS``    ten labels of up to eight characters for the function keys; an empty one is no key. F1 is MENU.
-``labels()``  the same, where they change with what the page is doing.
-``barred()``  the function keys that would be refused now: they are drawn dim, and say why when pressed.
-``STARTS``    whether cycles are started while it is shown; only the Automatic page's palms start anything.
-``key_actions()``  what its keys do, by the names of ``app.screen.window.keys``. They go before those of the
-              frame; H, E, D, R and the pots work on every page without a caret, F1 on all pages.
-``key_down``  sees every key that goes down (also a repeating one) before all else; True takes it.
-``pressed()`` is told before any other key or finger acts: what is held on the page ends then.
-``key_up``    sees every key that comes up; ``let_go()``: no release will arrive any more, let go of all.
-``typed(k)``  takes a key before it means anything else: one character, or ``Enter Back Delete Tab Up Down``,
-              ``Page up``, ``Page down``; True when it was taken. A stock widget
-              that has the focus takes its keys by itself.
-``takes(k)``  whether it takes that character as text: the lamps then do not show it as their key.
-``has_field()`` whether an entry has the keyboard. Exactly then a caret is drawn, and every character is the
-              entry's: one that it does not take means nothing.
-``asks()``    a question of its own: it goes before anything else on the prompt line.
-``prompt()``  what stands on the prompt line when the desk has no answer and no alarm to show there.
-``opens()``   whether it may come up now; when not, it says why by ``desk.say`` and the page before stays.
-``opened()``  it has come up; it may take the focus (the window has it otherwise).
-``leave()``   it is about to go, or the window is about to close; False keeps it (it then says why by
-              ``desk.say``).
-``esc_holds()`` whether Esc holds the feed while something moves; not where the page offers Esc for something.
-``escape()``  Esc; False when nothing was closed by it: then the desk takes its question back or holds, and
-              where it has neither the Automatic page comes up.
-``ahead()``   makes one slice of what takes long, while the page is not shown yet; False: nothing is left.
-``lively()``  whether something on it moves by itself, so that it is shown 60 times a second at rest, too.
-``refresh``   once a frame while it is shown: snapshot, view and loaded program of the same instant.
-``dress()``   the colours have changed; painted parts are updated by the frame anyway.
+- ``NAME``: its name in ``app.screen.page_table``, which the title line shows.
+- ``LABELS``: ten labels of up to eight characters for the function keys. F1 is MENU.
+  An empty label means no key.
+- ``labels()``: the labels, if they change.
+- ``barred()``: function keys that are disabled now. They are drawn dim, and show the reason
+  when pressed.
+- ``STARTS``: whether the start buttons can start cycles while the page is shown.
+- ``key_actions()``: its key actions, by the key names of ``app.screen.window.keys``. They
+  precede those of the frame. H, E, D, R and the pots work on every page without a caret, and
+  F1 on all pages.
+- ``key_down``: gets every key press first, including repeats. True means that the page has
+  handled the key.
+- ``pressed()``: called before any other key or touch acts. Actions that need a key held down end.
+- ``key_up``: gets every key release.
+- ``let_go()``: called if no key release will arrive any more. All such actions end.
+- ``typed(key)``: handles a key as text input: one character, or ``Enter Back Delete Tab Up
+  Down``, ``Page up``, ``Page down``. True means that the page has handled the key. A standard
+  widget with the focus handles its keys itself.
+- ``takes(key)``: whether this character is text input. Lamps then do not show it as their key.
+- ``has_field()``: whether an input field has the keyboard. Only then is a caret drawn, and every
+  character belongs to the field.
+- ``asks()``: a question of the page, which has priority on the prompt line.
+- ``prompt()``: the text of the prompt line if there is no message and no alarm.
+- ``opens()``: whether the page can be opened now. If not, it shows the reason by ``desk.say``.
+- ``opened()``: called when the page has opened. It may take the focus from the window.
+- ``leave()``: called before the page or the window closes. False prevents this. The page then
+  shows the reason by ``desk.say``.
+- ``esc_holds()``: whether Esc starts feed hold while the machine moves. False if Esc has another
+  function.
+- ``escape()``: handles Esc. False means that the page closed nothing. The window then closes its
+  question, starts feed hold, or opens the Automatic page.
+- ``ahead()``: prepares slow parts in slices before the page is shown. False means that nothing
+  is left.
+- ``lively()``: whether the page shows an animation, so that it is drawn 60 times per second.
+- ``refresh``: called once a frame with the snapshot, status and loaded program of one instant.
+- ``dress()``: called when the colors have changed. The frame redraws painted parts.
 
-``host.go(name)`` opens another page, ``host.press(key)`` does what a key does (for fingers), and
-``host.desk`` is the model. Geometry: the frame sets it; lay out in ``resizeEvent``, in units of ``look.u``.
+``host.go(name)`` opens another page, ``host.press(key)`` acts like a key press, and ``host.desk`` is the
+model. The frame sets the page's geometry. Lay out the parts in ``resizeEvent``, in units of ``look.u``.
 """
 
 from __future__ import annotations
@@ -61,26 +69,26 @@ _LABELS: Mapping[str, Mapping[str, str]] = {
 
 
 def label_on(language: str, label: str) -> str:
-    """The label of a key on a machine of this language."""
+    """Return the label of a key on a machine with this programming language."""
     return _LABELS.get(language, {}).get(label, label)
 
 
-KeyActions = Mapping[str, Callable[[], object]]  # by the name of the key; what they answer is not used
+KeyActions = Mapping[str, Callable[[], object]]  # Actions by key name. Their return values are not used.
 
 
 @dataclass(frozen=True, slots=True)
 class Host:
-    """What the frame gives to its pages."""
+    """The objects and functions that the frame gives to its pages."""
 
     look: Look
     desk: Desk
     press: Callable[[str], None]
     go: Callable[[str], bool]
-    clear_away: Callable[[], None]  # close the log that lies over the page
+    clear_away: Callable[[], None]  # Closes the alarm log that covers the page.
 
 
 class Page(QWidget):
-    """A page that does nothing yet; see the module for what each part means."""
+    """Base class of all pages. The module's docstring describes the members."""
 
     NAME: ClassVar[str]
     LABELS: ClassVar[tuple[str, ...]] = ("MENU", "", "", "", "", "", "ALARMS", "", "", "")
@@ -97,93 +105,93 @@ class Page(QWidget):
         return self.NAME
 
     def labels(self) -> tuple[str, ...]:
-        """The labels of this moment; asked for once a frame."""
+        """Return the present labels of the function keys; called once a frame."""
         return tuple(label_on(self.desk.machine.language, label) for label in self.LABELS)
 
     def barred(self) -> frozenset[str]:
-        """Return the function keys that would be refused now; asked for once a frame."""
+        """Return the function keys that are disabled now; called once a frame."""
         return frozenset()
 
     def key_actions(self) -> KeyActions:
-        """Keys of this page alone."""
+        """Return the key actions of this page, by key name."""
         return {}
 
     def key_down(self, _event: QKeyEvent) -> bool:
-        """Take a key as it goes down; False lets it mean what it means elsewhere."""
+        """Handle a key press before all other parts. Return False to leave the key to them."""
         return False
 
     def key_up(self, _event: QKeyEvent) -> None:
-        """See a key come up."""
+        """Handle a key release."""
 
     def pressed(self) -> None:
-        """A key or a finger is about to do something else, here or beside the page."""
+        """End actions of keys held down, because another key or touch will act next."""
 
     def let_go(self) -> None:
-        """The keyboard has gone elsewhere."""
+        """End all actions of keys held down, because no key release will arrive."""
 
     def typed(self, _key: str) -> bool:
-        """Take a typed key; False leaves it to the window."""
+        """Handle a key as text input. Return False to leave the key to the window."""
         return False
 
     def touched(self, key: str) -> None:
-        """A finger on a drawn key: Esc is the window's, any other is typed here."""
+        """Handle a touch on a drawn key. Esc goes to the window, any other key to this page."""
         if key == "Esc":
             self.host.press(key)
         else:
             self.typed(key)
 
     def takes(self, _key: str) -> bool:
-        """Whether a character is text here."""
+        """Return whether this character is text input for the page."""
         return False
 
     def has_field(self) -> bool:
-        """Whether an entry of the page has the keyboard."""
+        """Return whether an input field of the page has the keyboard."""
         return False
 
     def ahead(self) -> bool:
-        """Make one slice more of its charts, some milliseconds, before it is shown; False: nothing left."""
+        """Prepare one slice of slow parts before the page is shown. Return False if nothing is left."""
         return False
 
     def lively(self) -> bool:
-        """Whether something on it moves by itself: played, or measured."""
+        """Return whether the page shows an animation or live measurements."""
         return False
 
     def asks(self) -> str:
-        """A question of the page's own, which nothing hides; empty without one."""
+        """Return a question of the page, which nothing covers. Empty without a question."""
         return ""
 
     def prompt(self) -> str:
-        """Empty: the desk's standing prompt."""
+        """Return the page's prompt. Empty for the prompt of the machine state."""
         return ""
 
     def opens(self) -> bool:
-        """Whether it may come up now."""
+        """Return whether the page can be opened now."""
         return True
 
     def opened(self) -> None:
-        """It is in front now."""
+        """Handle the opening of the page."""
 
     def leave(self) -> bool:
-        """Whether another page may take its place; where not, it says why on the prompt line."""
+        """Return whether another page may replace this one. If not, the prompt line shows the reason."""
         return True
 
     def esc_holds(self) -> bool:
-        """Return whether Esc holds the feed while something moves; an entry takes Esc for itself."""
+        """Return whether Esc starts feed hold while the machine moves. An input field uses Esc itself."""
         return not self.has_field()
 
     def escape(self) -> bool:
-        """Whether Esc has closed something here."""
+        """Handle Esc. Return whether Esc has closed something on the page."""
         return False
 
     def refresh(self, snapshot: Snapshot, view: MachineStatus, loaded: Loaded) -> None:
-        """Show snapshot, status and loaded program of this instant; called once a frame."""
+        """Show the snapshot, status and loaded program of this instant; called once a frame."""
 
     def dress(self) -> None:
-        """Other colours are in force."""
+        """Apply the present colors."""
 
 
 class PageModel(Protocol):
-    """What such a page asks of its model; ``escape`` is False where nothing was taken back by it."""
+    """Interface of a page's model. ``escape`` returns False if it canceled nothing."""
 
     def typed(self, key: str) -> bool: ...
 
@@ -195,36 +203,39 @@ class PageModel(Protocol):
 
 
 class ModelPage(Page):
-    """The model decides, this only shows it and hands the keys on."""
+    """A page that shows a model and passes keys to it."""
 
     model: PageModel
 
     def typed(self, key: str) -> bool:
-        """To the entry, the list or whatever is open."""
+        """Pass a key to the model."""
         return self.model.typed(key)
 
     def takes(self, key: str) -> bool:
-        """Whether a character is text of what is open."""
+        """Return whether this character is text input for the model."""
         return self.model.takes(key)
 
     def opened(self) -> None:
-        """The page comes up."""
+        """Inform the model that the page has opened."""
         self.model.opened()
 
     def escape(self) -> bool:
-        """One step back."""
+        """Let the model go one step back."""
         return self.model.escape()
 
 
 class HeadKey(NamedTuple):
-    """A place over the text that opens the panel: its text, and the name of the key that does the same."""
+    """A touch target above the editor's text that opens the panel.
+
+    ``label`` is its text. ``name`` is the name of the equivalent key.
+    """
 
     label: str
     name: str
 
 
 class EditorPanel(QWidget):
-    """Nothing; a feature registers its subclass as ``Extra.editor_panel``.
+    """A panel of the editor without content. A feature registers a subclass as ``Extra.editor_panel``.
 
     ``KEYS`` are the names of the keys that open it, from ``app.screen.window.keys``.
     """
@@ -238,15 +249,16 @@ class EditorPanel(QWidget):
         self.hide()
 
     def head_keys(self, name: str) -> Sequence[HeadKey]:  # noqa: ARG002
-        """Return the places over the text of a program of this name, from the right to the left."""
+        """Return the targets above the text of a program with this name, from right to left."""
         return ()
 
     def open_at(self, key: str, name: str, text: str, line: int) -> str:  # noqa: ARG002
-        """Open the panel for this text; the cursor stands on ``line``, from 1. Return why not, else nothing.
+        """Open the panel for this text. Return why this is not possible, or an empty text.
 
-        ``key`` is the name of the key that was pressed; empty: a program is to be made of a file.
+        ``line`` is the line of the cursor, counted from 1. ``key`` is the name of the pressed key, or empty
+        if a program is made from a file.
         """
         return ""
 
     def refresh(self) -> None:
-        """Show what the model says now; called once a frame."""
+        """Show the present state of the model; called once a frame."""

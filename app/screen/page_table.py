@@ -1,4 +1,4 @@
-"""The pages of the main window, one entry a page, and how they are loaded ahead of their first opening."""
+"""The table of all pages of the main window, and the loading of pages before they are first opened."""
 
 from __future__ import annotations
 
@@ -169,17 +169,20 @@ _INSTEAD = {
 
 
 def page_on(language: str, name: str) -> str:
-    """The page that a machine of this language opens where another would open ``name``."""
+    """Return the page that a machine with this language opens in place of the page ``name``."""
     return _INSTEAD.get(language, {}).get(name, name)
 
 
 def menu_of(language: str) -> tuple[PageEntry, ...]:
-    """The entries of the main menu on a machine of this language."""
+    """Return the entries of the main menu on a machine with this language."""
     return tuple(entry for entry in IN_MENU if language in entry.languages)
 
 
 def menu_keys(language: str) -> dict[str, PageEntry]:
-    """Each key of the main menu with what it opens; what is in the place of another page has its key too."""
+    """Return the menu keys with the pages that they open.
+
+    A page that replaces another page also has the other page's key.
+    """
     entries = menu_of(language)
     by_name = {entry.name: entry for entry in entries}
     absent = [entry for entry in IN_MENU if language not in entry.languages]
@@ -195,24 +198,24 @@ _ENTRY_OF = {entry.name: entry for entry in PAGES}
 
 
 def pages_of(language: str) -> tuple[PageEntry, ...]:
-    """The pages of a machine of this language, those of the menu first."""
+    """Return the pages of a machine with this language."""
     return tuple(entry for entry in PAGES if language in entry.languages)
 
 
 def has_page(name: str) -> bool:
-    """Return whether there is a page of this name: optional features may be absent."""
+    """Return whether a page with this name exists. Pages of optional features may be missing."""
     return name in _ENTRY_OF
 
 
 def load(entry: PageEntry) -> None:
-    """Import all that a page needs; on a worker, so that opening it takes no time of the screen's thread."""
+    """Import the classes that a page needs. This runs on a worker, so that opening the page is fast."""
     for dotted in (entry.view, entry.model, *entry.later):
         if dotted:
             class_of(dotted)
 
 
 def make_page(name: str, host: Host, parent: QWidget) -> Page:
-    """The page of this name. Raises RuntimeError where the desk was put together without its model."""
+    """Create the page with this name. Raises RuntimeError if its model is not attached."""
     entry = _ENTRY_OF[name]
     view = class_of(entry.view)
     page: Page = view(host, _model(entry, host), parent) if entry.model else view(host, parent)
@@ -220,13 +223,13 @@ def make_page(name: str, host: Host, parent: QWidget) -> Page:
 
 
 def class_of(dotted: str) -> Any:
-    """The class of this dotted name, imported now."""
+    """Import and return the class with this dotted name."""
     module, _, name = dotted.rpartition(".")
     return getattr(import_module(module), name)
 
 
 def editor_panel(none: Any) -> Any:
-    """The class of the panel that an optional feature adds to the editor; ``none`` where there is no such."""
+    """Return the panel class that an optional feature adds to the editor, or ``none``."""
     return class_of(_PANELS[0]) if _PANELS else none
 
 
@@ -237,16 +240,16 @@ def _model(entry: PageEntry, host: Host) -> object:
     return model
 
 
-TYPES = 20  # classes of PySide that are made in one slice
-APART = 0.05  # s at least from one slice to the next: a frame between them has nothing of it
+TYPES = 20  # PySide classes that are created in one slice.
+APART = 0.05  # Minimum seconds between two slices, so that the frames between them are not delayed.
 _LOADING = frozenset({Phase.READING, Phase.PROVING, Phase.DRAWING, Phase.PART})
 
 
 def make_types() -> Iterator[bool]:
-    """Have PySide make all its classes on Qt's thread, in slices, before a worker imports pyqtgraph.
+    """Create all PySide classes on Qt's thread, in slices, before a worker imports pyqtgraph.
 
-    PySide makes a class when it is first asked for. Two threads that do so at once can end the process.
-    Yields False after each slice, which takes some milliseconds.
+    PySide creates a class at its first use. If two threads do this at the same time, the process can crash.
+    Yields False after each slice of a few milliseconds.
     """
     for module in (QtCore, QtGui, QtWidgets):
         for slice_ in batched_names(dir(module)):
@@ -262,7 +265,7 @@ def batched_names(names: list[str]) -> Iterator[list[str]]:
 
 
 class PagesAhead:
-    """``step`` once a frame; attached to the desk, it ends with it."""
+    """Loads the pages in slices while TurnDesk is idle. It is closed with TurnDesk."""
 
     def __init__(self, desk: Desk, page_of: Callable[[str], Page]) -> None:
         self._desk, self._page_of = desk, page_of
@@ -272,7 +275,7 @@ class PagesAhead:
         self.done = False
 
     def step(self) -> None:
-        """One slice more, where there is one and the desk has time for it."""
+        """Execute the next slice if no program is being loaded; called once a frame."""
         now = self._desk.clock.seconds()
         if self.done or now < self._next or self._desk.session.now.phase in _LOADING:
             return
@@ -280,15 +283,15 @@ class PagesAhead:
         self._worker.poll()
         if not self._worker.busy and next(self._slices, True):
             self.done = True
-            gc.freeze()  # modules: collections, which stop every thread, need not look at them again
+            gc.freeze()  # Exclude the modules from garbage collection, which stops every thread.
 
     def close(self) -> None:
-        """With the desk."""
+        """Stop loading pages and end the worker."""
         self.done = True
         self._worker.close()
 
     def _all(self) -> Iterator[bool]:
-        """False for every slice: a page loaded, a part of its charts made."""
+        """Yield False after every slice: a page is imported, or a part of it is prepared."""
         yield from make_types()
         for entry in pages_of(self._desk.machine.language):
             found: list[None] = []

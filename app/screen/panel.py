@@ -1,4 +1,4 @@
-"""The common ground of the parts of the page: a frame, its title in the top line, places to press."""
+"""Base classes of the painted parts of the screen: a frame with a title, and targets to press."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ T = TypeVar("T")
 
 
 class Shown(Generic[T]):
-    """An attribute of a panel: the panel is drawn anew when it becomes another."""
+    """A descriptor for an attribute of a panel. The panel is redrawn when its value changes."""
 
     def __init__(self, first: T) -> None:
         self._first = first
@@ -45,28 +45,31 @@ class Shown(Generic[T]):
 
 
 def no_press() -> None:
-    """Do nothing: what acts while it is held or dragged is not pressed by assistive technology."""
+    """Do nothing, because assistive technology does not press a control that can be dragged."""
 
 
 class Spot(NamedTuple):
-    """A target of a panel. ``name`` goes before the texts that are painted on it; see ``words_on``."""
+    """A target of a panel. ``name`` precedes the painted texts in the accessible name, see ``words_on``."""
 
     box: QRectF
     press: Press
     name: str = ""
     kind: Literal["key", "row", "lamp", "slider"] = "key"
-    on: bool = False  # a lamp that is lit, a row that has the mark
-    barred: bool = False  # pressing it would be refused now
+    on: bool = False  # The lamp is lit, or the row is selected.
+    barred: bool = False  # Pressing the target would be rejected now.
 
 
 class Panel(QWidget):
-    """Draws itself from what it shows, and only when that has changed. Never takes the keyboard."""
+    """A painted part of the screen, which is redrawn only when its content changes.
+
+    A panel never has the focus.
+    """
 
     title = ""
-    part_name = ""  # for assistive technology, where the panel has no title
-    lists = False  # its targets are the rows of a list
+    part_name = ""  # For assistive technology, if the panel has no title.
+    lists = False  # The targets are the rows of a list.
     ground = "ground"
-    paints: ClassVar[int] = 0  # how often any of them has been
+    paints: ClassVar[int] = 0  # Number of paint events of all panels.
 
     def __init__(self, look: Look, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -78,7 +81,7 @@ class Panel(QWidget):
         self.setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent)
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        """Qt's call to draw. The painter ends whatever happens: one left open takes the process with it."""
+        """Paint the panel. The painter always ends, because an active painter would crash the process."""
         Panel.paints += 1
         with Painter(self, self.look) as painter:
             painter.setRenderHint(QPainter.RenderHint.Antialiasing)
@@ -90,14 +93,14 @@ class Panel(QWidget):
             self._written = painter.written if Painter.notes else None
 
     def draw(self, painter: Painter) -> None:
-        """What a part of the page draws inside its frame."""
+        """Draw the content of the panel inside its frame. Subclasses override this."""
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
-        """A finger or the mouse acts when it goes down, as a key does."""
+        """Press the target at once, when the mouse button or finger goes down."""
         self.touch(event.position())
 
     def touch(self, at: QPointF) -> bool:
-        """Press whatever stands there; False when nothing does."""
+        """Press the target at this position. Return False if there is no target."""
         for spot in self._places:
             if spot.box.contains(at):
                 spot.press()
@@ -114,19 +117,19 @@ class Panel(QWidget):
         on: bool = False,
         barred: bool = False,
     ) -> None:
-        """While drawing: remember that pressing inside ``rect`` does this; see ``Spot``."""
+        """Register a target inside ``rect`` while drawing. See ``Spot``."""
         self._places.append(Spot(rect, press, name, kind, on, barred))
 
     # --- for assistive technology ---------------------------------------------------------------------
 
     def spots(self) -> Sequence[Spot]:
-        """Return the targets as they were painted last."""
+        """Return the targets as they were last painted."""
         return self._places
 
     def written(self) -> list[tuple[QRectF, str]]:
-        """Return the texts that were painted last, and their places.
+        """Return the texts that were last painted, with their rectangles.
 
-        Painters note no texts before the first call, because that takes 5 % of their time.
+        Painters record no texts before the first call, because recording takes 5 % of their time.
         """
         Painter.notes = True
         if self._written is None and self.isVisible():
@@ -134,7 +137,7 @@ class Panel(QWidget):
         return [(box, text) for box, text in self._written or () if text]
 
     def words_on(self, spot: Spot) -> str:
-        """Return the name of a target, and the texts that are painted on it."""
+        """Return the accessible name of a target: its name, and the texts that are painted on it."""
         texts = (text for box, text in self.written() if spot.box.contains(box.center()))
         return "  ".join((*([tr(spot.name)] if spot.name else ()), *texts))
 
@@ -147,7 +150,7 @@ class Panel(QWidget):
         )
 
     def words_of_name(self) -> str:
-        """Return the title, or what it shows where it has none."""
+        """Return the title, or else ``part_name``, or else the painted texts."""
         shown = self.words_outside() or "  ".join(text for _box, text in self.written())
         return self._titled or tr(self.part_name) or shown
 
@@ -163,22 +166,22 @@ class Panel(QWidget):
         raw: bool = False,
         margin: float = 0.0,
     ) -> None:
-        """While drawing: a key for a finger with its word in the middle."""
+        """Draw a touch key with its label in the center, and register it as a target."""
         painter.fill(box, "key")
         painter.write(box, word, size, ink, at=CENTRE, raw=raw, margin=margin)
         self.place(box, press)
 
     def area(self) -> QRectF:
-        """The whole widget, in pixels."""
+        """Return the rectangle of the whole widget in pixels."""
         return QRectF(self.rect())
 
     def inside(self) -> QRectF:
-        """The room inside a frame with a title, pixels."""
+        """Return the rectangle inside a frame with a title, in pixels."""
         u = self.look.u
         return self.area().adjusted(1.2 * u, 2.6 * u, -1.2 * u, -0.9 * u)
 
     def frame(self, painter: Painter, title: str, colour: str = "frame", width: float = 0.16) -> None:
-        """A box with its title set into the top line, as text screens drew them."""
+        """Draw a frame with its title in the top line, as on text screens."""
         look, u, title = self.look, self.look.u, tr(title)
         self._titled = title
         top = 1.0 * u
@@ -203,46 +206,46 @@ class Panel(QWidget):
         put(painter, patch.adjusted(0.6 * u, 0, 0, 0), LEFT, title)
 
 
-# --- several fingers at once --------------------------------------------------------------------------
+# --- multi-touch --------------------------------------------------------------------------------------
 
 
-MOUSE = -1  # the pointer's place among the touches
+MOUSE = -1  # Touch number of the mouse.
 
 
 @dataclass(frozen=True, slots=True)
 class Control:
-    """One thing to press: what going down on it, moving along it and coming up do."""
+    """A target with actions for pressing, moving and releasing."""
 
     box: QRectF
     down: Callable[[QPointF], None]
     along: Callable[[QPointF], None] | None = None
     up: Callable[[], None] | None = None
-    always: bool = False  # it stops the machine: it acts however late the finger is seen
-    name: str = ""  # see ``Spot``
+    always: bool = False  # The control stops the machine, so it also acts on a late press.
+    name: str = ""  # See ``Spot``.
     kind: Literal["key", "slider"] = "key"
 
     def spot(self) -> Spot:
-        """Return it as a target for assistive technology."""
+        """Return the control as a target for assistive technology."""
         return Spot(self.box, no_press if self.along else self.tap, self.name, self.kind)
 
     def tap(self) -> None:
-        """Go down in the middle and come up."""
+        """Press the control at its center and release it."""
         self.down(self.box.center())
         if self.up:
             self.up()
 
     def stopping(self) -> Control:
-        """The same, as one that stops the machine."""
+        """Return a copy of the control that stops the machine."""
         return replace(self, always=True)
 
 
 def pressed(box: QRectF, press: Press, name: str = "") -> Control:
-    """A control that acts as it goes down, wherever in its box."""
+    """Return a control that acts when it is pressed anywhere in its box."""
     return Control(box, lambda _at: press(), name=name)
 
 
 class FingerPanel(Panel):
-    """Drawing declares the controls; fingers and the mouse find them."""
+    """A panel with controls that react to several touches and the mouse. ``draw`` creates the controls."""
 
     def __init__(self, look: Look, parent: QWidget | None = None) -> None:
         super().__init__(look, parent)
@@ -251,29 +254,29 @@ class FingerPanel(Panel):
         self.setAttribute(Qt.WidgetAttribute.WA_AcceptTouchEvents)
 
     def spots(self) -> Sequence[Spot]:
-        """Return also the controls."""
+        """Return the targets and the controls."""
         return [*super().spots(), *(each.spot() for each in self.controls)]
 
     def stops_at(self, at: QPointF) -> bool:
-        """Whether what stands there stops the machine."""
+        """Return whether a control at this position stops the machine."""
         return any(control.always and control.box.contains(at) for control in self.controls)
 
     @property
     def fingers(self) -> int:
-        """How many fingers hold a control."""
+        """The number of touches that hold a control, including the mouse."""
         return len(self._held)
 
     def mouse_is_up(self) -> None:
-        """The button was let go where nobody could see it."""
+        """Release the control of the mouse, because the release event of its button was lost."""
         self._up(MOUSE)
 
     def let_go(self) -> None:
-        """Forget what fingers hold: their release will not arrive any more."""
+        """Release all controls, because their release events will not arrive."""
         for finger in tuple(self._held):
             self._up(finger)
 
     def event(self, event: QEvent) -> bool:
-        """Touches come here; everything else goes its usual way."""
+        """Handle touch events. Pass all other events to Qt."""
         if not isinstance(event, QTouchEvent):
             return super().event(event)
         for point in event.points():
@@ -293,17 +296,17 @@ class FingerPanel(Panel):
             self._up(point.id())
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
-        """The mouse is one finger, and its left button; what stops takes any."""
+        """Press a control with the left button. A control that stops the machine accepts any button."""
         if event.button() is Qt.MouseButton.LeftButton or self.stops_at(event.position()):
             self._up(MOUSE)
             self._down(MOUSE, event.position())
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
-        """Along the control that it went down on."""
+        """Move along the control that the mouse has pressed."""
         self._along(MOUSE, event.position())
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
-        """Up again, wherever it is now."""
+        """Release the control that the mouse has pressed, wherever the pointer is."""
         if not event.buttons() & Qt.MouseButton.LeftButton:
             self._up(MOUSE)
 

@@ -1,7 +1,8 @@
-"""Reports and setup sheets as PDF: HTML of ``app/report`` on numbered pages, its drawings as lines.
+"""Reports and setup sheets as PDF files, from the HTML of ``app/report``. Drawings remain vector graphics.
 
-Qt sets text and tables (QTextDocument); what its HTML does not know, boxes side by side, stands one below the
-other. Works without a display, and on any thread once there is an application.
+Qt lays out the text and tables (QTextDocument). Boxes that HTML puts side by side appear below each other,
+because Qt does not support them. The module works without a display, and on any thread after an application
+exists.
 """
 
 from __future__ import annotations
@@ -34,12 +35,12 @@ from app.report.pdf_file import Paper
 from app.screen.look import FAMILY, load_fonts
 from core.file_placing import bytes_to_disk
 
-_DPI = 96  # of the pixels that drawings and letters are measured in
-_FINE = 1200  # of the PDF
+_DPI = 96  # Resolution of the pixels in which drawings and text are measured.
+_FINE = 1200  # Resolution of the PDF.
 _MARGIN = 14.0  # mm
 _FOOT = 26.0  # pixels
 _FRAME = "#dde1e5"
-# What the HTML of Qt does not know, and what of it stands for that.
+# Tags that Qt does not support, with their replacements.
 _INSTEAD = {
     "<figure>": "<div>", "</figure>": "</div>", "<figcaption>": '<p class="hint">', "</figcaption>": "</p>",
 }  # fmt: skip
@@ -47,7 +48,7 @@ _SVG = re.compile(r'<svg role="img" width="(\d+)" height="(\d+)".*?</svg>', re.D
 
 
 class PdfPages:
-    """A PDF file, written page after page. Raises OSError when the disk refuses, ``close`` at the latest."""
+    """A PDF file that is written page by page. Raises OSError if writing fails."""
 
     def __init__(self, path: Path, title: str, paper: Paper) -> None:
         _application()
@@ -80,7 +81,7 @@ class PdfPages:
             self.give_up()
 
     def add(self, html: str, foot: str) -> None:
-        """Set ``html`` on pages of its own, ``foot`` and a number under each."""
+        """Add ``html`` on new pages, with ``foot`` and a page number at the bottom of each page."""
         text = _Text(html, self._writer.width() * _DPI / _FINE)
         room = QSizeF(text.width, self._writer.height() * _DPI / _FINE - _FOOT)
         text.document.setPageSize(room)
@@ -108,7 +109,7 @@ class PdfPages:
         painter.drawText(row, Qt.AlignmentFlag.AlignRight | below, str(self._pages))
 
     def close(self) -> None:
-        """All of it is on the disk. Raises OSError."""
+        """Finish the file and write it to the disk. Raises OSError."""
         whole = self._painter.end()
         whole = self._file.flush() and whole and self._file.error() == QFile.FileError.NoError
         why = self._file.errorString()
@@ -118,14 +119,14 @@ class PdfPages:
         bytes_to_disk(self._path)
 
     def give_up(self) -> None:
-        """Leave it as it is: nobody will read it."""
+        """Close the unfinished file, which will not be used."""
         if self._painter.isActive():
             self._painter.end()
         self._file.close()
 
 
 class _Text:
-    """HTML ready to be drawn; its drawings are kept as they are and drawn as lines."""
+    """HTML that is ready to be drawn. Its drawings are stored and drawn as vector graphics."""
 
     def __init__(self, html: str, width: float) -> None:
         self.width = width
@@ -145,7 +146,7 @@ class _Text:
 
 
 class _Drawings(QPyTextObject):
-    """Draws what stands as an image in the text."""
+    """Draws the SVG drawings that replace images in the text."""
 
     def __init__(self, width: float, parent: QObject) -> None:
         super().__init__(parent)
@@ -153,20 +154,20 @@ class _Drawings(QPyTextObject):
         self._kept: list[tuple[QSizeF, str]] = []
 
     def keep(self, found: re.Match[str]) -> str:
-        """A drawing of the HTML; what stands in its place."""
+        """Store a drawing of the HTML, and return the image tag that replaces it."""
         wide, high = float(found[1]), float(found[2])
         share = min(1.0, self._width / wide)
         self._kept.append((QSizeF(wide * share, high * share), found[0]))
         return f'<img src="{len(self._kept) - 1}">'
 
     def intrinsicSize(self, _document: QTextDocument, _at: int, form: QTextFormat) -> QSizeF:
-        """Pixels, no wider than the page."""
+        """Return the size of a drawing in pixels, not wider than the page."""
         return self._kept[self._number(form)][0]
 
     def drawObject(
         self, painter: QPainter, rect: QRectF | QRect, _document: QTextDocument, _at: int, form: QTextFormat
     ) -> None:
-        """Draw it as lines."""
+        """Draw a drawing as vector graphics."""
         rect = QRectF(rect)
         text = self._kept[self._number(form)][1]
         text = text.replace("<svg ", '<svg xmlns="http://www.w3.org/2000/svg" ', 1)
@@ -184,23 +185,23 @@ class _Drawings(QPyTextObject):
 
 
 def usual_paper() -> Paper:
-    """Letter where inches are at home, as the computer's own settings say; else A4."""
+    """Return Letter if the computer's locale uses inches, else A4."""
     system = QLocale.system().measurementSystem()
     return Paper.LETTER if system is QLocale.MeasurementSystem.ImperialUSSystem else Paper.A4
 
 
 def _application() -> None:
-    """Fonts need one; where there is none yet there is no display either."""
+    """Create an application without a display if no application exists, because fonts need one."""
     if QGuiApplication.instance() is None:
         _kept.append(QApplication(["turndesk", "-platform", "offscreen"]))
     load_fonts()
 
 
-_kept: list[QGuiApplication] = []  # an application that nobody holds is gone
+_kept: list[QGuiApplication] = []  # References that keep the applications alive.
 
 
 def main() -> int:
-    """``python -m app.screen.pdf_pages FILE TITLE PAPER < HTML``: a process that nothing else waits for."""
+    """Run ``python -m app.screen.pdf_pages FILE TITLE PAPER < HTML`` as a separate process."""
     path, title, paper = sys.argv[1:]
     try:
         with PdfPages(Path(path), title, Paper(paper)) as pages:

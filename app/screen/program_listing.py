@@ -1,4 +1,4 @@
-"""The program window: source lines, the current one marked, the generated block under it."""
+"""The program window: source lines, the current line highlighted, and the generated block below it."""
 
 from __future__ import annotations
 
@@ -14,24 +14,25 @@ from app.screen.panel import Shown
 from app.screen.sheet_panel import RowPanel
 from core.message import Message
 
-_LETTER = 1.1  # units: one of a sentence, about
-ROW, MM = 2.9, 7.0  # units from line to line, and at most so many millimetres
+_LETTER = 1.1  # Units: average width of a letter.
+ROW, MM = 2.9, 7.0  # Line spacing in units, and its maximum in millimeters.
 
 
 class Listing(RowPanel):
-    """Paints only the lines that are seen, so its cost does not grow with the program."""
+    """The list of source lines. Only visible lines are painted, so a long program takes no extra time."""
 
     keyed = False
-    follows = Shown(True)  # it goes along with the run; False: it is scrolled by hand
+    follows = Shown(True)  # The listing follows the run. False after the operator has scrolled.
     _line = Shown(0)
     _block, _next = Shown(""), Shown("")
     _bad: Shown[Mapping[int, str]] = Shown({})
     _lines: Sequence[str] = ()
-    trouble = Shown("")  # why there is nothing to be shown
-    touched: Callable[[int], None] | None = None  # a finger on a line, where lines are chosen
+    trouble = Shown("")  # Why no program is shown.
+    # Called with the number of a touched line, if lines can be chosen.
+    touched: Callable[[int], None] | None = None
 
     def show_source(self, lines: Sequence[str], bad: Mapping[int, str]) -> None:
-        """Another program; ``bad`` are messages by line number."""
+        """Show another program. ``bad`` contains error messages by line number."""
         if lines is not self._lines or bad != self._bad:
             self._lines, self._bad = lines, dict(bad)
             self.follows = not self._bad
@@ -39,9 +40,9 @@ class Listing(RowPanel):
             self.update()
 
     def show_run(self, line: int, block: str, following: str) -> None:
-        """The line that is executed (0: none), the generated block, and the one after it.
+        """Show the executed line (0 for none), the generated block and the next block.
 
-        The one after is shown where it is generated too; where it is the next line, that line shows it.
+        The next block is hidden if it equals the next source line.
         """
         if following and any(text.startswith(following) for text in self._lines[line : line + 1]):
             following = ""
@@ -49,25 +50,26 @@ class Listing(RowPanel):
 
     @property
     def _high(self) -> float:
-        """From line to line, pixels."""
+        """The line spacing in pixels."""
         return self.look.row(ROW, MM, touch=self.touched is not None)
 
     @property
     def _scale(self) -> float:
-        """Of the letters, by the height of a line."""
-        return min(1.0, self._high / (ROW * self.look.u))  # higher for a finger alone
+        """The scale of the letters, which depends on the line spacing."""
+        # Rows for touch are higher, but their letters are not larger.
+        return min(1.0, self._high / (ROW * self.look.u))
 
     @property
     def _generated(self) -> tuple[str, ...]:
-        """The block and the one after it, which stand under the line that is executed."""
+        """The generated block and the next one, which are below the executed line."""
         return tuple(filter(None, (self._block, self._next))) if self._block else ()
 
     def follow(self) -> None:
-        """Go along with the run again."""
+        """Follow the run again."""
         self.follows = True
 
     def scroll_by(self, rows: int) -> None:
-        """Look elsewhere in the program; the run goes on."""
+        """Scroll to another part of the program. The listing no longer follows the run."""
         self.follows = False
         super().scroll_by(rows)
 
@@ -95,7 +97,7 @@ class Listing(RowPanel):
             room.translate(0, high)
 
     def _drawn(self, painter: Painter) -> Iterator[Callable[[QRectF], None]]:
-        """Yield what draws each row from the first that is shown."""
+        """Yield the drawing functions of the rows, from the first visible row on."""
         for number in range(self.top + 1, len(self._lines) + 1):
             yield partial(self._source, painter, number)
             if number == self._line:

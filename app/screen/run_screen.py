@@ -1,4 +1,4 @@
-"""The operator screen as a program: the window first, then the machine behind it, then a program."""
+"""Start of the operator screen: show the window first, then build the model, then load a program."""
 
 from __future__ import annotations
 
@@ -20,7 +20,8 @@ from core.message import Message
 
 BuildDesk = Callable[[], Desk]
 _log = logging.getLogger(__name__)
-ENDING = (signal.SIGINT, signal.SIGTERM)  # the machine is stopped and the threads are ended, as by closing
+# These signals stop the machine and end the threads, like closing the window.
+ENDING = (signal.SIGINT, signal.SIGTERM)
 
 
 def run_screen(
@@ -32,22 +33,23 @@ def run_screen(
     *,
     kiosk: bool = False,
 ) -> int:
-    """Show the screen until it is closed; the exit status.
+    """Show the screen until it is closed, and return the exit status.
 
-    ``machine`` is a machine file, ``program`` a file to load at the start, ``offsets`` an offsets file that
-    takes the place of the store's offsets, ``build`` makes the desk (default:
-    the composed one); a ``kiosk`` fills the screen and is not closed by hand.
-    What building raises is raised here, after the window is gone.
+    ``machine`` is a machine file. ``program`` is a file to load at the start. ``offsets`` is an offsets file
+    that replaces the stored offsets. ``build`` creates the model; the default is the composed model. A
+    ``kiosk`` fills the screen and cannot be closed by hand. An exception of ``build`` is raised here after
+    the window has closed.
     """
     build = build or _composed(machine, offsets)
     app = _application(theme)
-    app.setQuitOnLastWindowClosed(False)  # it posts a quit that would outlive this loop
+    # Otherwise Qt would post a quit event that remains after this event loop.
+    app.setQuitOnLastWindowClosed(False)
     window = MainWindow(Look(PALETTES[theme]), app.quit)
     window.kiosk = kiosk
     window.open_on(app.primaryScreen())
     start = _Start(window, build, program)
     before, sys.excepthook = sys.excepthook, start.mistake
-    # Not quit: a window may refuse to close while a program is under way, a computer going down cannot wait.
+    # Use exit and not quit, because a window may refuse to close, and a shutdown cannot wait.
     handlers = [(number, signal.signal(number, lambda *_: app.exit(0))) for number in ENDING]
     QTimer.singleShot(0, start.run)
     status = app.exec()
@@ -61,7 +63,7 @@ def run_screen(
 
 
 class _Start:
-    """What comes after the first picture of the window."""
+    """The steps that follow the first painting of the window."""
 
     def __init__(self, window: MainWindow, build: BuildDesk, program: str | None) -> None:
         self._window, self._build, self._program = window, build, program
@@ -69,7 +71,7 @@ class _Start:
         self._trouble: Exception | None = None
 
     def run(self) -> None:
-        """Build the desk and open it; what goes wrong ends the program and is raised by ``close``."""
+        """Build the model and open it. An error ends the event loop, and ``close`` raises it."""
         try:
             desk = self._desk = self._build()
             self._window.open_desk(desk)
@@ -79,7 +81,7 @@ class _Start:
             QApplication.exit(1)
 
     def mistake(self, kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
-        """A mistake of the screen, raised into Qt's loop: to the log whole, to the operator in a sentence."""
+        """Log an exception from Qt's event loop with its traceback, and show it to the operator."""
         _log.error("the screen has failed", exc_info=(kind, error, trace))
         if self._desk is not None:
             self._desk.say(
@@ -87,7 +89,7 @@ class _Start:
             )
 
     def close(self) -> None:
-        """Stop the machine, end the threads, tell what went wrong."""
+        """Stop the machine, end the threads and raise the error of the start, if any."""
         if self._desk is not None:
             self._desk.close()
         if self._trouble is not None:
@@ -95,7 +97,7 @@ class _Start:
 
 
 def _composed(machine: str | None, offsets: str | None) -> BuildDesk:
-    """Begin to start the control, and return what makes the desk on it once the window is there."""
+    """Start the control in the background, and return the function that builds the model on it."""
     from app.compose.control.control_begin import begin_control
 
     begun = begin_control(machine)
@@ -113,7 +115,8 @@ def _application(theme: str) -> QApplication:
     present = QApplication.instance()
     app = present if isinstance(present, QApplication) else QApplication(sys.argv[:1])
     app.setApplicationName("TurnDesk")
-    app.setDesktopFileName("turndesk")  # by it a desktop finds name and icon, also under Wayland
+    # Desktops use this name to find the application's name and icon, also under Wayland.
+    app.setDesktopFileName("turndesk")
     load_fonts()
     accessible.install()
     dress(PALETTES[theme])

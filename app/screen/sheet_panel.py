@@ -1,4 +1,4 @@
-"""Panels with rows: a list that scrolls; a table with head line, lamps, notes and a question; its page."""
+"""Panels with rows: a scrolling list, and a table with a head line, notes and an entry line; their page."""
 
 from __future__ import annotations
 
@@ -18,37 +18,38 @@ from app.screen.page_base import Host, ModelPage, PageModel
 from app.screen.panel import Panel, Shown
 from app.screen.window_layout import FINGER
 
-KEY = 5.0  # units: size of the two keys that scroll; at least a fingertip
-NARROW = 50.0  # units: a list of less width leaves all of it to its rows
+KEY = 5.0  # Units: size of the two scroll keys, at least a fingertip.
+NARROW = 50.0  # Units: a narrower list uses its full width for rows.
 
 
 class RowPanel(Panel):
-    """A list of rows of one height.
+    """A list of rows of equal height.
 
-    A drawing subclass gets the room for its rows from ``scrolled``, and each visible row from ``boxes``.
-    The mark stays visible when it moves or when the room changes. Scrolling does not move the mark, except
-    in a ``centred`` list.
+    A subclass gets the rectangle for its rows from ``scrolled``, and each visible row from ``boxes``. The
+    selected row stays visible when the selection or the size changes. Scrolling does not move the selection,
+    except in a ``centred`` list.
     """
 
     lists = True
-    notch = 3  # rows that one notch of the wheel scrolls
-    margin = 0  # rows that stay visible on both sides of the mark
-    centred = False  # the mark is in the middle: ``scroll_by`` of the subclass moves it
-    keyed = True  # two keys scroll for a finger if not all rows fit
+    notch = 3  # Rows that one notch of the wheel scrolls.
+    margin = 0  # Rows that remain visible on both sides of the selection.
+    centred = False  # The selection is in the middle, and ``scroll_by`` of the subclass moves it.
+    keyed = True  # Two scroll keys are drawn if not all rows fit.
 
     def __init__(self, look: Look, parent: QWidget) -> None:
         super().__init__(look, parent)
-        self.top = 0  # first visible row
-        self.rows = 1  # how many rows fit
+        self.top = 0  # Index of the first visible row.
+        self.rows = 1  # Number of rows that fit.
         self._count = 0
-        self._followed = (-1, 0)  # mark and number of visible rows when the list last followed the mark
+        # Selection and number of visible rows when the list last followed the selection.
+        self._followed = (-1, 0)
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         """Scroll by ``notch`` rows for each notch of the wheel."""
         self.scroll_by(-round(event.angleDelta().y() * self.notch / 120))
 
     def scroll_by(self, rows: int) -> None:
-        """Scroll down by this number of rows; a negative number scrolls up."""
+        """Scroll down by a number of rows. A negative number scrolls up."""
         self.top = self._limited(self.top + rows)
         self.update()
 
@@ -56,9 +57,9 @@ class RowPanel(Panel):
         return max(0, min(top, self._count - self.rows))
 
     def scrolled(self, painter: Painter, room: QRectF, fits: int, count: int, marked: int = -1) -> QRectF:
-        """Draw the keys that scroll if ``count`` rows do not fit; return the room that is left for rows.
+        """Draw the scroll keys if ``count`` rows do not fit, and return the rectangle for the rows.
 
-        ``fits`` is the number of rows that fit; ``marked`` is the row that has the mark, or -1.
+        ``fits`` is the number of rows that fit. ``marked`` is the index of the selected row, or -1.
         """
         self.rows, self._count = fits, count
         if self.centred:
@@ -71,14 +72,14 @@ class RowPanel(Panel):
         return self._with_keys(painter, room) if self.keyed and 0 < fits < count else room
 
     def boxes(self, room: QRectF, high: float) -> Iterator[tuple[int, QRectF]]:
-        """Yield number and box of each visible row; ``high`` is the height of a row in pixels."""
+        """Yield the index and box of each visible row. ``high`` is the height of a row in pixels."""
         for number in range(self.top, min(self._count, self.top + self.rows)):
             yield number, QRectF(room.x(), room.y() + (number - self.top) * high, room.width(), high)
 
     def fitting(self, room: QRectF, high: float, count: int) -> int:
         """Return how many rows of this height fit, at least one.
 
-        The keys that scroll a narrow list are below its rows and take some of the height.
+        The scroll keys of a narrow list are below its rows and use some of the height.
         """
         fits = int(room.height() / high)
         if self.keyed and fits < count and self.is_narrow(room.width()):
@@ -87,18 +88,19 @@ class RowPanel(Panel):
 
     @property
     def key_size(self) -> tuple[float, float]:
-        """Width and least height of a key that scrolls, in pixels."""
+        """The width and minimum height of a scroll key in pixels."""
         size = max(KEY * self.look.u, float(FINGER))
         return size, size
 
     def is_narrow(self, width: float) -> bool:
-        """Return whether a list of this width has its keys below the rows, not to their right."""
+        """Return whether a list of this width has its scroll keys below the rows, not to their right."""
         return width < NARROW * self.look.u
 
     def _with_keys(self, painter: Painter, room: QRectF) -> QRectF:
-        """Draw the two keys and the scroll bar.
+        """Draw the scroll keys and the scroll bar, and return the rectangle that remains for the rows.
 
-        The keys are at the right, or below a narrow list. They are side by side if there is little height.
+        The keys are at the right, or below the rows of a narrow list. They are side by side if there is
+        little height.
         """
         gap, (wide, high) = 0.6 * self.look.u, self.key_size
         foot = self.is_narrow(room.width())
@@ -135,55 +137,56 @@ class RowPanel(Panel):
         painter.fill(part, "accent")
 
 
-ROW, HEAD, ASKED, NOTE = 4.0, 2.6, 5.4, 2.4  # units
+ROW, HEAD, ASKED, NOTE = 4.0, 2.6, 5.4, 2.4  # Units.
 TALL = 6.0
 LAMP = 3.2
 _ROUNDING = 1e-6
 
 
 class SheetPanel(RowPanel):
-    """Draws any sheet; a finger on a row chooses it. The mark stays in sight."""
+    """A panel that draws a table. A touch selects a row. The selected row stays visible."""
 
     sheet = Shown(Sheet("", (), (), ()))
 
     def __init__(self, look: Look, choose: Callable[[int], None], parent: QWidget) -> None:
         super().__init__(look, parent)
         self._choose = choose
-        self.touch_entry: Callable[[], None] | None = None  # a finger on what is typed
+        self.touch_entry: Callable[[], None] | None = None  # Called for a touch on the entry line.
 
     def show_sheet(self, sheet: Sheet) -> None:
-        """Redraw when something has changed; another list begins at its top."""
+        """Show a table, and redraw it if it has changed. A table with another title begins at its top."""
         if sheet.title.split("  ·  ")[0] != self.sheet.title.split("  ·  ")[0]:
             self.top = 0
         self.sheet = sheet
 
     @property
     def _high(self) -> float:
-        """Of a row, units: a fingertip, and on a large glass no more than 9 mm (a tall one 14).
+        """The height of a row in units.
 
-        Where fewer rows are than the glass has room for, they are as large as everything else on it.
+        A row is at least as high as a fingertip. On a large screen, a row has at most 9 mm, or 14 mm if it is
+        tall. If there are few rows, their height follows the size of the window.
         """
         own, mm = (TALL, 14.0) if self.sheet.tall else (ROW, 9.0)
         share = self._room(len(self.sheet.notes)) / max(1, len(self.sheet.rows)) - _ROUNDING
         return max(self.look.row(own, mm, touch=True) / self.look.u, min(own, share))
 
     def _room(self, notes: int) -> float:
-        """Units of height for rows, beside so many lines of notes."""
+        """Return the height in units that is left for rows next to a number of note lines."""
         foot = notes * NOTE + (self._asked if self.sheet.question else 0.0)
         return self.height() / self.look.u - 4.0 - HEAD - foot
 
     @property
     def _asked(self) -> float:
-        """Height of the entry, units: a fingertip where a finger has something there."""
+        """The height of the entry line in units, at least a fingertip if it reacts to touch."""
         return ASKED if self.touch_entry is None else max(ASKED, FINGER / self.look.u + 0.6)
 
     @property
     def _letters(self) -> float:
-        """How large letters are in a row, by its height."""
+        """The scale of the letters in a row, which depends on the row's height."""
         return min(1.0, self._high / (TALL if self.sheet.tall else 4.2))
 
     def _fits(self) -> int:
-        """Return how many rows of the table fit; none where a question needs all of the panel."""
+        """Return how many rows of the table fit. 0 if the entry line needs the whole panel."""
         fits = self._fit(len(self._notes))
         if fits < len(self.sheet.rows):
             fits = self._fit(len(self._notes), self._below)
@@ -194,12 +197,12 @@ class SheetPanel(RowPanel):
 
     @property
     def _below(self) -> float:
-        """Units that the keys that scroll take below the rows of a narrow table; else they stand beside."""
+        """The height in units of the scroll keys below the rows of a narrow table, else 0."""
         return self.key_size[1] / self.look.u + 0.6 if self.is_narrow(self.inside().width()) else 0.0
 
     @property
     def _notes(self) -> tuple[str, ...]:
-        """None beside a question where they would leave no row: what is marked is what is asked about."""
+        """The notes. Empty if the entry line and the notes would leave no room for the selected row."""
         notes = self.sheet.notes
         return () if self.sheet.question and self._fit(len(notes)) < 1 else notes
 
@@ -259,7 +262,7 @@ class SheetPanel(RowPanel):
                 draw_outline(painter, at.adjusted(0, 0.2 * u, 0, -0.2 * u), row.outline, small=True)
 
     def _filled(self, painter: Painter, at: QRectF, row: Row) -> None:
-        """A bar behind the words of the last cell."""
+        """Draw a bar below the text of the last cell."""
         high = 0.5 * self.look.u
         track = QRectF(at.x(), at.bottom() - 2 * high, at.width(), high)
         painter.fill(track, "key")
@@ -286,11 +289,11 @@ class SheetPanel(RowPanel):
             self.place(row, self.touch_entry)
 
 
-# --- a page that comes up with such a list -----------------------------------------------------------------
+# --- a page with a list ------------------------------------------------------------------------------------
 
 
 class ListModel(PageModel, Protocol):
-    """What such a page asks of its model; ``escape`` is False where it stands on the list itself."""
+    """Interface of a list page's model. ``escape`` returns False if only the list is shown."""
 
     def prompt(self) -> str: ...
 
@@ -298,7 +301,7 @@ class ListModel(PageModel, Protocol):
 
 
 class ListPage(ModelPage):
-    """Hands keys on, and goes from the list back to the Automatic page."""
+    """A page with a list. It passes keys to its model. Esc leads from the list to the Automatic page."""
 
     model: ListModel
 
@@ -307,7 +310,7 @@ class ListPage(ModelPage):
         self.model = model
 
     def labels_of(self, own: Mapping[str, str], keys: Mapping[str, Key]) -> tuple[str, ...]:
-        """The ten labels: those that every such page has, the page's ``own``, and the model's ``keys``."""
+        """Return the ten labels from the common keys, the page's ``own`` labels and the model's ``keys``."""
         named = {"F1": "MENU", "F7": "ALARMS", **own}
         named.update((name, key.label) for name, key in keys.items())
         return tuple(named.get(f"F{number}", "") for number in range(1, 11))
@@ -317,25 +320,25 @@ class ListPage(ModelPage):
         return {}
 
     def barred(self) -> frozenset[str]:
-        """Return those of the model that would be refused now."""
+        """Return the function keys of the model that are disabled now."""
         return frozenset(name for name, key in self.page_keys().items() if key.barred)
 
     def prompt(self) -> str:
-        """The prompt line of the model."""
+        """Return the prompt of the model."""
         return self.model.prompt()
 
     def leave(self) -> bool:
-        """Nothing stays half entered or half asked."""
+        """Cancel unfinished entries and questions, and let the page close."""
         self.desk.clear()
         self.model.leave()
         return True
 
     def esc_holds(self) -> bool:
-        """Return False: Esc goes one step back, also while something moves."""
+        """Return False, because Esc goes one step back even while the machine moves."""
         return False
 
     def escape(self) -> bool:
-        """One step back, and from the list to the Automatic page."""
+        """Go one step back, or from the list to the Automatic page."""
         if not self.model.escape():
             self.host.go(page_table.AUTOMATIC)
         return True

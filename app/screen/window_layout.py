@@ -1,7 +1,7 @@
-"""Layout of the window: where everything stands on the Automatic page, for any size. Pure arithmetic.
+"""Layout of the window and of the Automatic page for any size, as pure arithmetic.
 
-All fixed things are measured in one unit that follows the window, 160 by 90 of it on a 16:9 screen; what is
-left over goes to the program window and the path view.
+Fixed parts are measured in one unit that follows the window's size: a 16:9 window is 160 by 90 units. The
+program window and the path view get the rest.
 """
 
 from __future__ import annotations
@@ -10,11 +10,11 @@ from typing import NamedTuple
 
 ACROSS, DOWN = 160.0, 90.0
 LEAST = (1024, 600)
-FINGER = 43  # pixels: 9 mm on the smallest screen, 10 inches across the corners
+FINGER = 43  # Pixels: 9 mm on the smallest screen, which has a diagonal of 10 inches.
 
 
 class Rect(NamedTuple):
-    """A place in the window, in pixels."""
+    """A rectangle in the window, in pixels."""
 
     x: int
     y: int
@@ -23,17 +23,17 @@ class Rect(NamedTuple):
 
     @property
     def right(self) -> int:
-        """The first column of pixels to the right of it."""
+        """The x coordinate of the first pixel column to the right of the rectangle."""
         return self.x + self.w
 
     @property
     def bottom(self) -> int:
-        """The first row of pixels below it."""
+        """The y coordinate of the first pixel row below the rectangle."""
         return self.y + self.h
 
 
 class LowPlaces(NamedTuple):
-    """Of a page with the readouts in one low row: that row, lamps, room of the page, line of the run."""
+    """Layout of a page with the readouts in one row: readouts, lamps, page and run line."""
 
     head: Rect
     strip: Rect
@@ -42,7 +42,7 @@ class LowPlaces(NamedTuple):
 
 
 class Places(NamedTuple):
-    """The parts of the page; ``dock`` is empty on a machine with a real operator station."""
+    """Layout of the Automatic page. ``dock`` is empty for a machine with its own operator station."""
 
     title: Rect
     position: Rect
@@ -64,12 +64,12 @@ LOW = 700
 
 
 def unit(width: int, height: int) -> float:
-    """Pixels of the one unit that every size is told in."""
+    """Return the unit of size in pixels for a window of this size."""
     return min(width / ACROSS, height / DOWN)
 
 
 def places(width: int, height: int, dock: bool) -> Places:
-    """Divide a window of this size."""
+    """Return the layout of the Automatic page for a window of this size in pixels."""
     u = unit(width, height)
     gap = _gap(u)
     low = height < LOW
@@ -99,7 +99,7 @@ def places(width: int, height: int, dock: bool) -> Places:
 
 
 def work_parts(work: Rect, u: float) -> tuple[Rect, Rect, Rect]:
-    """Listing, comment and path in the room of the Automatic page."""
+    """Divide the work area of the Automatic page into listing, comment and path."""
     gap = _gap(u)
     wide, comment_h = round(52 * u), round(4.8 * u)
     listing = Rect(work.x, work.y, wide, work.h - comment_h - gap)
@@ -108,12 +108,15 @@ def work_parts(work: Rect, u: float) -> tuple[Rect, Rect, Rect]:
 
 
 def work_of(at: Places) -> Rect:
-    """The room of the Automatic page."""
+    """Return the work area of the Automatic page."""
     return Rect(at.listing.x, at.listing.y, at.path.right - at.listing.x, at.path.h)
 
 
 def low_places(width: int, height: int, dock: bool) -> LowPlaces:
-    """The same window with one low row of readouts; title, dock, prompt and keys stay where they are."""
+    """Return the layout with the readouts in one row, for a window of this size in pixels.
+
+    Title, dock, prompt and function keys have the same places as on the Automatic page.
+    """
     at, u = places(width, height, dock), unit(width, height)
     gap, wide = _gap(u), at.strip.w
     head = Rect(at.strip.x, at.position.y, wide, round(7.4 * u))

@@ -1,1 +1,1 @@
-"""SEARCHTO: restart in the middle of a program, and the way out of the part."""
+"""SEARCHTO: restart in the middle of a program, and retract from the part."""

@@ -1,4 +1,4 @@
-"""The line that SEARCHTO looks for: by number or text, found and proved on a worker, one at a time."""
+"""Search for the restart line of SEARCHTO, by number or text, and its proof on a worker."""
 
 from __future__ import annotations
 
@@ -27,9 +27,10 @@ Answer = RestartPoint | NoRestart | CutRecord | tuple[Job, Proved]
 
 @dataclass(slots=True)
 class LineFinder:
-    """``rebuild`` and ``prove`` are called on the worker; a later line goes on from an earlier one.
+    """Finds and proves restart lines on a worker. A search for a later line continues from an earlier one.
 
-    ``found`` and ``failed`` are called with what has come, when the worker is polled.
+    ``rebuild`` and ``prove`` are called on the worker. ``found`` and ``failed`` are called with the results
+    when the worker is polled.
     """
 
     rebuild: Callable[[Job, Watch], Search]
@@ -37,25 +38,29 @@ class LineFinder:
     found: Callable[[Answer], None]
     failed: Callable[[str], None]
     worker: Latest = field(default_factory=lambda: Latest("loading-search"))
-    _rebuild: tuple[Job, Search] | None = None  # the worker's alone
+    _rebuild: tuple[Job, Search] | None = None  # Used by the worker only.
 
     def find(self, job: Job, line: int, visit: int = 0, broken: Interruption | None = None) -> None:
-        """Have a line of this job's program found; 0: in the pass that was interrupted, or in the first."""
+        """Search for a line of this job's program.
+
+        ``visit`` is the pass of the line, counted from 1. 0 means the interrupted pass, or else the first
+        pass.
+        """
         self._ask(job, lambda rebuild: rebuild.find(line, visit, broken))
 
     def cut(self, job: Job) -> None:
-        """Have all that this job's program cuts gone through."""
+        """Calculate everything that this job's program cuts."""
         self._ask(job, lambda rebuild: rebuild.cut)
 
     def check(self, job: Job) -> None:
-        """Have the job of a restart proved."""
+        """Prove the job of a restart."""
         self.worker.ask(lambda watch: (job, self.prove(job, watch)), self.found, self.failed)
 
     def _ask(self, job: Job, ask: Callable[[Search], Answer]) -> None:
         self.worker.ask(lambda watch: self._with(job, watch, ask), self.found, self.failed)
 
     def _with(self, job: Job, watch: Watch, ask: Callable[[Search], Answer]) -> Answer:
-        """Work that is given up leaves nothing behind: a pass stopped within a line is worth nothing."""
+        """Run a query on the worker. A canceled search is discarded, because it stopped within a line."""
         kept, self._rebuild = self._rebuild, None
         if kept is not None and kept[0] is job:
             rebuild = kept[1]
@@ -68,54 +73,57 @@ class LineFinder:
 
 
 _PASS = re.compile(r"\s*(\d+)\s*[Pp]\s*(\d+)\s*")
-LONGEST = 60  # characters of what is typed
+LONGEST = 60  # Maximum characters of the entry.
 _QUOTE = '"'
 
 
 @dataclass(slots=True)
 class LineCursor:
-    """A line of the program, counted from 1, and what is being typed to find another."""
+    """The selected program line, counted from 1, and the text that is entered to find another line."""
 
     lines: Sequence[str] = ()
     line: int = 1
     text: str = ""
-    found: bool = False  # the line was found by the text as it stands
+    found: bool = False  # The line was found by the present text.
 
     @property
     def number(self) -> int | None:
-        """The number of a line that was typed, a sum too; None when it is a text to look for."""
+        """The line number that was entered, also as an expression. None if the entry is a search text."""
         passes = _PASS.fullmatch(self.text)
         return int(passes[1]) if passes else line_of(self.text)
 
     @property
     def visit(self) -> int:
-        """The pass that was typed behind the line, such as ``8P4``; 0: none was."""
+        """The pass that was entered after the line, for example in ``8P4``. 0 without a pass."""
         passes = _PASS.fullmatch(self.text)
         return int(passes[2]) if passes else 0
 
     @property
     def wanted(self) -> str:
-        """The text to look for; a quotation mark in front makes figures a text."""
+        """The search text. A leading quotation mark makes a number a text."""
         return self.text.removeprefix(_QUOTE).upper()
 
     def show(self, lines: Sequence[str], line: int) -> None:
-        """Another program, or another line to begin with."""
+        """Set the program lines and the selected line."""
         self.lines, self.text, self.found = lines, "", False
         self.go(line)
 
     def go(self, line: int) -> None:
-        """To this line, or the nearest there is."""
+        """Select this line, or the nearest line that exists."""
         self.line = max(1, min(line, len(self.lines)))
 
     def type(self, key: str) -> bool:
-        """A character or an editing key; False when it means nothing here."""
+        """Handle a character or an editing key. Return False if the key has no meaning here."""
         taken = key in {"Back", "Delete"} or (len(key) == 1 and key.isprintable())
         if taken:
             self.text, self.found = edited(self.text, key, LONGEST), False
         return taken
 
     def find(self, way: int) -> bool:
-        """To the next (1) or the previous (-1) line that holds the text, round the end; False: in none."""
+        """Select the next (1) or previous (-1) line that contains the text, in a cycle.
+
+        Return False if no line contains the text.
+        """
         count, wanted = len(self.lines), self.wanted
         if not wanted:
             return False

@@ -1,4 +1,4 @@
-"""SEARCHTO without Qt: a line is chosen, its state rebuilt, the restart confirmed, proved and started."""
+"""The model of the SEARCHTO page: choose a line, rebuild its state, confirm, prove and start. No Qt."""
 
 from __future__ import annotations
 
@@ -29,41 +29,41 @@ WAY_OUT = "(RETRACT FROM THE PART)"
 
 
 class SearchtoStage(Enum):
-    """From choosing a line to a restart that the palms begin."""
+    """The stage of a restart, from choosing a line to ready for Cycle Start."""
 
     CHOOSE = auto()
     SEARCHING = auto()
-    SHOWN = auto()  # a good line, with its plan
-    REFUSED = auto()  # a line that is not good
+    SHOWN = auto()  # A valid restart line with its plan.
+    REFUSED = auto()  # A line that is not a valid restart line.
     PROVING = auto()
     READY = auto()
 
 
 @dataclass(slots=True)
 class SearchtoModel:
-    """The model behind the SEARCHTO page. ``say`` answers on the prompt line, ``clear`` takes that back."""
+    """The model of the SEARCHTO page. ``say`` shows a message, and ``clear`` removes it."""
 
     session: ProgramLoader
     post: Callable[[Command], None]
     snapshot: Callable[[], Snapshot]
     say: Callable[[str], None]
     clear: Callable[[], None]
-    rebuild: Callable[[Job, Watch], Search]  # what goes through a program; called on the worker
-    prove: Callable[[Job, Watch], Proved]  # what proves a restart and checks its first move; likewise
+    rebuild: Callable[[Job, Watch], Search]  # Creates the search in a program; called on the worker.
+    prove: Callable[[Job, Watch], Proved]  # Proves a restart and checks its first move; called on the worker.
     choices: Choices = field(default_factory=Choices)
     cursor: LineCursor = field(default_factory=LineCursor)
     stage: SearchtoStage = SearchtoStage.CHOOSE
     open: bool = False
     answer: NoRestart | None = None
     plan: Plan | None = None
-    leaving: WayOut | None = None  # the way out alone
-    number: int = 0  # of the pass in which the line is meant; 0: the one that was interrupted, or the first
-    count: int = 0  # how often the run comes to the line, once that is known
+    leaving: WayOut | None = None  # A retract without a restart.
+    number: int = 0  # The wanted pass of the line; 0: the interrupted pass, or else the first.
+    count: int = 0  # Number of passes of the line; 0: not known yet.
     proved: Proved | None = None
-    started: bool = False  # the restart was started: what is to be seen now is the Automatic page
+    started: bool = False  # The restart has started, so the Automatic page must be shown.
     finder: LineFinder = field(init=False)
     _job: Job | None = None
-    _of: Job | None = None  # the program's job that was searched
+    _of: Job | None = None  # The job that was searched.
     _accepted: bool = False
     _cut: CutRecord | None = None
     _going_out: bool = False
@@ -71,24 +71,24 @@ class SearchtoModel:
     def __post_init__(self) -> None:
         self.finder = LineFinder(self.rebuild, self.prove, self._found, self._not_searched)
 
-    # --- opened and left -----------------------------------------------------------------------------
+    # --- open and close ------------------------------------------------------------------------------
 
     @property
     def has_keyboard(self) -> bool:
-        """Whether a line can be chosen: not while the way out is under way."""
+        """Whether a line can be chosen, which is not possible while the tool retracts."""
         return self.snapshot().state not in CYCLE
 
     def opens(self) -> bool:
-        """Whether it may be opened now; says why not."""
+        """Return whether SEARCHTO can be opened now. If not, show the reason."""
         why = searchto_barred(self.snapshot(), self.session.now)
         if why:
             self.say(why)
         return not why
 
     def opened(self) -> None:
-        """From now on Cycle Start begins a confirmed restart and nothing else."""
+        """Prepare for the open page: Cycle Start runs a confirmed restart and nothing else."""
         loaded, snapshot = self.session.now, self.snapshot()
-        self.clear()  # why the palms began nothing before has been read
+        self.clear()  # The operator has read the earlier message.
         self.open, self.started = True, False
         lines = loaded.source.lines if loaded.source is not None else ()
         before = self.cursor.line if self.cursor.lines is lines else 1
@@ -98,21 +98,22 @@ class SearchtoModel:
         self._forget()
 
     def leave(self) -> None:
-        """Cycle Start begins programs again."""
+        """Let Cycle Start run programs again."""
         if self.open:
             self.open = False
             self._withdraw()
             self.post(Prepare(Starts.PROGRAM))
 
     def close(self) -> None:
-        """End the thread that searches."""
+        """End the worker that searches."""
         self.finder.worker.close()
 
     def _forget(self) -> None:
-        """Nothing is shown and nothing is ready."""
+        """Cancel the plan and the prepared restart."""
         self._withdraw()
         if self.open and self.has_keyboard:
-            self._going_out = False  # a key pressed as it ends is not undone by its end
+            # The end of the retract must not discard an entry that begins at the same time.
+            self._going_out = False
             self.post(Prepare(Starts.RESTART))
 
     def _withdraw(self) -> None:
@@ -121,16 +122,16 @@ class SearchtoModel:
         self.leaving, self._cut = None, None
         self._job, self._accepted = None, False
 
-    # --- choosing ------------------------------------------------------------------------------------
+    # --- choose a line -------------------------------------------------------------------------------
 
     def move(self, lines: int) -> None:
-        """The cursor so many lines on."""
+        """Move the cursor by a number of lines."""
         self.cursor.go(self.cursor.line + lines)
         self.number = self.count = 0
         self._forget()
 
     def go(self, line: int, number: int = 0) -> None:
-        """To this line, in this pass, and rebuild its state."""
+        """Select this line in this pass, and rebuild its state. Line 0 does nothing."""
         if line:
             self.cursor.go(line)
             self.cursor.text = ""
@@ -138,7 +139,7 @@ class SearchtoModel:
             self.search()
 
     def turn_pass(self, by: int) -> None:
-        """To a later or an earlier pass of a line that is run more than once."""
+        """Select a later or earlier pass of a line that runs more than once."""
         if self.count < 2:
             self.say(tr("NO REPETITIONS FOUND FOR THIS LINE. ENTER: REBUILD STATE"))
             return
@@ -148,18 +149,18 @@ class SearchtoModel:
             self.search()
 
     def takes(self, key: str) -> bool:
-        """Whether a character is the question's: not while the tool is on its way out."""
+        """Return whether this character is text input, which is not so while the tool retracts."""
         return len(key) == 1 and self.has_keyboard
 
     def typed(self, key: str) -> bool:
-        """A character or an editing key of the question; False when it means nothing here."""
+        """Handle a character or an editing key. Return False if the key has no meaning here."""
         if not self.cursor.type(key):
             return False
         self.clear()
         return True
 
     def enter(self) -> None:
-        """A number: that line. A text: the next line that holds it. Found, or nothing: the cursor's line."""
+        """Handle Enter: go to a line number, find a text, or rebuild the state of the selected line."""
         number = self.cursor.number
         if number is not None:
             self.go(number, self.cursor.visit)
@@ -169,7 +170,7 @@ class SearchtoModel:
             self.search()
 
     def barred_keys(self) -> frozenset[str]:
-        """Return the function keys that would be refused now."""
+        """Return the function keys that are disabled now."""
         found: set[str] = set()
         if not self._has_text:
             found |= {"F2", "F3"}
@@ -185,20 +186,20 @@ class SearchtoModel:
 
     @property
     def _out_by_hand(self) -> bool:
-        """Whether the machine is a mill: there every restart draws the tool out."""
+        """Whether the machine is a mill, where every restart retracts the tool first."""
         job = self.session.now.job
         return job is not None and job.setup.kinematics is not None
 
     @property
     def _decided(self) -> bool:
-        """Whether a way out, or a good line, is shown."""
+        """Whether a retract path or a valid line is shown."""
         whole = self.session.now.job is not None
         return (
             self.stage is SearchtoStage.SHOWN and whole and (self._cut is not None or self.plan is not None)
         )
 
     def find(self, way: int) -> None:
-        """The next or the previous line that holds the text."""
+        """Select the next (1) or previous (-1) line that contains the text."""
         self._forget()
         self.clear()
         if not self._has_text:
@@ -207,7 +208,7 @@ class SearchtoModel:
             self.say(tr(Message("{text} NOT FOUND IN ANY LINE", text=self.cursor.wanted)))
 
     def search(self) -> None:
-        """Rebuild the state of the cursor's line."""
+        """Rebuild the state of the selected line."""
         loaded = self.session.now
         self._forget()
         self.clear()
@@ -218,14 +219,14 @@ class SearchtoModel:
         self.finder.find(job, line, self.number, now_of(self.snapshot(), job).broken)
 
     def nearest(self, way: int) -> None:
-        """To the good line before or after one that was refused."""
+        """Go to the valid line before or after a rejected line."""
         if self.answer is not None:
             self.go(self.answer.before if way < 0 else self.answer.after)
 
-    # --- deciding ------------------------------------------------------------------------------------
+    # --- confirm -------------------------------------------------------------------------------------
 
     def way_out(self) -> None:
-        """Only the way out of the part, and no going on."""
+        """Plan a retract from the part without a restart."""
         self._forget()
         self.clear()
         if self._out_by_hand:
@@ -235,13 +236,13 @@ class SearchtoModel:
             self.finder.cut(job)
 
     def turn_coolant(self) -> None:
-        """Whether coolant starts, where the line had it on."""
+        """Toggle whether the coolant starts, if it is on at the line."""
         self._choose(replace(self.choices, coolant=not self.choices.coolant))
 
     def confirm(self) -> None:
-        """Yes to what will start and to the way, or to the way out: it is proved and ready for the palms."""
+        """Confirm the restart or the retract. It is then proved and prepared for Cycle Start."""
         if self.stage in {SearchtoStage.PROVING, SearchtoStage.READY}:
-            return  # it is confirmed
+            return  # It is already confirmed.
         self.clear()
         snapshot, plan, whole = self.snapshot(), self.plan, self.session.now.job
         if self.stage is SearchtoStage.SHOWN and self._cut is not None and whole is not None:
@@ -274,7 +275,7 @@ class SearchtoModel:
         self.finder.check(make_job(Source("RETRACT", WAY_OUT), setup))
 
     def escape(self) -> bool:
-        """One step back; False when there is none to go."""
+        """Go one step back. Return False if there was no step."""
         if self.cursor.text:
             self.cursor.text = ""
             return True
@@ -293,7 +294,7 @@ class SearchtoModel:
     # --- every frame ---------------------------------------------------------------------------------
 
     def look(self, snapshot: Snapshot, loaded: Loaded) -> None:
-        """Take up what the worker has found; a program that is read anew has to be searched anew."""
+        """Accept the results of the worker; called once a frame. A reloaded program needs a new search."""
         if self._of is not None and loaded.job is not self._of:
             self._of = None
             self._forget()
@@ -305,7 +306,7 @@ class SearchtoModel:
         self.finder.worker.poll()
 
     def prompt(self, snapshot: Snapshot, start: str) -> str:
-        """What can be done now; ``start`` names what starts a cycle here."""
+        """Return the prompt. ``start`` is the instruction for starting a cycle."""
         shown = self.leaving or self.plan
         trouble = shown.trouble if shown is not None else ""
         return "" if snapshot.state in CYCLE else self._prompt(snapshot, trouble, start)
@@ -314,7 +315,7 @@ class SearchtoModel:
         return searchto_prompt(self.stage, snapshot, trouble, start, out=self.leaving is not None)
 
     def barred(self) -> str:
-        """Why the palms start nothing now; empty when they may."""
+        """Return why the start buttons have no effect now. Empty if they can start the restart."""
         if self.stage is SearchtoStage.READY or self.snapshot().state in CYCLE:
             return ""
         return tr("CANNOT START: SEARCH FOR A LINE AND CONFIRM IT FIRST (F10)")
@@ -326,7 +327,7 @@ class SearchtoModel:
             self._withdraw()
             return
         if self._accepted and not waits:
-            self.started = snapshot.starts is Starts.PROGRAM  # a restart that is begun counts once
+            self.started = snapshot.starts is Starts.PROGRAM  # A started restart counts once.
             self.open = not self.started
             self._withdraw()
         self._accepted = waits
@@ -370,8 +371,11 @@ class SearchtoModel:
 def searchto_prompt(
     stage: SearchtoStage, snapshot: Snapshot, trouble: str, start: str, *, out: bool = False
 ) -> str:
-    """``start`` names what starts a cycle here; ``trouble`` keeps the plan from being started; ``out``: it is
-    the way out of the part alone."""
+    """Return the prompt for a stage of the restart.
+
+    ``start`` is the instruction for starting a cycle. ``trouble`` is why the plan cannot be started, or
+    empty. ``out`` is True for a retract without a restart.
+    """
     if out and stage is SearchtoStage.SHOWN and not trouble:
         return tr("CHECK THE RETRACT PATH. F10: CONFIRM")
     if out and stage is SearchtoStage.READY:

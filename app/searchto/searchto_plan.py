@@ -1,6 +1,6 @@
-"""What a restart will do, in words and lines: the state beside the one of now, what starts, the way.
+"""Texts and lines that describe a restart: required and present state, functions that start, and path.
 
-Where the tool stands in the part: the way out of it, or in words how the operator takes it out by hand.
+If the tool is in the part, the plan contains the retract path, or the instruction for a manual retract.
 """
 
 from __future__ import annotations
@@ -33,12 +33,12 @@ from core.interpreter.shared.actions import Coolant, Output, SpindleLock, Spindl
 from core.interpreter.shared.checkpoint import ApproachStep, AxesLeg, Begin, Checkpoint, FunctionStep, Leg
 from core.message import Message
 
-# --- the way out of the part --------------------------------------------------------------------------
+# --- retract from the part ----------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, slots=True)
 class WayOut:
-    """The way out alone: its legs, and at which feed they go in the part. ``trouble``: why there is none."""
+    """A retract without a restart: its legs and its feed. ``trouble`` is why it is not possible, or empty."""
 
     begin: Begin
     legs: tuple[Drawn, ...]
@@ -47,7 +47,7 @@ class WayOut:
 
 
 def way_out_of(cut: CutRecord, snapshot: Snapshot, job: Job, choices: Choices) -> WayOut:
-    """The way out from where the tool stands now."""
+    """Return the retract path from the present position of the tool."""
     now = now_of(snapshot, job)
     found, tool = retract_from_work(cut, now)
     steps = way_out(cut, now, choices) if found.known else ()
@@ -65,9 +65,9 @@ def way_out_of(cut: CutRecord, snapshot: Snapshot, job: Job, choices: Choices) -
 
 
 def now_of(snapshot: Snapshot, job: Job) -> MachineNow:
-    """The machine of this instant, and what of the loaded program was interrupted.
+    """Return the present machine state, with the interruption of the loaded program if there is one.
 
-    In a text that was changed since, the number of a block tells nothing any more.
+    If the text has changed since the interruption, the interrupted block is unknown.
     """
     found = snapshot.interrupted
     broken = None
@@ -81,7 +81,7 @@ def now_of(snapshot: Snapshot, job: Job) -> MachineNow:
 def drawn(
     steps: tuple[ApproachStep, ...], snapshot: Snapshot, offset: tuple[float, float]
 ) -> tuple[Drawn, ...]:
-    """The legs of a way in the frame of one tool; the first is where that stands now."""
+    """Return the legs of a path in the frame of one tool. The first leg is the present tip position."""
     x, z = snapshot.demand[0], snapshot.demand[1]
     legs = [Drawn(z - offset[1], x - offset[0])]
     for step in steps:
@@ -92,7 +92,7 @@ def drawn(
 
 
 def jog_words(found: Retract, tool: int) -> str:
-    """What the operator has to do by hand where no way out is sure; empty where one is."""
+    """Return the instruction for a manual retract if no retract path is certain. Empty if one is."""
     if found.known:
         return ""
     if found.tool_place is ToolPlace.TAP:
@@ -121,12 +121,12 @@ def _towards(x: int, z: int) -> str:
     return tr("TURNDESK DOES NOT KNOW HOW T{tool} ENTERED THE PART. JOG THE TOOL OUT ALONG ITS ENTRY PATH")
 
 
-TURNED = 0.01  # degrees
+TURNED = 0.01  # Degrees.
 
 
 @dataclass(frozen=True, slots=True)
 class StateRow:
-    """One row: what is wanted at the line, what is active now, and whether they differ."""
+    """One row of the state: the required value at the line and the present value."""
 
     label: str
     wanted: str
@@ -134,27 +134,28 @@ class StateRow:
 
     @property
     def differs(self) -> bool:
-        """Whether the restart has to change it."""
+        """Whether the restart must change this value."""
         return self.wanted != self.now
 
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """A restart as the operator sees it before he confirms it."""
+    """A restart plan that the operator confirms."""
 
     found: RestartPoint
     begin: Begin
     rows: tuple[StateRow, ...]
-    starts: tuple[str, ...]  # what will turn, flow or switch on
+    starts: tuple[str, ...]  # Functions that will start, such as spindle and coolant.
     legs: tuple[Drawn, ...]
-    trouble: str = ""  # why it cannot be started as the machine stands
-    warning: str = ""  # what is left out
-    way: tuple[str, ...] = ()  # on a mill, in words: which axes move, one leg after the other
-    axes: Mapping[str, float] = field(default_factory=dict)  # on a mill: where the line begins, from home
+    trouble: str = ""  # Why the restart cannot start in the present machine state.
+    warning: str = ""  # What the restart omits.
+    way: tuple[str, ...] = ()  # On a mill, the legs of the approach as text.
+    # On a mill, the axis positions at the beginning of the line, from home.
+    axes: Mapping[str, float] = field(default_factory=dict)
 
 
 def plan_of(found: RestartPoint, snapshot: Snapshot, job: Job, choices: Choices) -> Plan:
-    """The plan from where the machine stands now."""
+    """Return the restart plan from the present machine state."""
     if job.setup.kinematics is not None:
         return _on_mill(found, snapshot, job, choices, job.setup.kinematics)
     now = now_of(snapshot, job)
@@ -201,7 +202,7 @@ def _on_mill(
 
 
 def _turned(found: RestartPoint, now: MachineNow, machine: Kinematics) -> str:
-    """Rotary axes that the program has not positioned, and that stand turned: nobody knows how they stood."""
+    """Return a warning about a rotary axis that is not at zero and that no earlier line positions."""
     names = {axis.name for axis in machine.rotaries}
     for name, wanted, at in zip(machine.names, found.axes, now.at, strict=True):
         if name in names and wanted is None and abs(at) > TURNED:
@@ -220,7 +221,7 @@ def _place(axis: str, at: float) -> str:
 
 
 def _passes(found: RestartPoint) -> tuple[StateRow, ...]:
-    """The passes and calls in which the line is, beside those that were interrupted."""
+    """Return the rows of the loops and calls that contain the line, with the interrupted ones."""
     was = found.was.within if found.was is not None else ()
     return tuple(
         _pass(each, was[number] if number < len(was) else None)
@@ -259,7 +260,7 @@ def _rows(point: Checkpoint, snapshot: Snapshot, language: str) -> tuple[StateRo
 
 
 def _state_rows(point: Checkpoint, snapshot: Snapshot, language: str) -> tuple[StateRow, ...]:
-    """What is in force at the line beside what is in force now, in the words of the program's language."""
+    """Return the rows of the state at the line and the present state, in the program's language."""
     both = zip(rows_of(point, language), rows_of(_now(snapshot), language), strict=True)
     return tuple(StateRow(w.label, w.value, n.value) for w, n in both if w.key != "comment" or w.value)
 
@@ -269,7 +270,7 @@ def _now(snapshot: Snapshot) -> Checkpoint:
 
 
 def _places(point: Checkpoint, x: float, z: float) -> tuple[ModalRow, ...]:
-    """A machine point as the line would read it, with its tool, its unit and its Ø or R."""
+    """Return the rows of a machine position as the line would read it, with its tool, unit and Ø or R."""
     modal = point.modal
     mark, factor = ("Ø", 2.0) if modal.diameter else ("R", 1.0)
     return (

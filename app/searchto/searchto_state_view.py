@@ -1,4 +1,4 @@
-"""SEARCHTO: the state that the line inherits beside the active one; every difference by colour and sign."""
+"""Panel of SEARCHTO with the state at the line and the present state. Differences have a color and a sign."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from core.message import Message
 DIFFERS = "≠"
 PASS_BEFORE, PASS_AFTER = "Previous pass", "Next pass"
 FOLD = "Fold"
-_FOLD, _LARGE, _PLAIN, _LETTERS = 4.4, 4.0, 2.7, 2.6  # units
-_PASSES = 4.4  # units: what a finger hits
-_LABEL, _SIGN = 0.25, 0.61  # shares of a row: where the label ends, where the sign stands
+_FOLD, _LARGE, _PLAIN, _LETTERS = 4.4, 4.0, 2.7, 2.6  # Units.
+_PASSES = 4.4  # Units: height of a fingertip.
+_LABEL, _SIGN = 0.25, 0.61  # Fractions of a row: end of the label, position of the sign.
 
 
 @dataclass(frozen=True, slots=True)
 class NearestGood:
-    """A good line near one that is not: the key that goes there, its number (0: none) and its text."""
+    """A valid line near a rejected one: the key that selects it, its number (0 for none) and its text."""
 
     key: str
     label: str
@@ -36,18 +36,18 @@ class NearestGood:
 
 @dataclass(frozen=True, slots=True)
 class StateShown:
-    """Either the rows of a good line, or why a line is not good and which ones are."""
+    """The rows of a valid line, or the reason for a rejected line with the nearest valid lines."""
 
     title: str = ""
     rows: tuple[StateRow, ...] = ()
     why: str = ""
     near: tuple[NearestGood, ...] = ()
-    passes: str = ""  # which pass of how many, of a line that is run more than once
-    whole: bool = False  # equal rows are shown too
+    passes: str = ""  # The pass and the number of passes, for a line that runs more than once.
+    whole: bool = False  # Equal rows are shown, too.
 
 
 class StatePanel(Panel):
-    """The rows or the refusal of this instant."""
+    """The panel that shows the state rows or the refusal."""
 
     shown = Shown(StateShown())
 
@@ -68,7 +68,7 @@ class StatePanel(Panel):
             self._table(painter, room)
 
     def _passes(self, painter: Painter, room: QRectF) -> None:
-        """Which pass it is, and a place for a finger on either side of it."""
+        """Draw the pass with a touch key on either side."""
         wide = room.height() * 2
         sides = ((room.x(), "◀", PASS_BEFORE), (room.right() - wide, "▶", PASS_AFTER))
         for left, sign, key in sides:
@@ -78,7 +78,7 @@ class StatePanel(Panel):
         painter.write(words, self.shown.passes, 2.0, "text", at=CENTRE)
 
     def _table(self, painter: Painter, room: QRectF) -> None:
-        """What differs, large; below it what is equal: folded into one row, or each in a row of its own."""
+        """Draw the different rows large. Equal rows follow, folded into one row or one row each."""
         u, shown = self.look.u, self.shown
         other = tuple(row for row in shown.rows if row.differs)
         equal = tuple(row for row in shown.rows if not row.differs)
@@ -100,7 +100,7 @@ class StatePanel(Panel):
             self._row(painter, foot.translated(0, number * high), row, min(1.9, high / u * 0.78), head=False)
 
     def _fold(self, painter: Painter, box: QRectF, equal: tuple[StateRow, ...]) -> None:
-        """The row of what is equal, by name; a finger opens and closes it."""
+        """Draw the row that lists the equal rows. A touch folds or unfolds them."""
         u = self.look.u
         painter.fill(box.adjusted(0, 0.2 * u, 0, -0.2 * u), "key")
         words = tr(Message("{count} IDENTICAL", count=len(equal)))

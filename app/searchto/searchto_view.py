@@ -1,4 +1,4 @@
-"""F6 SEARCHTO: a line, the state it inherits beside the one of now, the way there, and what will start."""
+"""The SEARCHTO page (F6): a line, its state, the path to it, and the functions that will start."""
 
 from __future__ import annotations
 
@@ -48,13 +48,13 @@ if TYPE_CHECKING:
 
 
 class SearchEntryPanel(Panel):
-    """The question and the answer as far as it is typed."""
+    """The question for a line or text, with the entered text."""
 
     ground = "panel"
     text = Shown("")
 
     def __init__(self, look: Look, press: Callable[[], None], parent: QWidget) -> None:
-        """``press``: a finger on it."""
+        """Create the panel. ``press`` is called for a touch."""
         super().__init__(look, parent)
         self._press = press
 
@@ -69,15 +69,19 @@ class SearchEntryPanel(Panel):
         draw_entry(painter, box.adjusted(0.8 * u, 0, -0.8 * u, 0), self.text)
 
 
-# --- what will start ----------------------------------------------------------------------------------
+# --- functions that start -----------------------------------------------------------------------------
 
 
-ROW = 2.7  # units
-ACROSS = 40  # characters of a line of trouble
+ROW = 2.7  # Units.
+ACROSS = 40  # Characters of one line of a warning.
 
 
 class StartsPanel(Panel):
-    """``choices`` are told with their keys; ``trouble`` keeps it from starting, or has to be looked at."""
+    """The functions that will start.
+
+    ``choices`` are options with their keys. ``trouble`` is a warning, or the reason why the restart cannot
+    start.
+    """
 
     starts: Shown[tuple[str, ...]] = Shown(())
     choices: Shown[tuple[str, ...]] = Shown(())
@@ -87,7 +91,7 @@ class StartsPanel(Panel):
     def show_starts(
         self, starts: Sequence[str], choices: Sequence[str], trouble: str, confirmed: bool
     ) -> None:
-        """The list of this instant."""
+        """Show these functions, options and warnings."""
         self.starts, self.choices = tuple(starts), tuple(choices)
         self.trouble, self.confirmed = trouble, confirmed
 
@@ -104,11 +108,11 @@ class StartsPanel(Panel):
             painter.write(row, text, min(1.9, high / u * 0.75), colour, bold=bold)
 
 
-LIST, STATE, ASKED, STARTS = 0.26, 0.46, 4.6, 19.0  # shares of the width; units of height
+LIST, STATE, ASKED, STARTS = 0.26, 0.46, 4.6, 19.0  # Fractions of the width; units of height.
 
 
 class SearchtoPage(ModelPage):
-    """Lines are chosen by arrows, numbers and texts."""
+    """The SEARCHTO page. Lines are chosen by arrow keys, numbers or texts."""
 
     NAME = page_table.SEARCHTO
     LABELS = (
@@ -135,19 +139,19 @@ class SearchtoPage(ModelPage):
         self.state = StatePanel(self.look, host.press, self)
         self.path = PathView(self.look, self, player=player_of(host.desk))
         self.starts = StartsPanel(self.look, self)
-        self.space = WorkingPlaneView(self.look, self)  # takes the path's place where the machine is a mill
+        self.space = WorkingPlaneView(self.look, self)  # Replaces the path view on a mill.
         self.pad = KeyPad(self.look, self.touched, own=None, parent=self)
         self.pad.hide()
         self._loaded: Loaded | None = None
-        self._whole = False  # rows that are equal are shown too
-        self._stood: tuple[object, int] = (None, 0)  # picture and blocks that the part was shown after
+        self._whole = False  # Equal rows are shown, too.
+        self._stood: tuple[object, int] = (None, 0)  # Path and block after which the part was last shown.
 
     def barred(self) -> frozenset[str]:
-        """Return the keys of the model that would be refused now."""
+        """Return the function keys that are disabled now."""
         return self.model.barred_keys()
 
     def key_actions(self) -> KeyActions:
-        """Keys of this page alone."""
+        """Return the key actions of this page."""
         model = self.model
         return {
             "F2": partial(model.find, 1),
@@ -166,7 +170,7 @@ class SearchtoPage(ModelPage):
         }
 
     def typed(self, key: str) -> bool:
-        """Arrows choose a line, everything else is typed."""
+        """Handle a key. Arrow keys select a line, and other keys are text input."""
         if not self.model.has_keyboard:
             return False
         steps = {"Up": -1, "Down": 1, "Page up": -self.listing.rows, "Page down": self.listing.rows}
@@ -185,7 +189,7 @@ class SearchtoPage(ModelPage):
         return self.model.typed(key)
 
     def touched(self, key: str) -> None:
-        """A finger on the pad: Return and Esc take it away, so that the state is seen."""
+        """Handle a touch on the number pad. Enter and Esc also hide the pad, so that the state is visible."""
         if key in {"Enter", "Esc"}:
             self.pad.hide()
         if key != "Esc":
@@ -196,7 +200,7 @@ class SearchtoPage(ModelPage):
         self.pad.raise_()
 
     def _mark(self, line: int) -> None:
-        """A finger on a line marks it, on the marked one rebuilds its state."""
+        """Select a touched line, or rebuild its state if the line is already selected."""
         if not self.model.has_keyboard:
             return
         if line == self.model.cursor.line:
@@ -208,35 +212,35 @@ class SearchtoPage(ModelPage):
         self._whole = not self._whole
 
     def has_field(self) -> bool:
-        """The question has it, but while the tool is on its way out."""
+        """Return whether the entry accepts text, which is so except while the tool retracts."""
         return self.model.has_keyboard
 
     def prompt(self) -> str:
-        """What can be done now."""
+        """Return the prompt of the model."""
         return self.model.prompt(self.desk.snapshot(), self.desk.start_words)
 
     def opens(self) -> bool:
-        """With a proved program, and none under way."""
+        """Return whether the page can be opened, which needs a proved program that is not running."""
         return self.model.opens()
 
     def leave(self) -> bool:
-        """Cycle Start means programs again."""
+        """Let Cycle Start run programs again, and let the page close."""
         self.pad.hide()
         self.model.leave()
         return True
 
     def escape(self) -> bool:
-        """One step back, and from the first one to the Automatic page."""
+        """Go one step back, or from the first step to the Automatic page."""
         if not self.model.escape():
             self.host.go(page_table.AUTOMATIC)
         return True
 
     def dress(self) -> None:
-        """Other colours are in force."""
+        """Redraw the path in the present colors."""
         self.path.restart()
 
     def refresh(self, snapshot: Snapshot, _view: MachineStatus, loaded: Loaded) -> None:
-        """The line, its state, the way; a restart that has begun is followed on the Automatic page."""
+        """Show the line, its state and the path. After a restart has started, open the Automatic page."""
         model = self.model
         model.look(snapshot, loaded)
         if model.started:
@@ -258,14 +262,14 @@ class SearchtoPage(ModelPage):
         self.path.advance()
 
     def _show_program(self, loaded: Loaded) -> None:
-        """Its path, or on a mill table and workpiece."""
+        """Show the path of the program, or on a mill the table and workpiece."""
         scene = loaded.picture.scene if loaded.picture is not None else None
         self.space.show_scene(scene)
         self.space.setVisible(scene is not None)
         self.path.show_picture(loaded.picture if scene is None else None)
 
     def _show_plane(self, scene: Scene, picture: Picture) -> None:
-        """Axes and plane as the line finds them; drawn as done is what lies before it."""
+        """Show axes and plane at the beginning of the line, with the earlier blocks drawn as done."""
         plan, line = self.model.plan, self.model.cursor.line
         here = at_line(scene, line - 1)
         axes, done = here.axes, picture.blocks_before(line)
@@ -275,11 +279,11 @@ class SearchtoPage(ModelPage):
 
     @property
     def _looked_at(self) -> PathView | WorkingPlaneView:
-        """Which of the two the keys of looking around are for."""
+        """The view that the zoom keys control."""
         return self.path if self.space.scene is None else self.space
 
     def _tip(self, snapshot: Snapshot) -> Tip:
-        """With a plan, the tip of the tool that the line works with: the way begins there."""
+        """Return the tool tip. With a plan, this is the tip of the line's tool, where the path begins."""
         shown = self.model.leaving or self.model.plan
         legs = shown.legs if shown is not None else ()
         return Tip(0, legs[0].z, legs[0].x) if legs else tip_of(snapshot)._replace(block=0)
@@ -337,7 +341,7 @@ class SearchtoPage(ModelPage):
         self.starts.show_starts(starts, choices, trouble, confirmed=model.stage is SearchtoStage.READY)
 
     def _show_stock(self, loaded: Loaded) -> None:
-        """The part as the lines before leave it: of a line that was searched, in the pass that was found."""
+        """Show the part as the earlier lines leave it, in the pass that was found."""
         plan, picture, player = self.model.plan, loaded.picture, self.path.player
         if picture is None or player is None:
             return
@@ -356,7 +360,7 @@ class SearchtoPage(ModelPage):
         self.starts.show_starts(only, choices, leaving.trouble, confirmed=ready)
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """Program, state, and the way over what will start."""
+        """Lay out the program, the state, and the path above the functions that start."""
         u = self.look.u
         gap, asked, starts = max(4, round(0.7 * u)), max(FINGER, round(ASKED * u)), round(STARTS * u)
         wide, high = self.width(), self.height()

@@ -1,1 +1,1 @@
-"""What programs read of the machine, as the desk is what people read. Nothing in here commands."""
+"""Machine data for other programs, read-only."""

@@ -1,4 +1,4 @@
-"""A snapshot in the words of MTConnect: execution, conditions, items in mm, degrees, mm/s, rpm, per cent."""
+"""A snapshot in the terms of MTConnect: execution, conditions and values in mm, degrees, mm/s, rpm and %."""
 
 from __future__ import annotations
 
@@ -14,28 +14,28 @@ from core.machine.machine_model import Machine
 from core.message import Message
 from core.ports import Unknown
 
-# --- Which alarm is a condition of what: slide, spindle drive, wires, interlocks, program, control.
+# --- Conditions of alarms: axis, spindle drive, communication, interlocks, program, control.
 
 
 FAULT, WARNING = "FAULT", "WARNING"
 Condition = tuple[str, str, str]  # level, code, text
 SPINDLE, COMMS, LOGIC, SYSTEM, MOTION = "Sdrive", "comms", "logic", "system", "motion"
 
-# By the first digit of the alarm's number, which is its subject; and those that belong elsewhere. A slide's
-# own condition ends in ``servo`` or ``travel`` and begins with its name.
+# Conditions by the first digit of the alarm's number, and exceptions by code. The condition of an axis begins
+# with the name of the axis and ends in ``servo`` or ``travel``.
 _SERVO, _TRAVEL = "servo", "travel"
 SUBJECTS = {1: _SERVO, 2: SPINDLE, 3: LOGIC, 4: MOTION, 5: COMMS}
 PLACES: dict[Code, str] = {
     **{"driver": COMMS, "travel": _TRAVEL},
     **{"spindle-still": MOTION, "c-is-spindle": MOTION},
 }
-_NOWHERE = {_SERVO: SYSTEM, _TRAVEL: MOTION}  # where the alarm names no axis
+_NOWHERE = {_SERVO: SYSTEM, _TRAVEL: MOTION}  # conditions of alarms that do not name an axis
 
 
 def condition_keys(machine: Machine) -> frozenset[str]:
     """Return the names of all conditions of a machine: those of each axis with its own drive, and the others.
 
-    On a lathe the spindle is the C axis too, unless C has its own drive.
+    On a lathe the spindle is also the C axis, unless C has its own drive.
     """
     turns_c = machine.kind == "lathe" and machine.spindle_is_c
     axes = [axis.name for axis in machine.axes if not (turns_c and axis.rotary and axis.name == "C")]
@@ -44,9 +44,9 @@ def condition_keys(machine: Machine) -> frozenset[str]:
 
 
 def conditions_of(snapshot: Snapshot, keys: frozenset[str]) -> Mapping[str, tuple[Condition, ...]]:
-    """What is active of each of these conditions; nothing of it: normal.
+    """Return the active entries of each condition; () means normal.
 
-    A hold that nobody pressed is a warning of the system, with the reason that the screen shows.
+    A hold that the operator did not request is a warning of the system, with the reason shown on the screen.
     """
     active: dict[str, list[Condition]] = {key: [] for key in keys}
     for alarm in snapshot.alarms:
@@ -69,11 +69,11 @@ def _place(alarm: Alarm, keys: frozenset[str]) -> str:
         if f"{word}{place}" in keys:
             return f"{word}{place}"
         if word == "C" and place == _SERVO:
-            return SPINDLE  # the spindle is this axis
+            return SPINDLE  # the spindle is the C axis
     return _NOWHERE[place]
 
 
-# --- Execution and controller mode in the words of MTConnect, from successive snapshots.
+# --- Execution and controller mode in the terms of MTConnect, from successive snapshots.
 
 
 AUTOMATIC, MANUAL, MDI, SINGLE = "AUTOMATIC", "MANUAL", "MANUAL_DATA_INPUT", "SEMI_AUTOMATIC"
@@ -81,8 +81,8 @@ READY, ACTIVE, WAIT, STOPPED = "READY", "ACTIVE", "WAIT", "STOPPED"
 FEED_HOLD, INTERRUPTED = "FEED_HOLD", "INTERRUPTED"
 PROGRAM_STOPPED, OPTIONAL_STOP, COMPLETED = "PROGRAM_STOPPED", "OPTIONAL_STOP", "PROGRAM_COMPLETED"
 
-_COLLET = "COLLET"  # a wait for a device that handles the material, as the inputs of bar feed and loader are
-# An operator keeps it from going on, and has to do something before it does.
+_COLLET = "COLLET"  # a wait for a device that handles material, like the inputs of a bar feeder or loader
+# States in which the program waits for an action of the operator.
 _KEPT = {
     "FEED OVERRIDE AT 0": FEED_HOLD,
     "SPINDLE SWITCH OFF": INTERRUPTED,
@@ -93,7 +93,7 @@ _KEPT = {
 _BY_STATE = {
     State.ESTOP: STOPPED,
     State.FAULT: STOPPED,
-    State.DISABLED: STOPPED,  # it is not ready: nothing can be started
+    State.DISABLED: STOPPED,  # not ready, because no program can be started
     State.RUN: ACTIVE,
     State.HOLDING: FEED_HOLD,
     State.BLOCK_END: INTERRUPTED,
@@ -104,10 +104,10 @@ _BY_STATE = {
 
 @dataclass(slots=True)
 class Execution:
-    """Remembers whether the last thing that happened was the end of a program.
+    """State machine that also detects the end of a program.
 
-    ``inputs`` are the names and terminals for which a program can wait; whatever else a cycle waits for (a
-    dwell, the spindle, a proof) is its own work.
+    ``inputs`` are the names and terminals of inputs for which a program can wait. Other waits of a cycle,
+    such as a dwell, the spindle or a proof, count as active execution.
     """
 
     inputs: frozenset[str] = frozenset()
@@ -117,7 +117,7 @@ class Execution:
     _completed: bool = False
 
     def look(self, snapshot: Snapshot) -> str:
-        """The execution state; call it with every snapshot that is told of."""
+        """Return the execution state; call it for every published snapshot."""
         ended = self._ends is not None and snapshot.ends > self._ends
         elsewhere = (snapshot.program, snapshot.lines) != (self._program, self._lines)
         if ended:
@@ -125,7 +125,8 @@ class Execution:
         elif snapshot.state is not State.IDLE or elsewhere:
             self._completed = False
         self._ends, self._program, self._lines = snapshot.ends, snapshot.program, snapshot.lines
-        if ended and snapshot.state is State.DISABLED:  # both between two looks: the end is told first
+        # both occurred between two snapshots; the end is reported first
+        if ended and snapshot.state is State.DISABLED:
             return COMPLETED
         return self._of(snapshot)
 
@@ -151,7 +152,7 @@ class Execution:
 
 
 def mode_of(snapshot: Snapshot) -> str:
-    """What Cycle Start begins, and how; this control has no mode switch."""
+    """Return the controller mode: the kind of run that Cycle Start begins. The control has no mode switch."""
     if snapshot.state in {State.JOG, State.HOME}:
         return MANUAL
     if snapshot.starts in LINES:
@@ -159,29 +160,29 @@ def mode_of(snapshot: Snapshot) -> str:
     return SINGLE if snapshot.single_block else AUTOMATIC
 
 
-Value = str | float | None  # None: not known
+Value = str | float | None  # None means unknown
 
-_STANDS = 0.2  # mm/s; an encoder that trembles by a count within a tick reads as .13
+_STANDS = 0.2  # mm/s; an encoder that toggles by one count per tick reads as 0.13
 _STILL = 1.0  # rpm
 _AVAILABLE, _UNAVAILABLE = "AVAILABLE", "UNAVAILABLE"
 
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """One look at the machine; without ``conditions`` and values nothing is known of it."""
+    """Values and conditions of the machine at one time; empty if nothing is known."""
 
     values: Mapping[str, Value]
     conditions: Mapping[str, tuple[Condition, ...]] = field(default_factory=dict)
     interrupted: InterruptedJob | None = None
-    alarms: tuple[Alarm, ...] = ()  # what the catalogue says of what is active
+    alarms: tuple[Alarm, ...] = ()  # catalog entries of the active alarms
 
     def alarm(self, code: str) -> Alarm | None:
-        """Of a condition, by its code; None: it is none of the catalogue."""
+        """Return the alarm of a condition by its code; None if the catalog does not contain it."""
         return next((alarm for alarm in self.alarms if str(alarm.number) == code), None)
 
     @property
     def available(self) -> bool:
-        """Whether the control speaks."""
+        """Whether the control responds."""
         return self.values.get("avail") == _AVAILABLE
 
 
@@ -190,11 +191,11 @@ UNKNOWN = Reading({"avail": _UNAVAILABLE})
 
 @dataclass(slots=True)
 class FloorReader:
-    """Looks at snapshots of one machine; ``clock`` in s tells when they no longer come."""
+    """Converter of the snapshots of one machine; ``clock`` in s detects that snapshots stop."""
 
     machine: Machine
     clock: Callable[[], float]
-    _keys: frozenset[str] = field(init=False)  # of the conditions that there are
+    _keys: frozenset[str] = field(init=False)  # names of the conditions of this machine
     _execution: Execution = field(init=False)
     _pulse: SilenceWatch = field(default_factory=SilenceWatch)
 
@@ -205,7 +206,7 @@ class FloorReader:
         self._keys = condition_keys(self.machine)
 
     def look(self, snapshot: Snapshot) -> Reading:
-        """What is true now. Of a control that is silent nothing is known but that."""
+        """Return the present values and conditions; UNKNOWN if the control is silent."""
         if self._pulse.silent(snapshot.t, self.clock()):
             return UNKNOWN
         values: dict[str, Value] = {
@@ -224,7 +225,10 @@ class FloorReader:
         return Reading(values, conditions_of(snapshot, self._keys), snapshot.interrupted, alarms)
 
     def _axes(self, snapshot: Snapshot) -> dict[str, Value]:
-        """Machine frame, X a radius; an axis that has no home does not know where it is."""
+        """Return the axis positions in machine coordinates, X as a radius.
+
+        The position of an axis that is not homed is None.
+        """
         known = Unknown.SLIDES not in snapshot.unknown
         at = zip(snapshot.axes, snapshot.actual, snapshot.homed, strict=True)
         return {
@@ -247,14 +251,15 @@ class FloorReader:
         }
 
     def _wired(self, snapshot: Snapshot) -> dict[str, Value]:
-        """Of what is a switch; where none is wired nothing is known."""
+        """Return the states of switches; None if a switch is not wired."""
 
         def told(name: str, on: str, off: str) -> Value:
             if name not in self.machine.inputs or Unknown.INPUTS in snapshot.unknown:
                 return None
             return on if name in snapshot.inputs else off
 
-        opened = "UNLATCHED" if "collet" in snapshot.outputs else "OPEN"  # told to close and not there yet
+        # commanded to close but not closed yet
+        opened = "UNLATCHED" if "collet" in snapshot.outputs else "OPEN"
         return {
             "chuck": told("collet_closed", "CLOSED", opened),
             "door": told("guard", "CLOSED", "OPEN"),

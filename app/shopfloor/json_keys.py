@@ -1,4 +1,4 @@
-"""Keys of status.json, for the reference and its tests."""
+"""Keys of status.json, for the reference page and its tests."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The machine in one small JSON file, for a shop without an agent: for a script or a spreadsheet."""
+"""The state of the machine in a small JSON file, for scripts and spreadsheets."""
 
 from __future__ import annotations
 
@@ -14,15 +14,17 @@ from core.file_placing import write_in_place
 
 NAME = "status.json"
 _LOOK = 1.0  # s
-_LOAD_STEP = 5  # per cent
-_AGAIN = 10  # looks without a change after which it is written all the same: an old file is a dead control
+_LOAD_STEP = 5  # %
+# checks without a change after which the file is written anyway, because an old file means that TurnDesk is
+# not running
+_AGAIN = 10
 _log = logging.getLogger(__name__)
 
 Status = dict[str, object]
 
 
 def status_of(machine: str, reading: Reading) -> Status:
-    """What a shop asks first: running or not and why, which program, how many parts."""
+    """Return the status of the machine for the file: state, program, parts and alarms."""
     values = reading.values
     return {
         "machine": machine,
@@ -43,19 +45,19 @@ def status_of(machine: str, reading: Reading) -> Status:
 
 
 def _load(load: Value) -> int | None:
-    """Per cent to the next five: each change is a file written anew."""
+    """Return the load in % rounded to 5, to limit the number of writes."""
     return round(load / _LOAD_STEP) * _LOAD_STEP if isinstance(load, float) else None
 
 
 def _interrupted(found: InterruptedJob | None) -> Status | None:
-    """The job that did not come to its end; ``at`` is UTC, ISO 8601."""
+    """Return the interrupted job; ``at`` is UTC in ISO 8601 format."""
     if found is None:
         return None
     return {"line": found.line, "tool": found.tool, "part": found.part, "at": found.at}
 
 
 def _entry(alarm: Alarm | None) -> Status:
-    """Number, cause and remedy, as the screen tells them."""
+    """Return number, cause and remedy of an alarm as shown on the screen."""
     if alarm is None:
         return {"number": None, "cause": "", "remedy": "", "line": None}
     line = alarm.line or None
@@ -63,7 +65,7 @@ def _entry(alarm: Alarm | None) -> Status:
 
 
 class StatusFile:
-    """Replaced whole: a reader sees the old one or the new one. ``utc`` is the time of day as text."""
+    """The status file, which is always replaced as a whole. ``utc`` returns the time as text."""
 
     def __init__(self, path: Path, utc: Callable[[], str]) -> None:
         self._path, self._utc = path, utc
@@ -73,7 +75,7 @@ class StatusFile:
         self._failed = False
 
     def show(self, status: Status) -> None:
-        """Write it when it is new, or when the last one is getting old; a disk that fails is tried again."""
+        """Write the status if it has changed or the file is too old. A failed write is tried again."""
         self._looks += 1
         if status == self._written and self._looks < _AGAIN:
             return
@@ -92,10 +94,10 @@ class StatusFile:
 
 
 class StatusKeeper(RepeatingThread):
-    """Shows the status once a second, by a thread of its own: a slow disk keeps nothing else waiting."""
+    """Thread that updates the status file once per second, so that a slow disk delays no other thread."""
 
     def __init__(self, file: StatusFile, look: Callable[[], Status], gone: Status) -> None:
-        """``gone`` is written last."""
+        """Create the thread; ``gone`` is the status that is written last."""
         super().__init__("status", self._show, _LOOK)
         self._file, self._status, self._gone = file, look, gone
         self._last: Status = {}
@@ -107,7 +109,7 @@ class StatusKeeper(RepeatingThread):
     def _repeat(self) -> None:
         try:
             super()._repeat()
-            self._last = self._status()  # what closing has interrupted stays so
+            self._last = self._status()  # a job that is interrupted by closing remains interrupted
         finally:
             if not self.closing:
                 _log.error("the status file is not kept any more: a mistake of the control", exc_info=True)

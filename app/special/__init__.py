@@ -1,1 +1,1 @@
-"""The page SPECIAL FUNCTIONS (F10): model and view."""
+"""Page SPECIAL FUNCTIONS (F10): model and view."""

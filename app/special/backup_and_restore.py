@@ -1,4 +1,4 @@
-"""Backup and restore of everything that is kept: offsets, versions, counts, settings, log."""
+"""Backup and restore of all stored data: offsets, versions, counts, settings and log."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ BARRED = "PROGRAM RUNNING. WAIT UNTIL IT ENDS, THEN RESTORE"
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """A folder that can be written to, or one backup in it."""
+    """Folder for backups, or one backup in a folder."""
 
     label: str
     path: Path
@@ -41,7 +41,7 @@ class Place:
 
 
 class BackupAndRestore(SpecialFunction):
-    """Return on a place makes a backup there; Return on a backup restores it, after asking."""
+    """Special function for backups: Enter on a folder makes a backup, and Enter on a backup restores it."""
 
     name = "BACKUP AND RESTORE"
     use = "offsets, versions, settings, log"
@@ -55,27 +55,30 @@ class BackupAndRestore(SpecialFunction):
         plugged: Callable[[], Sequence[Stick]] = sticks,
         daily: Path | None = None,
     ) -> None:
-        """``daily`` is where the daily backups go, where that is not ``folder``."""
+        """Create the function.
+
+        ``daily`` is the folder of daily backups if it differs from ``folder``.
+        """
         super().__init__(desk)
         self.persistence, self.worker, self.folder, self.plugged = persistence, worker, folder, plugged
         self.daily = daily
         self.places: tuple[Place, ...] = ()
         self.verdicts: dict[Place, Verdict] = {}
-        self.unchecked = ""  # why backups cannot be checked: the current data cannot be read
+        self.unchecked = ""  # reason why backups cannot be checked: the present data is unreadable
         self.busy = ""
         self.restored: Callable[[], None] = lambda: None
 
     @property
     def count(self) -> int:
-        """How many places and backups are listed."""
+        """Number of listed folders and backups."""
         return len(self.places)
 
     def opened(self) -> None:
-        """Look what is there."""
+        """List the folders and backups."""
         self.look()
 
     def look(self) -> None:
-        """List places and backups again; the answer comes with a later frame."""
+        """List folders and backups again. The result arrives in a later frame."""
         self.worker.queue(lambda: _places(self.folder, self.plugged(), self.daily), self._found, self._failed)
 
     def _found(self, places: tuple[Place, ...]) -> None:
@@ -87,7 +90,7 @@ class BackupAndRestore(SpecialFunction):
                 self.worker.queue(partial(self._judged, place), self._judge, self._not_judged)
 
     def _judged(self, place: Place) -> tuple[Place, Verdict]:
-        """On the worker, one after the other. Raises StoreError."""
+        """Check a backup on the worker. Raises StoreError."""
         return place, self.persistence.judge(place.path)
 
     def _judge(self, found: tuple[Place, Verdict]) -> None:
@@ -99,7 +102,7 @@ class BackupAndRestore(SpecialFunction):
         self.unchecked = why
 
     def sheet(self, _snapshot: Snapshot) -> Sheet:
-        """Places, each with its backups under it."""
+        """Return the table of folders, each followed by its backups."""
         rows = tuple(
             Row(
                 (
@@ -132,7 +135,7 @@ class BackupAndRestore(SpecialFunction):
         return "CANNOT RESTORE: BACKUP DAMAGED" if verdict.problem else "RESTORE (BACKUP IS INTACT)"
 
     def _notes(self) -> tuple[str, ...]:
-        """Of the marked backup: what is wrong with it, or what a restore would change."""
+        """Return the notes about the selected backup: its damage, or the effect of a restore."""
         kept = (
             "When a backup is restored, a copy of the replaced data is saved in the same folder "
             "as the new data."
@@ -148,11 +151,11 @@ class BackupAndRestore(SpecialFunction):
         return (tr(differs if what else "The backup and the current data are the same."), kept)
 
     def keys(self) -> Mapping[str, Key]:
-        """F4 looks for media again."""
+        """Return F4, which looks for media again."""
         return {"F4": Key("REFRESH", self.look)}
 
     def act(self) -> bool:
-        """Back up to a place, or restore a backup."""
+        """Make or restore the selected backup."""
         if self.busy:
             self.desk.say("STILL BUSY. WAIT UNTIL THE LAST COMMAND IS DONE")
         elif self.places:
@@ -222,7 +225,7 @@ class BackupAndRestore(SpecialFunction):
         where = kept.name if kept else "—"
         self.persistence.note_change(
             Message("restored; previous data saved as {place}", place=where)
-        )  # by whom is known still
+        )  # The signed-in user is still known.
         self.restored()
         said = tr(Message("RESTORED. PREVIOUS DATA SAVED AS {name}", name=where))
         self.desk.done(said)
@@ -234,12 +237,12 @@ class BackupAndRestore(SpecialFunction):
         self.desk.refuse(why)
 
     def prompt(self) -> str:
-        """What Return does, for the prompt line."""
+        """Return the prompt about Enter."""
         return "ENTER OR TAP: BACK UP OR RESTORE   F4: LOOK FOR USB STICKS"
 
 
 def _differences(verdict: Verdict) -> str:
-    """Return how many rows of each table a restore would change, as text; empty for none."""
+    """Return the number of rows per table that a restore would change, as text; empty for no change."""
     told = [f"{tr(name)} {count}" for name, count in verdict.differs]
     if verdict.older:
         told.append(tr("other data was not compared because the backup is from an older version"))
@@ -247,7 +250,7 @@ def _differences(verdict: Verdict) -> str:
 
 
 def _places(folder: Path, plugged: Sequence[Stick], daily: Path | None) -> tuple[Place, ...]:
-    """The control's own folder and the media, each followed by the backups in it, newest first."""
+    """Return the control's folder and the media, each followed by its backups, newest first."""
     found: list[Place] = []
     kept = [(tr("THIS CONTROL"), folder), *([(tr("DAILY BACKUPS"), daily)] if daily is not None else [])]
     for label, path in (*kept, *((stick.label, stick.path) for stick in plugged)):

@@ -1,4 +1,4 @@
-"""The counters of F10: parts with target and times, and the life of every tool with its limits."""
+"""Counters of F10: parts with target and times, and tool life with its limits."""
 
 from __future__ import annotations
 
@@ -35,7 +35,10 @@ TONES = {
 
 
 class ToolLifeFunction(FigureFunction):
-    """A row for each tool that is set, has a limit or has cut; the typed limit is of the marked one."""
+    """Special function for tool life, with one row per tool.
+
+    A typed limit applies to the selected tool.
+    """
 
     name = "TOOL LIFE"
     use = "insert life in parts and minutes"
@@ -46,24 +49,24 @@ class ToolLifeFunction(FigureFunction):
         self.limit = LIMITS[0]
 
     def tools(self) -> tuple[ToolLife, ...]:
-        """What is shown, in the order of T."""
+        """Return the displayed tools in the order of T numbers."""
         lives = self.watch.lives.lives()
         numbers = sorted({*lives, *self.desk.book.tools} & set(OFFSETS))
         return tuple(lives.get(number, ToolLife(number)) for number in numbers)
 
     @property
     def count(self) -> int:
-        """How many tools are shown."""
+        """Number of displayed tools."""
         return len(self.tools())
 
     @property
     def tool(self) -> ToolLife | None:
-        """The marked one."""
+        """Selected tool, or None."""
         tools = self.tools()
         return tools[self.marked] if self.marked < len(tools) else None
 
     def sheet(self, _snapshot: Snapshot) -> Sheet:
-        """Limits, use, what is left, and whether parts stop."""
+        """Return the table with limits, use, remaining life and stop."""
         self.marked = max(0, min(self.marked, self.count - 1))
         rows = tuple(self._row(each) for each in self.tools())
         tool = self.tool
@@ -90,11 +93,11 @@ class ToolLifeFunction(FigureFunction):
         return Row(cells, life.state is not LifeState.NO_LIMIT, tone, bar)
 
     def typed(self, key: str) -> bool:
-        """Arrows move the mark, whatever is typed; the rest is the entry's."""
+        """Handle a key: arrows move the selection, and other keys edit the entry."""
         return self.moves(key) or super().typed(key)
 
     def keys(self) -> Mapping[str, Key]:
-        """Which limit is typed, stopping, and a fresh insert."""
+        """Return the function keys for the type of limit, the stop and a new insert."""
         return {
             "F2": Key(_LABELS[following(LIMITS, self.limit)], self._next_limit),
             "F3": Key("STOP", self.turn_stop),
@@ -106,7 +109,7 @@ class ToolLifeFunction(FigureFunction):
         self.entry.text, self.limit = "", following(LIMITS, self.limit)
 
     def take(self, text: str) -> bool:
-        """A limit of the marked tool. Raises EntryError."""
+        """Set a limit of the selected tool. Raises EntryError."""
         tool = self.tool
         if tool is None:
             self.desk.say(tr("NO TOOL HAS OFFSETS YET"))
@@ -148,14 +151,14 @@ class ToolLifeFunction(FigureFunction):
         return True
 
     def turn_stop(self) -> None:
-        """F3: whether another part begins when the life is gone."""
+        """Turn the stop at the end of tool life on or off (F3)."""
         tool = self.tool
         if tool is not None:
             self.desk.clear()
             self._set(replace(tool, stops=not tool.stops))
 
     def insert(self) -> None:
-        """F4: a fresh insert is in the holder, after asking."""
+        """Record a new insert in the holder, after confirmation (F4)."""
         tool = self.tool
         if tool is None:
             return
@@ -166,7 +169,7 @@ class ToolLifeFunction(FigureFunction):
         )
 
     def prompt(self) -> str:
-        """What can be done here."""
+        """Return the prompt, or the reason why changes are not possible."""
         return self.watch.book.locked or ("TYPE THE LIFE LIMIT. F2: NEXT LIMIT   F4: NEW INSERT")
 
 
@@ -175,18 +178,18 @@ NO_PROGRAM = "CHOOSE A PROGRAM FIRST: EVERY PROGRAM HAS ITS OWN COUNT"
 
 
 class PartsCounterFunction(FigureFunction):
-    """Of the program on the desk."""
+    """Special function for the parts counter of the loaded program."""
 
     name = "PARTS COUNTER"
     use = "parts made, target, times"
 
     @property
     def counter(self) -> PartCounter:
-        """The count of the program on the desk."""
+        """Parts counter of the loaded program."""
         return self.desk.runs.counter
 
     def sheet(self, snapshot: Snapshot) -> Sheet:
-        """Count, target, what is left of it, times."""
+        """Return the table with count, target, remaining parts and times."""
         counter, last = self.counter, snapshot.last_cycle
         aim = counter.aim
         left = max(0, aim - counter.count)
@@ -222,7 +225,7 @@ class PartsCounterFunction(FigureFunction):
         )
 
     def keys(self) -> Mapping[str, Key]:
-        """Corrections of the count, the count to nought, and runs that are no parts."""
+        """Return the function keys for corrections, the reset and cycles that are not counted."""
         return {
             "F2": Key("COUNT +1", partial(self.correct, 1)),
             "F3": Key("COUNT -1", partial(self.correct, -1)),
@@ -231,7 +234,7 @@ class PartsCounterFunction(FigureFunction):
         }
 
     def correct(self, by: int) -> None:
-        """One part that was not counted, or one that is scrap."""
+        """Correct the count by one part that was not counted or is scrap."""
         if not self.counter.program:
             self.desk.say(NO_PROGRAM)
         elif self.desk.refused(Act.COUNTS):
@@ -243,7 +246,7 @@ class PartsCounterFunction(FigureFunction):
             self.desk.keep(lambda: self.counter.correct(by))
 
     def reset(self) -> None:
-        """Count to nought, after asking."""
+        """Reset the count to zero, after confirmation."""
         if not self.counter.program:
             self.desk.say(NO_PROGRAM)
         elif self.desk.refused(Act.COUNTS):
@@ -254,7 +257,7 @@ class PartsCounterFunction(FigureFunction):
             self.desk.ask(RESET, partial(self.desk.keep, self.counter.reset))
 
     def take(self, text: str) -> bool:
-        """The target, from the count on; 0 takes it away."""
+        """Set the target number of parts. 0 removes the target. Raises EntryError."""
         if not self.counter.program:
             self.desk.say(NO_PROGRAM)
             return False
@@ -275,12 +278,12 @@ class PartsCounterFunction(FigureFunction):
         return True
 
     def prompt(self) -> str:
-        """How to set the target, for the prompt line."""
+        """Return the prompt for the target."""
         return "TYPE THE NUMBER OF PARTS   ENTER: ACCEPT   ESC: BACK"
 
 
 def whole_number(text: str) -> int:
-    """A number of parts as it was typed. Raises EntryError."""
+    """Return a typed number of parts as an integer. Raises EntryError."""
     value = value_of(text)
     if value != int(value) or not 0 <= value <= MOST:
         raise EntryError(

@@ -1,4 +1,7 @@
-"""Drives, inputs, outputs and lamps, live; outputs are switched by hand at rest only."""
+"""Live states of drives, inputs, outputs and lamps.
+
+Outputs can be switched manually at rest only.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +25,7 @@ from core.ports import Unknown
 
 NOT_NOW = "SWITCH OUTPUTS ONLY WHEN NO PROGRAM RUNS AND NOTHING MOVES"
 AT_REST = frozenset({State.IDLE, State.DISABLED})
-# What asks for an input: codes of OmniTurn, and what the control itself looks at.
+# Users of an input: OmniTurn codes and functions of the control.
 _ASKED_IN_PROGRAMS = {"TB2-5": "M91 M92", "TB2-7": "M93 M94", "TB2-9": "M95"}
 _ASKED_BY = {
     "estop": "E-STOP",
@@ -31,13 +34,13 @@ _ASKED_BY = {
     "guard": "GUARD",
     "collet_closed": "COLLET",
 }
-OF_STATION = frozenset({"estop", "start", "hold", "collet_closed"})  # no switch of its own
+OF_STATION = frozenset({"estop", "start", "hold", "collet_closed"})  # not switched on this page
 _OWN_CODES = {"coolant": ("M8", "M9")}
 _OWN_CODES_OF_OMNITURN = {"coolant": ("M08", "M09"), "collet": ("M12", "M13")}
 
 
 class Kind(StrEnum):
-    """The three lists of signals."""
+    """List of signals."""
 
     OUTPUTS = "OUTPUTS"
     INPUTS = "INPUTS"
@@ -45,7 +48,7 @@ class Kind(StrEnum):
 
 
 class InputsOutputs(SpecialFunction):
-    """F4 goes from list to list; Return on an output switches it over, after asking."""
+    """Special function for signals: F4 selects the list, and Enter switches an output after confirmation."""
 
     name = "INPUTS AND OUTPUTS"
     use = "live signals, manual outputs, lamps"
@@ -58,18 +61,18 @@ class InputsOutputs(SpecialFunction):
 
     @property
     def count(self) -> int:
-        """Of the list that is shown."""
+        """Number of rows of the displayed list."""
         if self.kind is Kind.OUTPUTS:
             return len(self.machine.outputs)
         return len(self.machine.inputs) if self.kind is Kind.INPUTS else 0
 
     @property
     def _simulated(self) -> bool:
-        """Whether inputs are switched here: nobody else does it on a simulated machine."""
+        """Whether inputs can be switched, as on a simulated machine."""
         return self.desk.control.set_input is not None
 
     def sheet(self, snapshot: Snapshot) -> Sheet:
-        """The list, every state from the one snapshot."""
+        """Return the table of the list, with all states from one snapshot."""
         if self.kind is Kind.LAMPS:
             return self._lamps(snapshot)
         outputs = self.kind is Kind.OUTPUTS
@@ -105,13 +108,14 @@ class InputsOutputs(SpecialFunction):
         if output:
             return tr("CONTROL (AUTOMATIC)") if name in self.machine.lamps else self._codes.get(name, "")
         if name == "guard" and not self.machine.interlocks.guard_stops:
-            return ""  # it stops nothing here: it is only told to the shop floor
+            # The guard stops nothing on this machine; its state is only reported to the shop floor.
+            return ""
         if name in _ASKED_BY or self.machine.language != "omniturn":
             return _ASKED_BY.get(name, "")
         return _ASKED_IN_PROGRAMS.get(name, f"M97I{name}" if name.isdigit() else "")
 
     def keys(self) -> Mapping[str, Key]:
-        """F4 shows the next list."""
+        """Return F4, which shows the next list."""
         labels = {Kind.OUTPUTS: "OUTPUTS", Kind.INPUTS: "INPUTS", Kind.LAMPS: "LAMPS"}
         return {"F4": Key(labels[following(Kind, self.kind)], self._go_on)}
 
@@ -120,7 +124,7 @@ class InputsOutputs(SpecialFunction):
         self.kind, self.marked = following(Kind, self.kind), 0
 
     def act(self) -> bool:
-        """Switch the marked output over, or the marked input of a simulated machine."""
+        """Switch the selected output, or the selected input of a simulated machine."""
         if self.kind is Kind.INPUTS and self._simulated:
             self._switch_input()
         else:
@@ -128,7 +132,7 @@ class InputsOutputs(SpecialFunction):
         return True
 
     def _switch_input(self) -> None:
-        """At any time, as on a machine: also while a program waits for it."""
+        """Switch a simulated input at any time, including while a program waits for it."""
         name = tuple(self.machine.inputs)[self.marked]
         if name in OF_STATION:
             self.desk.say(
@@ -177,7 +181,7 @@ class InputsOutputs(SpecialFunction):
         self.desk.ask(tr(Message(asked, name=name)), lambda: self._force(name, on))
 
     def _force(self, name: str, on: bool) -> None:
-        if not self.desk.refused(Act.OUTPUTS):  # the level may have fallen back meanwhile
+        if not self.desk.refused(Act.OUTPUTS):  # The access level may have expired in the meantime.
             self.desk.post(ForceOutput(name, on))
             self.desk.access.persistence.note_change(
                 Message(
@@ -187,7 +191,7 @@ class InputsOutputs(SpecialFunction):
             )
 
     def prompt(self) -> str:
-        """What Return does here, for the prompt line."""
+        """Return the prompt about Enter."""
         if self.kind is Kind.INPUTS and self._simulated:
             return tr("ENTER OR TAP: SWITCH SIMULATED INPUT   F4: NEXT LIST")
         if self.kind is not Kind.OUTPUTS:
@@ -202,7 +206,7 @@ def _state(on: bool) -> str:
 
 
 def _codes(machine: Machine) -> dict[str, str]:
-    """The M codes that switch each output, off after on, as the machine's language writes them."""
+    """Return the M codes of each output, on before off, in the notation of the machine's language."""
     omniturn = machine.language == "omniturn"
     own = _OWN_CODES_OF_OMNITURN if omniturn else _OWN_CODES
     form = "M{:02d}" if omniturn else "M{}"
@@ -219,7 +223,7 @@ OF_SPINDLE = frozenset({"spindle", "at-speed", "ignores-stop", "spindle-still", 
 
 
 class DriveStatus(SpecialFunction):
-    """Machine coordinates from home, X a radius, in the unit that the figures are shown in."""
+    """Special function for the drives, in machine coordinates from home with X as a radius."""
 
     name = "DRIVE STATUS"
     use = "power, home, following error, faults"
@@ -229,7 +233,7 @@ class DriveStatus(SpecialFunction):
         self.machine = machine
 
     def sheet(self, snapshot: Snapshot) -> Sheet:
-        """One row an axis, one for the spindle."""
+        """Return the table with one row per axis and one for the spindle."""
         metric = self.desk.settings.units.metric(snapshot.modal.metric)
         on = snapshot.powered
         rows = [self._axis(snapshot, number, metric, on) for number in range(len(snapshot.axes))]
@@ -282,12 +286,15 @@ class DriveStatus(SpecialFunction):
         return Row(cells, snapshot.spindle_auto and known and fault == formats.NOTHING, Tone.RUN)
 
     def prompt(self) -> str:
-        """Where alarms are found, for the prompt line."""
+        """Return the prompt, which refers to the alarms."""
         return "F7: ALARMS WITH CAUSE AND REMEDY   ESC: BACK TO THE LIST"
 
 
 def _fault(alarms: tuple[Alarm, ...], codes: frozenset[str], axis: Axis | None) -> str:
-    """The number of the alarm that concerns it; one that names no axis concerns all."""
+    """Return the number of the alarm of an axis or the spindle.
+
+    An alarm without an axis applies to all.
+    """
     for alarm in reversed(alarms):
         named = AXES & set(alarm.cause.split())
         if alarm.code in codes and (axis is None or not named or axis.name in named):

@@ -1,4 +1,4 @@
-"""Lamps and sound: what lights and sounds for what, in one table; volume, a try, the test of the lamps."""
+"""Lamps and sound: lamp and sound of each event, volume, sound test and lamp test."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ KINDS = tuple(SIGNALS)
 
 @dataclass(slots=True)
 class DeskSounds:
-    """Plays what has begun since the last frame; ``volume`` 0 until somebody wants it; not for ``silent``."""
+    """Sounds for new events, with ``volume`` 0 by default. The kinds in ``silent`` are muted."""
 
     desk: Desk
     persistence: Persistence
@@ -41,7 +41,7 @@ class DeskSounds:
     _read: bool = False
 
     def see(self, snapshot: Snapshot) -> None:
-        """One frame; the first one sounds for nothing."""
+        """Play the sounds of events that began since the last frame. The first frame is silent."""
         self.recall()
         kinds = self._signals.see(snapshot.state, snapshot.ends, barred=bool(snapshot.next_barred))
         before, self._before = self._before, kinds
@@ -54,19 +54,19 @@ class DeskSounds:
         return kind not in self.silent and bool(SIGNALS[kind].tones)
 
     def _tell(self) -> None:
-        """Once for each reason."""
+        """Report each sound error once."""
         why = self.sounds.trouble
         if why and why != self._told:
             self.desk.say(tr(Message("NO SOUND: {why}", why=why)))
         self._told = why or self._told
 
     def tried(self) -> None:
-        """A reason that was told before is told again."""
+        """Play the test sound and report a repeated error again."""
         self._told = self.sounds.trouble = ""
         self.sounds.play(SIGNALS["part"].tones, self.volume)
 
     def recall(self) -> None:
-        """As it was chosen last; read once."""
+        """Load the stored settings once."""
         if self._read:
             return
         self._read = True
@@ -79,7 +79,7 @@ class DeskSounds:
                 self.volume, self.silent = max(0, min(100, volume)), frozenset(map(str, silent))
 
     def choose(self, volume: int, silent: frozenset[str]) -> None:
-        """Keep it. Raises StoreError."""
+        """Store the volume and the muted kinds. Raises StoreError."""
         before, self.volume, self.silent = self.volume, max(0, min(100, volume)), silent
         self.persistence.save_setting(_SETTING, {"volume": self.volume, "silent": sorted(silent)})
         told = Message(
@@ -91,12 +91,12 @@ class DeskSounds:
         self.persistence.note_change(told)
 
     def close(self) -> None:
-        """No sound any more."""
+        """Stop all sounds."""
         self.sounds.close()
 
 
 class LampsAndSound(SpecialFunction):
-    """A row a kind: its lamp, where the machine has one, and whether it sounds."""
+    """Special function with one row per event: its lamp, if fitted, and its sound."""
 
     name = "LAMPS AND SOUND"
     use = "lamps, sounds, volume, lamp test"
@@ -107,11 +107,11 @@ class LampsAndSound(SpecialFunction):
 
     @property
     def count(self) -> int:
-        """The kinds."""
+        """Number of events."""
         return len(KINDS)
 
     def sheet(self, _snapshot: Snapshot) -> Sheet:
-        """One table: what lights and what sounds for what."""
+        """Return the table of lamps and sounds."""
         self.sounds.recall()
         rows = tuple(
             Row((tr(signal.use), self._lamp(signal), self._sound(kind, signal)))
@@ -138,7 +138,7 @@ class LampsAndSound(SpecialFunction):
         return tr("OFF") if kind in self.sounds.silent else tr("ON")
 
     def keys(self) -> Mapping[str, Key]:
-        """Volume, a try, the lamps."""
+        """Return the function keys for volume, sound test and lamp test."""
         return {
             "F2": Key("SOFTER", lambda: self._louder(-_STEP)),
             "F3": Key("LOUDER", lambda: self._louder(_STEP)),
@@ -147,7 +147,7 @@ class LampsAndSound(SpecialFunction):
         }
 
     def act(self) -> bool:
-        """Return on a row: it sounds, or it does not."""
+        """Turn the sound of the selected event on or off."""
         kind = KINDS[self.marked]
         if SIGNALS[kind].tones:
             silent = self.sounds.silent ^ {kind}
@@ -165,7 +165,7 @@ class LampsAndSound(SpecialFunction):
             self.desk.keep(lambda: self.sounds.choose(volume, silent))
 
     def try_out(self) -> None:
-        """The sound of a part that is done, as loud as they are."""
+        """Play the sound of a finished part at the present volume."""
         if not self.sounds.volume:
             self.desk.say("VOLUME IS ZERO. F3: LOUDER")
         else:
@@ -173,7 +173,7 @@ class LampsAndSound(SpecialFunction):
             self.sounds.tried()
 
     def test(self) -> None:
-        """All lamps for two seconds, at rest."""
+        """Turn all lamps on for 2 s, at rest."""
         if not self.machine.lamps:
             self.desk.say("THIS MACHINE HAS NO LAMPS. DEFINE THEM UNDER [io.out] IN THE MACHINE FILE")
         else:
@@ -181,5 +181,5 @@ class LampsAndSound(SpecialFunction):
             self.desk.post(ForceOutput(self.machine.lamps[0], True))
 
     def prompt(self) -> str:
-        """What the keys do."""
+        """Return the prompt for the present keys."""
         return "ENTER: SOUND ON/OFF   F3: LOUDER   F4: TRY   ESC: BACK"

@@ -1,4 +1,4 @@
-"""The event log, newest first, and what has changed in the machine file since somebody accepted it."""
+"""Event log, newest first, and changes of the machine file since it was last accepted."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from core.message import Message
 from core.store.store_rows import EventRow
 
 SHOWN = 500
-EVERY = 1.0  # seconds between two looks at a log that is open
+EVERY = 1.0  # seconds between two updates of the open log
 FILTERS: Mapping[str, frozenset[str]] = {
     "ALL": frozenset(),
     "ALARMS": frozenset({"alarm", "estop", "starved"}),
@@ -31,7 +31,10 @@ FILTERS: Mapping[str, frozenset[str]] = {
 
 
 class LoggedEvents(SpecialFunction):
-    """F4 searches, F5 filters. While a search is typed every letter belongs to it."""
+    """Special function for the event log: F4 searches, F5 filters.
+
+    All letters belong to an active search.
+    """
 
     name = "EVENT LOG"
     use = "event history with times and a search function"
@@ -49,16 +52,16 @@ class LoggedEvents(SpecialFunction):
 
     @property
     def count(self) -> int:
-        """How many events were found."""
+        """Number of events found."""
         return len(self.events)
 
     def opened(self) -> None:
-        """The log comes up: look for events at once."""
+        """Search immediately when the log opens."""
         self._next = 0.0
         self.marked = 0
 
     def sheet(self, _snapshot: Snapshot) -> Sheet:
-        """What was found; looked for again every second while it is open."""
+        """Return the table of events, updated every second while the log is open."""
         now = self.desk.clock.seconds()
         if now >= self._next and not self.worker.busy:
             self._next = now + EVERY
@@ -82,7 +85,10 @@ class LoggedEvents(SpecialFunction):
         )
 
     def look(self) -> None:
-        """Ask the store; the answer comes with a later frame. Of questions meanwhile only the last counts."""
+        """Query the store.
+
+        The result arrives in a later frame, and only the last of several queries counts.
+        """
         search, kinds = self.entry.text.strip(), FILTERS[self.filter]
         self.worker.ask(
             lambda _: tuple(self.persistence.events(search, kinds, SHOWN)), self._found, self._failed
@@ -99,7 +105,7 @@ class LoggedEvents(SpecialFunction):
         self.trouble = why
 
     def keys(self) -> Mapping[str, Key]:
-        """The function keys: search and filter."""
+        """Return the function keys for search and filter."""
         return {"F4": Key("SEARCH", self._search), "F5": Key("FILTER", self._filter)}
 
     def _search(self) -> None:
@@ -112,11 +118,11 @@ class LoggedEvents(SpecialFunction):
         self.look()
 
     def takes(self, key: str) -> bool:
-        """Every letter, while a search is typed."""
+        """Return whether a character is part of the search text."""
         return self.searching and self.entry.takes(key)
 
     def typed(self, key: str) -> bool:
-        """Letters of the search; arrows look through the log."""
+        """Handle a key: letters edit the search text, and arrows scroll the log."""
         if self.moves(key):
             return True
         if not self.searching:
@@ -131,13 +137,13 @@ class LoggedEvents(SpecialFunction):
         return True
 
     def prompt(self) -> str:
-        """What the keys do now, for the prompt line."""
+        """Return the prompt for the present keys."""
         if self.searching:
             return "TYPE THE SEARCH TEXT   ENTER: ACCEPT   ESC: CLEAR"
         return "F4: SEARCH   F5: FILTER   PAGE UP/DOWN: SCROLL   ESC: BACK"
 
     def escape(self) -> bool:
-        """Take the search away; False when there was none."""
+        """Clear the search. Return False without a search."""
         open_before = self.searching or bool(self.entry.text)
         if open_before:
             self.searching, self.entry.text, self.marked = False, "", 0
@@ -145,12 +151,12 @@ class LoggedEvents(SpecialFunction):
         return open_before
 
     def left(self) -> None:
-        """The log as a whole, next time."""
+        """Clear the search when the function closes."""
         self.searching, self.entry.text = False, ""
 
 
 def event_row(event: EventRow) -> Row:
-    """One event: when, its kind, what happened in the operator's language, the line of the program."""
+    """Return the row of an event: time, kind, translated text and program line."""
     at = local_time(event.at)
     line = str(event.line) if event.line else ""
     alarm = event.kind == "alarm"
@@ -164,7 +170,7 @@ _OFF = frozenset({State.DISABLED, State.ESTOP, State.FAULT})
 
 
 class MachineFileAcceptance(SpecialFunction):
-    """F2 accepts, after asking once; until then the drives cannot be switched on."""
+    """Special function to accept the machine file: F2 accepts after confirmation and enables the drives."""
 
     name = "MACHINE FILE"
     use = "changes in the machine file since the file was last accepted"
@@ -175,11 +181,11 @@ class MachineFileAcceptance(SpecialFunction):
 
     @property
     def count(self) -> int:
-        """How many keys of the file have changed."""
+        """Number of changed keys of the file."""
         return len(self.changes.changes)
 
     def sheet(self, _snapshot: Snapshot) -> Sheet:
-        """One row for each key that has changed: key, was, is."""
+        """Return the table with one row per changed key: key, old value, new value."""
         rows = tuple(Row(tuple(change), None, Tone.WAIT) for change in self.changes.changes)
         note = (
             tr("Press F2 to accept; the drives stay off until then.")
@@ -197,7 +203,7 @@ class MachineFileAcceptance(SpecialFunction):
         )
 
     def keys(self) -> Mapping[str, Key]:
-        """F2, while there is something to accept."""
+        """Return F2 if there are changes to accept."""
         return {"F2": Key("ACCEPT", self._accept)} if self.changes.changes else {}
 
     def _accept(self) -> None:
@@ -215,7 +221,7 @@ class MachineFileAcceptance(SpecialFunction):
         self.desk.done(tr("ACCEPTED: THE DRIVES CAN BE SWITCHED ON"))
 
     def prompt(self) -> str:
-        """What the keys do, for the prompt line."""
+        """Return the prompt for the present keys."""
         if self.changes.changes:
             return tr("ARROWS: SCROLL THE CHANGES   F2: ACCEPT ALL   ESC: BACK")
         return super().prompt()

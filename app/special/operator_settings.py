@@ -1,4 +1,4 @@
-"""What the operator sets: units, language and theme; the speed limit until restart; R parameters."""
+"""Operator settings: units, language, theme, spindle speed limit and R parameters."""
 
 from __future__ import annotations
 
@@ -27,7 +27,10 @@ from core.store.store_errors import StoreError
 
 
 class RParameters(FigureFunction):
-    """One row a parameter; a figure that is typed is that of the marked one. The program is proved again."""
+    """Special function for R parameters.
+
+    A typed value applies to the selected row. The loaded program is then proved again.
+    """
 
     name = "R PARAMETERS"
     use = "R0 to R299 of SINUMERIK programs"
@@ -35,25 +38,25 @@ class RParameters(FigureFunction):
     def __init__(self, desk: Desk, persistence: Persistence, worker: Latest) -> None:
         super().__init__(desk)
         self._persistence, self._worker = persistence, worker
-        self.values: dict[int, float] = {}  # of those that have one
+        self.values: dict[int, float] = {}  # parameters with a value
         self.opened()
 
     def opened(self) -> None:
-        """Read them anew, after a restore too."""
+        """Load the stored values when the function opens."""
         if self._worker.busy:
-            return  # what is being kept is shown already
+            return  # The pending values are already displayed.
         try:
             self.values = r_parameters(self._persistence.read_setting(R_PARAMETERS))
         except StoreError:
-            self.values = {}  # the desk says by itself that nothing is kept
+            self.values = {}  # TurnDesk itself reports that nothing is stored.
 
     @property
     def count(self) -> int:
-        """R0 to R299."""
+        """Number of R parameters (R0 to R299)."""
         return MOST_R + 1
 
     def sheet(self, _snapshot: Snapshot) -> Sheet:
-        """All of them; a dash for one that nobody has set, which counts as 0."""
+        """Return the table of all parameters. A dash means not set, which counts as 0."""
         values = self.values
         rows = tuple(
             Row((f"R{number}", f"{values[number]:.9g}" if number in values else "–"), number in values)
@@ -78,19 +81,19 @@ class RParameters(FigureFunction):
         )
 
     def keys(self) -> Mapping[str, Key]:
-        """F4 takes the value of the marked one away."""
+        """Return F4, which clears the selected parameter."""
         return {"F4": Key("CLEAR", self.unset)}
 
     def typed(self, key: str) -> bool:
-        """Figures, Return, and what moves the mark."""
+        """Handle a key: digits edit the entry, and arrows move the selection."""
         return super().typed(key) or self.moves(key)
 
     def unset(self) -> None:
-        """The marked one has no value any more."""
+        """Clear the selected parameter."""
         self._keep(self.marked, None)
 
     def take(self, text: str) -> bool:
-        """The typed figure becomes that of the marked parameter. Raises EntryError beyond what one holds."""
+        """Set the selected parameter to the typed value. Raises EntryError outside the permitted range."""
         value = value_of(text)
         low, high = REACH["R"]
         if not low <= value <= high:
@@ -100,7 +103,7 @@ class RParameters(FigureFunction):
         return self._keep(self.marked, value)
 
     def _keep(self, number: int, value: float | None) -> bool:
-        """Save it, note it in the log, and prove the loaded program again. False while a program runs."""
+        """Store and log a value, then prove the loaded program. Return False while a program runs."""
         if self.desk.refused(Act.ZEROS):
             return False
         if self.desk.snapshot().state in UNDER_WAY:
@@ -119,12 +122,12 @@ class RParameters(FigureFunction):
         return True
 
     def _is_kept(self, told: str) -> None:
-        """Note it in the log, and prove the loaded program again."""
+        """Log the change and prove the loaded program again."""
         self._persistence.note_change(told)
         now = self.desk.session.now
         if now.path is None or now.job is None:
             return
-        if self.desk.snapshot().state in UNDER_WAY:  # somebody started a cycle meanwhile
+        if self.desk.snapshot().state in UNDER_WAY:  # A cycle was started in the meantime.
             self.desk.rebuilding.wanted = True
         else:
             self.desk.session.load(now.path, now.block_delete)
@@ -154,18 +157,18 @@ VALUES = {"en": "ENGLISH", "es": "ESPAÑOL", "dark": "DARK", "light": "LIGHT"}
 
 
 class ScreenPreferences(SpecialFunction):
-    """Return, or a finger, goes on to the next choice."""
+    """Special function for screen settings. Enter or a touch selects the next choice."""
 
     name = "SCREEN"
     use = "units, language, operator station, window"
 
     @property
     def count(self) -> int:
-        """How many settings there are."""
+        """Number of settings."""
         return len(WORDS)
 
     def sheet(self, snapshot: Snapshot) -> Sheet:
-        """One row for each setting: what is chosen now."""
+        """Return the table with the present choice of each setting."""
         now = self.desk.settings.now
         rows = tuple(Row((words, _in_words(name, getattr(now, name)))) for name, words in WORDS.items())
         metric = snapshot.modal.metric
@@ -182,12 +185,12 @@ class ScreenPreferences(SpecialFunction):
         )
 
     def act(self) -> bool:
-        """Return: the marked setting goes on to its next choice."""
+        """Select the next choice of the selected setting."""
         self._go_on()
         return True
 
     def choose(self, row: int) -> None:
-        """A finger chooses at once."""
+        """Select the next choice of the touched setting."""
         self.marked = row
         self._go_on()
 
@@ -210,7 +213,7 @@ class ScreenPreferences(SpecialFunction):
         self.desk.choose_setting(name, settings.following(name))
 
     def prompt(self) -> str:
-        """How to choose, for the prompt line."""
+        """Return the prompt about Enter."""
         return "ENTER OR TAP: NEXT CHOICE   ESC: BACK TO THE LIST"
 
 
@@ -224,7 +227,7 @@ LIFT = "PRESS Y TO REMOVE THE LIMIT, N TO KEEP IT"
 
 
 class SpindleSpeedLimit(FigureFunction):
-    """A limit for this workpiece, chuck or bar: it is gone when the control is started again."""
+    """Special function for a spindle speed limit that applies until TurnDesk is restarted."""
 
     name = "MAXIMUM SPINDLE SPEED"
     use = "spindle speed limit until restart"
@@ -234,7 +237,7 @@ class SpindleSpeedLimit(FigureFunction):
         self.spindle = spindle
 
     def sheet(self, snapshot: Snapshot) -> Sheet:
-        """The machine's speed, the limit, and what turns now."""
+        """Return the table with the machine maximum, the limit and the present speeds."""
         limit = snapshot.spindle_limit
         rows = (
             Row(("MACHINE MAXIMUM", formats.rpm(self.spindle.rpm_max), "rpm")),
@@ -260,11 +263,11 @@ class SpindleSpeedLimit(FigureFunction):
         )
 
     def keys(self) -> Mapping[str, Key]:
-        """F4 lifts the limit."""
+        """Return F4, which removes the limit."""
         return {"F4": Key("NO LIMIT", self.lift)}
 
     def lift(self) -> None:
-        """The machine's own maximum again; asked once, because something may be in the chuck."""
+        """Remove the limit after confirmation, because a workpiece can be in the chuck."""
         if not self.desk.snapshot().spindle_limit:
             self.desk.say("NO SPINDLE SPEED LIMIT IS ACTIVE")
         elif not self.desk.refused(Act.SPINDLE_LIMIT):
@@ -283,7 +286,7 @@ class SpindleSpeedLimit(FigureFunction):
         self.desk.access.persistence.note_change(Message("spindle speed limit: {details}", details=told))
 
     def take(self, text: str) -> bool:
-        """The limit, where this spindle can turn at it."""
+        """Set the limit in rpm. Raises EntryError outside the range of the spindle."""
         rpm = value_of(text)
         low, high = self.spindle.rpm_min, self.spindle.rpm_max
         if not low <= rpm <= high:
@@ -303,7 +306,7 @@ class SpindleSpeedLimit(FigureFunction):
         return True
 
     def prompt(self) -> str:
-        """How to set the limit, for the prompt line."""
+        """Return the prompt for the limit."""
         return "TYPE A SPEED OR EXPRESSION   ENTER: ACCEPT   ESC: BACK"
 
 

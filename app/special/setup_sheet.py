@@ -1,4 +1,4 @@
-"""The setup sheet of a program on lathe or mill: tools, offsets, stock, chuck, stops, time a part."""
+"""Setup sheet of a program for lathe or mill: tools, offsets, stock, chuck, stops and time per part."""
 
 from __future__ import annotations
 
@@ -28,23 +28,26 @@ Length = Callable[[float], str]
 
 @dataclass(frozen=True, slots=True)
 class MillSetup:
-    """``blank``: corners of BLK FORM, mm. ``names`` and ``tools`` are those of the tool table."""
+    """Setup of a mill: ``blank`` contains the corners of BLK FORM in mm.
+
+    The rest is from the tool table.
+    """
 
     blank: Corners | None
     preset: int
-    datum: DatumPreset | None  # the row of the preset; None of 0, which is the machine file's
+    datum: DatumPreset | None  # row of the preset; None for preset 0, which is in the machine file
     names: Mapping[int, str]
     tools: Mapping[int, MillTool]
 
     def stock_words(self, length: Length) -> str:
-        """Length, width and height of the blank."""
+        """Return length, width and height of the blank as text."""
         if self.blank is None:
             return tr("stock not specified because the program has no BLK FORM")
         low, high = self.blank
         return Message("BLK FORM  {b}", b=" × ".join((length(b - a) for a, b in zip(low, high, strict=True))))
 
     def preset_words(self, length: Length) -> str:
-        """Which preset is in force, and where it lies, from home."""
+        """Return the active preset and its position relative to home as text."""
         if self.datum is None:
             return f"{self.preset}   {tr('zero point from the machine file')}"
         places = (f"{name} {length(at)}" for name, at in zip("XYZ", self.datum.origin, strict=True))
@@ -57,7 +60,7 @@ class MillSetup:
         return f"{self.preset}   " + "   ".join((*places, *turned, *rotation))
 
     def tool_words(self, number: int) -> str:
-        """Its name, point angle and teeth in the tool table."""
+        """Return name, point angle and number of teeth of a tool as text."""
         row = self.tools.get(number, MillTool())
         words = (
             self.names.get(number, ""),
@@ -68,7 +71,7 @@ class MillSetup:
 
 
 def mill_setup(setup: Setup, blank: Corners | None) -> MillSetup | None:
-    """Of a job on a mill; None on a lathe."""
+    """Return the mill setup of a job, or None on a lathe."""
     if setup.kinematics is None:
         return None
     datum = setup.presets.get(setup.preset) if setup.preset else None
@@ -77,7 +80,7 @@ def mill_setup(setup: Setup, blank: Corners | None) -> MillSetup | None:
 
 
 def offset_words(offset: ToolOffset, length: Length) -> str:
-    """L and R as they count: with DL and DR."""
+    """Return tool length L and radius R as text, including DL and DR."""
     return f"L {length(offset.z)}   R {length(offset.nose_radius)}"
 
 
@@ -86,7 +89,10 @@ _MM_PER_INCH = 25.4
 
 @dataclass(frozen=True, slots=True)
 class SheetTool:
-    """One station; ``assumed``: nobody has described its shape whole. Without ``offset`` it was never set."""
+    """Tool of the setup sheet.
+
+    ``assumed`` means an incomplete shape, and ``offset`` is None if not measured.
+    """
 
     number: int
     shape: ToolShape | None
@@ -97,11 +103,11 @@ class SheetTool:
 
 @dataclass(frozen=True, slots=True)
 class SetupSheet:
-    """What has to be on the machine before a program is started; mm, seconds."""
+    """Setup data for starting a program, in mm and seconds."""
 
     metric: bool
     cycle: float
-    found: tuple[Diagnostic, ...]  # of the proof, each with the weight that it has at a machine
+    found: tuple[Diagnostic, ...]  # findings of the proof, with their severity at the machine
     stock: Stock | None
     part: Piece | None
     milled: bool
@@ -111,21 +117,21 @@ class SetupSheet:
     zero: tuple[tuple[int, ZeroOffset], ...]
     stops: tuple[Stop, ...]
     mill: MillSetup | None = None
-    omniturn: bool = True  # the program is one of OmniTurn: it writes M00 where others write M0
+    omniturn: bool = True  # an OmniTurn program, which uses M00 instead of M0
 
     @property
     def errors(self) -> int:
-        """How many keep the program from running."""
+        """Number of errors, which prevent a run."""
         return sum(each.severity is Severity.ERROR for each in self.found)
 
     @property
     def warnings(self) -> int:
-        """How many are only to be looked at."""
+        """Number of warnings."""
         return sum(each.severity is Severity.WARNING for each in self.found)
 
     @property
     def verdict(self) -> str:
-        """What the proof has found, as it counts at the machine; empty: nothing that matters."""
+        """Summary of errors and warnings as text, or an empty string without them."""
         if self.errors == 1:
             return tr("1 ERROR: this program will not run as it is")
         if self.errors:
@@ -137,14 +143,14 @@ class SetupSheet:
         return ""
 
     def length(self, mm: float) -> str:
-        """A length with its unit, as the program counts."""
+        """Return a length with its unit, in the unit of the program."""
         return (
             Message("{unit} mm", unit=f"{mm:.3f}") if self.metric else f"{mm / _MM_PER_INCH:.4f} {tr('in')}"
         )
 
     @property
     def stock_words(self) -> str:
-        """What the part is made of."""
+        """Stock as text."""
         if self.mill is not None:
             return self.mill.stock_words(self.length)
         stock = self.stock
@@ -159,7 +165,7 @@ class SetupSheet:
 
     @property
     def held_words(self) -> tuple[tuple[str, str], ...]:
-        """Stick-out and chuck or collet, each with its name; of a mill the preset."""
+        """Stick-out and clamping as pairs of name and text; on a mill, the preset."""
         if self.mill is not None:
             return ((tr("PRESET"), self.mill.preset_words(self.length)),)
         held = self.clamping
@@ -178,7 +184,7 @@ class SetupSheet:
         return tuple(rows)
 
     def shape_words(self, tool: SheetTool) -> str:
-        """What the tool is."""
+        """Return the shape of a tool as text."""
         if self.mill is not None:
             return self.mill.tool_words(tool.number)
         shape = tool.shape
@@ -201,7 +207,7 @@ class SetupSheet:
         yield f"{tr('TIP')} {shape.tip}" if shape.tip else ""
 
     def offset_words(self, tool: SheetTool) -> str:
-        """Its offset: X a radius; of a mill length and radius."""
+        """Return the offset of a tool as text: X as a radius and Z, or on a mill length and radius."""
         if tool.offset is None:
             return tr("NOT SET")
         if self.mill is not None:
@@ -210,14 +216,17 @@ class SetupSheet:
         return tr(Message("X (radius) {x}   Z {z}   R {radius}", x=x, z=z, radius=r))
 
     def stop_word(self, stop: Stop) -> str:
-        """The stop as the program's language writes it."""
+        """Return the stop code in the notation of the program's language."""
         return f"M{'0' if self.omniturn else ''}{int(stop.optional)}"
 
 
 def setup_sheet(
     program: ReadProgram, setup: Setup, machine: Machine, setting: PartSetting, watch: Progress | None = None
 ) -> SetupSheet:
-    """Prove the program once more and put together what its setup asks for. ``watch`` may raise."""
+    """Prove the program and return its setup sheet.
+
+    ``watch`` is called during the proof and may raise an exception to cancel.
+    """
     record = RunRecord(setting)
     report, part = prove_with_part(program, setup, machine, setting, watch, seen=record.see)
     shapes = part.shapes if part is not None else {}
@@ -249,13 +258,13 @@ def setup_sheet(
 
 
 def kind_word(kind: ToolKind) -> str:
-    """What the screen calls a kind of tools."""
+    """Return the display text of a tool kind."""
     words = kind.upper().replace("-", " ")
     return tr("FORM TOOL") if kind is ToolKind.FORM else tr(words)
 
 
 def outside_words(sheet: SetupSheet) -> str:
-    """Size of the finished part; empty where nothing is turned."""
+    """Return the size of the finished part as text, or an empty string if nothing is turned."""
     if sheet.part is None or not sheet.part.outside:
         return ""
     outside = sheet.part.outside

@@ -1,4 +1,4 @@
-"""The setup sheet of the program on the desk, on F10: its rows, notes, and where it is written to."""
+"""Setup sheet of the loaded program on F10: rows, notes, and saving as a file."""
 
 from __future__ import annotations
 
@@ -29,12 +29,12 @@ if TYPE_CHECKING:
 
 NO_PROGRAM = "CHOOSE A PROGRAM FIRST: EACH PROGRAM HAS ITS OWN SETUP SHEET"
 MOST_NOTES, LONGEST = 30, 200
-_PAPER = "paper"  # the setting
+_PAPER = "paper"  # name of the setting
 _WIDTHS = (0.15, 0.63, 0.22)
 
 
 class SetupSheetFunction(SpecialFunction):
-    """Rows of the sheet, then the notes; F6 shows the places that it can be written to."""
+    """Special function for the setup sheet and its notes. F6 lists the places for saving."""
 
     name = "SETUP SHEET"
     use = "tools, stock, stops, notes; printable"
@@ -53,24 +53,24 @@ class SetupSheetFunction(SpecialFunction):
         self.folder, self.plugged = folder, plugged
         self.made: MadeSheet | None = None
         self.trouble = ""
-        self.entry: Entry | None = None  # a note is typed
-        self.places: tuple[Place, ...] = ()  # to be chosen from
+        self.entry: Entry | None = None  # a note is being typed
+        self.places: tuple[Place, ...] = ()  # places to choose from
         self.busy = ""
-        self._asked: Job | None = None  # the job whose sheet is being made
-        self._changing: int | None = None  # the note that is typed anew; None: one more
+        self._asked: Job | None = None  # job whose sheet is being prepared
+        self._changing: int | None = None  # index of the note being changed; None for a new note
         self._notes_of: tuple[str, list[str]] = ("", [])
-        self._paper: Paper | None = None  # None: not read yet
+        self._paper: Paper | None = None  # None: not loaded yet
 
-    # --- what is shown -------------------------------------------------------------------------------
+    # --- display -------------------------------------------------------------------------------------
 
     @property
     def program(self) -> str:
-        """Its name; empty where none is on the desk."""
+        """Name of the loaded program, or an empty string."""
         return self.desk.session.now.name
 
     @property
     def notes(self) -> list[str]:
-        """What was noted about the program."""
+        """Notes about the program."""
         program = self.program
         if self._notes_of[0] != program:
             self._notes_of = program, _texts(self._kept(notes_key(program))) if program else []
@@ -80,11 +80,11 @@ class SetupSheetFunction(SpecialFunction):
         try:
             return self.persistence.read_setting(key)
         except StoreError:
-            return None  # the desk says by itself that nothing is kept
+            return None  # TurnDesk itself reports that nothing is stored.
 
     @property
     def paper(self) -> Paper:
-        """Of the PDF: as it was chosen last, else as the program's unit has it."""
+        """Paper size of the PDF: the stored choice, or else the default for the program's unit."""
         if self._paper is None:
             kept = self._kept(_PAPER)
             usual = Paper.A4 if self.desk.snapshot().modal.metric else Paper.LETTER
@@ -93,11 +93,11 @@ class SetupSheetFunction(SpecialFunction):
 
     @property
     def count(self) -> int:
-        """How many rows can be marked."""
+        """Number of rows that can be selected."""
         return len(self.places) if self.places else len(list(self._rows()))
 
     def sheet(self, _snapshot: Snapshot) -> Sheet:
-        """The sheet, or the places that it can be written to."""
+        """Return the table of the sheet or of the places for saving."""
         self._make_when_changed()
         if self.places:
             return self._sheet_of_places()
@@ -137,7 +137,7 @@ class SetupSheetFunction(SpecialFunction):
             yield Row((f"{tr('NOTE')} {number}", text, ""))
 
     def _remarks(self) -> dict[int, str]:
-        if self.machine.kind == "mill":  # its tools have names, and stand with them
+        if self.machine.kind == "mill":  # Mill tools have names, which are shown with the tools.
             return {}
         return {number: row.remark for number, row in self.desk.book.tools.items() if row.remark}
 
@@ -159,7 +159,7 @@ class SetupSheetFunction(SpecialFunction):
     # --- keys ----------------------------------------------------------------------------------------
 
     def keys(self) -> Mapping[str, Key]:
-        """A note, its end, the paper, and where to."""
+        """Return the function keys for notes, paper size and saving."""
         if self.places:
             return {"F4": Key("LOOK", self.look)}
         return {
@@ -170,7 +170,7 @@ class SetupSheetFunction(SpecialFunction):
         }
 
     def typed(self, key: str) -> bool:
-        """The note that is typed, or the mark."""
+        """Handle a key of the note entry, or move the selection."""
         if self.entry is None:
             return super().typed(key)
         if key == "Enter":
@@ -184,21 +184,21 @@ class SetupSheetFunction(SpecialFunction):
         return self.entry.type(key)
 
     def takes(self, key: str) -> bool:
-        """Whether a character is text of a note."""
+        """Return whether a character is text of a note."""
         return self.entry is not None and self.entry.takes(key)
 
     def escape(self) -> bool:
-        """Leave the note as it was, or the list of places."""
+        """Cancel the note entry or the list of places."""
         open_ = self.entry is not None or bool(self.places)
         self.entry, self.places = None, ()
         return open_
 
     def left(self) -> None:
-        """Nothing stays half typed."""
+        """Cancel the note entry when the function closes."""
         self.entry, self.places = None, ()
 
     def act(self) -> bool:
-        """Return on a note changes it; on a place writes there."""
+        """Change the selected note, or save to the selected place."""
         if self.places:
             self._write(self.places[min(self.marked, len(self.places) - 1)])
         elif (at := self._note_marked) is not None:
@@ -209,12 +209,12 @@ class SetupSheetFunction(SpecialFunction):
 
     @property
     def _note_marked(self) -> int | None:
-        """Which of the notes is marked."""
+        """Index of the selected note, or None."""
         at = self.marked - (self.count - len(self.notes))
         return at if 0 <= at < len(self.notes) else None
 
     def note(self) -> None:
-        """One more note is typed."""
+        """Start the entry of a new note."""
         self.desk.clear()
         if not self.program:
             self.desk.say(NO_PROGRAM)
@@ -226,7 +226,7 @@ class SetupSheetFunction(SpecialFunction):
             self._changing, self.entry = None, Entry(words=True)
 
     def forget(self) -> None:
-        """The marked note goes, after asking."""
+        """Delete the selected note after confirmation."""
         at = self._note_marked
         if at is None:
             self.desk.say("SELECT A NOTE FIRST")
@@ -254,7 +254,7 @@ class SetupSheetFunction(SpecialFunction):
         def save() -> None:
             told = _changed(
                 self.notes, notes
-            )  # before they are kept: whoever reads them behind that sees these
+            )  # compared before saving, because later readers see the new notes
             self.persistence.save_setting(notes_key(program), notes or None)
             self.persistence.note_change(
                 Message("notes for {program}: {details}", program=program, details=told)
@@ -266,7 +266,7 @@ class SetupSheetFunction(SpecialFunction):
             self.desk.keep(save)
 
     def next_paper(self) -> None:
-        """A4 or Letter."""
+        """Switch the paper size between A4 and Letter."""
         if self.desk.refused(Act.SCREEN):
             return
         before, other = self.paper, Paper.LETTER if self.paper is Paper.A4 else Paper.A4
@@ -281,21 +281,21 @@ class SetupSheetFunction(SpecialFunction):
         self.desk.keep(save)
 
     def prompt(self) -> str:
-        """What the keys do."""
+        """Return the prompt for the present keys."""
         if self.entry is not None:
             return "TYPE THE NOTE   ENTER: SAVE   ESC: EXIT WITHOUT SAVING"
         if self.places:
             return "ENTER: SAVE SHEET HERE   F4: RESCAN FOR USB STICKS"
         return "F2: ADD A NOTE   F6: SAVE SHEET AS PDF AND HTML   ESC: BACK"
 
-    # --- making it, on the worker --------------------------------------------------------------------
+    # --- preparation on the worker -------------------------------------------------------------------
 
     def opened(self) -> None:
-        """As it is now."""
+        """Reload notes and paper size when the function opens."""
         self._notes_of, self._paper = ("", []), None
 
     def _make_when_changed(self) -> None:
-        """A sheet is of one job: another text or other offsets make another."""
+        """Prepare the sheet when the job has changed."""
         loaded = self.desk.session.now
         job, picture = loaded.job, loaded.picture
         if job is None or picture is None or job is self._asked:
@@ -312,10 +312,10 @@ class SetupSheetFunction(SpecialFunction):
     def _failed(self, why: str) -> None:
         self.trouble = why
 
-    # --- writing it ----------------------------------------------------------------------------------
+    # --- saving --------------------------------------------------------------------------------------
 
     def look(self) -> None:
-        """Look what is plugged in; the answer comes with a later frame."""
+        """List the places for saving. The result arrives in a later frame."""
         self.desk.clear()
         if self.made is None or not self.program:
             self.desk.say(
@@ -353,12 +353,12 @@ class SetupSheetFunction(SpecialFunction):
 
 
 def _texts(kept: object) -> list[str]:
-    """The notes that were kept; anything else is none."""
+    """Return the stored notes, ignoring values of other types."""
     return [each for each in kept if isinstance(each, str)] if isinstance(kept, list) else []
 
 
 def _changed(before: Sequence[str], now: Sequence[str]) -> str:
-    """Which notes went and which came, for the log."""
+    """Return the removed and added notes as text for the log."""
     gone = [Message("'{item}' removed", item=each) for each in before if each not in now]
     return ", ".join((*gone, *(f"'{each}'" for each in now if each not in before))) or (
         "order of the notes changed"
@@ -366,5 +366,5 @@ def _changed(before: Sequence[str], now: Sequence[str]) -> str:
 
 
 def _places(folder: Path, plugged: Sequence[Stick]) -> tuple[Place, ...]:
-    """The media, and the control's own folder."""
+    """Return the media and the control's folder."""
     return (*(Place(stick.label, stick.path) for stick in plugged), Place(tr("THIS CONTROL"), folder))

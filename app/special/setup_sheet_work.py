@@ -1,4 +1,4 @@
-"""What a setup sheet takes time for: its proof, its rows, its page, its files; loaded when it is needed."""
+"""Slow work of the setup sheet: proof, rows, page and files; imported only when needed."""
 
 from __future__ import annotations
 
@@ -38,7 +38,10 @@ from core.proving.program_tools import PartSetting
 def setup_sheet_html(
     sheet: SetupSheet, facts: Sequence[tuple[str, str]], remarks: Mapping[int, str], notes: Sequence[str]
 ) -> str:
-    """The body of the page; ``facts`` stand first, ``remarks`` are those of the tools, by number."""
+    """Return the body of the HTML page.
+
+    ``facts`` are the first rows, and ``remarks`` are the remarks about tools by number.
+    """
     rows = [
         *facts,
         (tr("TIME PER PART"), clock(sheet.cycle)),
@@ -116,7 +119,7 @@ def _stops(sheet: SetupSheet) -> str:
 
 @dataclass(frozen=True, slots=True)
 class MadeSheet:
-    """The sheet of one job, and the outlines of its tools by number."""
+    """Setup sheet of one job, with the outlines of its tools by number."""
 
     job: Job
     sheet: SetupSheet
@@ -124,7 +127,7 @@ class MadeSheet:
 
 
 def rows_of(made: MadeSheet, remarks: Mapping[int, str]) -> Iterator[Row]:
-    """Time, stock, what holds it, tools, offsets, stops."""
+    """Yield the rows of the sheet: time, stock, clamping, tools, offsets and stops."""
     sheet = made.sheet
     if sheet.verdict:
         yield Row((tr("ERRORS") if sheet.errors else tr("WARNINGS"), sheet.verdict, ""))
@@ -151,7 +154,7 @@ def rows_of(made: MadeSheet, remarks: Mapping[int, str]) -> Iterator[Row]:
 
 
 def made_of(job: Job, machine: Machine, setting: PartSetting | None, watch: Request) -> MadeSheet:
-    """Put it together; on a worker."""
+    """Prepare the sheet of a job; runs on a worker."""
     sheet = setup_sheet(job.reading, job.setup, machine, setting or PartSetting(), watch)
     return MadeSheet(job, sheet, {tool.number: _outline(tool.shape) for tool in sheet.tools})
 
@@ -166,7 +169,7 @@ def _outline(shape: ToolShape | None) -> ToolOutline | None:
 def page_of(
     made: MadeSheet, program: str, machine: Machine, remarks: Mapping[int, str], notes: Sequence[str]
 ) -> tuple[str, str, str]:
-    """Title, date and body of the page."""
+    """Return title, date and body of the page."""
     facts = [(tr("MACHINE"), machine.name), (tr("PROGRAM CHECKSUM (SHA-256)"), text_hash(made.job.source))]
     body = setup_sheet_html(made.sheet, facts, remarks, notes)
     title = tr(Message("Setup sheet: {program}", program=program))
@@ -174,7 +177,10 @@ def page_of(
 
 
 def write(page: tuple[str, str, str], program: str, folder: Path, paper: Paper) -> str:
-    """On the worker: PDF and HTML, each old or new at every moment. Raises FileError."""
+    """Write the sheet as PDF and HTML on the worker, and return the PDF's name.
+
+    Each file is replaced atomically. Raises FileError.
+    """
     title, made, body = page
     name = f"{program}-setup"
     try:

@@ -1,4 +1,4 @@
-"""The special functions of F10: what each is to the page, their list, and the one that is open."""
+"""Special functions of F10: their interface to the page, their list, and the function that is open."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from core.message import Message
 
 
 class SpecialFunction(ABC):
-    """One special function. Nothing here waits; what cannot be done is said by ``desk.say``."""
+    """Special function of F10. No method waits, and ``desk.say`` reports rejected actions."""
 
     name: ClassVar[str]
     use: ClassVar[str]
-    page: ClassVar[str] = ""  # that comes up instead when it is opened
+    page: ClassVar[str] = ""  # page that opens instead of this function
 
     def __init__(self, desk: Desk) -> None:
         self.desk = desk
@@ -29,46 +29,49 @@ class SpecialFunction(ABC):
 
     @abstractmethod
     def sheet(self, snapshot: Snapshot) -> Sheet:
-        """The table of this instant."""
+        """Return the table for a snapshot."""
 
     def keys(self) -> Mapping[str, Key]:
-        """Its function keys, F2…F10 but for F7."""
+        """Return the function's keys, F2 to F10 without F7."""
         return {}
 
     def typed(self, key: str) -> bool:
-        """A typed key; False leaves it to the window."""
+        """Handle a key. Return False to leave it to the window."""
         return (key == "Enter" and self.act()) or self.moves(key)
 
     def act(self) -> bool:
-        """Return on the marked row; False where it does nothing."""
+        """Execute the selected row. Return False if the row has no action."""
         return False
 
     def takes(self, _key: str) -> bool:
-        """Whether a character is text now."""
+        """Return whether a character is text now."""
         return False
 
     def prompt(self) -> str:
-        """What stands on the prompt line."""
+        """Return the text of the prompt line."""
         return "ESC: BACK TO THE LIST"
 
     def escape(self) -> bool:
-        """Close what is open in it; False when nothing was."""
+        """Close the innermost open part. Return False if nothing was open."""
         return False
 
     def opened(self) -> None:
-        """The function comes up."""
+        """Prepare the function for display."""
 
     def left(self) -> None:
-        """It goes: nothing stays half entered or half asked."""
+        """Cancel entries and questions when the function closes."""
 
     def listen(self, *, seen: bool) -> None:
-        """Once a frame, where the page asks: what has come by a wire; ``seen``: it is the one shown."""
+        """Process input from a wire, called once per frame.
+
+        ``seen`` is set while the function is displayed.
+        """
 
     def close(self) -> None:
-        """The desk shuts: what is under way ends."""
+        """Finish pending work when TurnDesk closes."""
 
     def choose(self, row: int) -> None:
-        """A finger marks a row; on the marked one it is Return."""
+        """Select the touched row. A touch on the selected row executes it."""
         if row != self.marked:
             self.desk.clear()
             self.marked = row
@@ -77,11 +80,11 @@ class SpecialFunction(ABC):
 
     @property
     def count(self) -> int:
-        """How many rows can be marked."""
+        """Number of rows that can be selected."""
         return 0
 
     def moves(self, key: str) -> bool:
-        """Take the keys that move the mark."""
+        """Move the selection by a key, and return whether the key does so."""
         if key not in STEPS or not self.count:
             return False
         self.desk.clear()
@@ -90,21 +93,24 @@ class SpecialFunction(ABC):
 
 
 class PageFunction(SpecialFunction):
-    """What has a page of its own: a few facts of it, and Return or a finger that opens it."""
+    """Special function with a separate page: shows a few facts, and opens the page with Enter or a touch."""
 
-    way: ClassVar[str]  # how the page is opened besides
+    way: ClassVar[str]  # description of other keys that open the page
 
     @abstractmethod
     def facts(self) -> tuple[Row, ...]:
-        """What is told of it in the list."""
+        """Return the rows of facts in the list."""
 
     def sheet(self, _snapshot: Snapshot) -> Sheet:
-        """The facts of this instant."""
+        """Return the table of facts."""
         return Sheet(tr(self.name), ("", ""), (0.4, 0.6), self.facts(), notes=(self.way,))
 
 
 class FigureFunction(SpecialFunction):
-    """Figures are typed into ``entry``, which takes arithmetic; Return hands it to ``enter``."""
+    """Special function with a numeric entry that accepts arithmetic.
+
+    Enter passes the text to ``take``.
+    """
 
     def __init__(self, desk: Desk) -> None:
         super().__init__(desk)
@@ -112,10 +118,13 @@ class FigureFunction(SpecialFunction):
 
     @abstractmethod
     def take(self, text: str) -> bool:
-        """Whether what was typed is taken. Raises EntryError where it is no good figure."""
+        """Accept the typed text.
+
+        Return False if it was rejected with a message. Raises EntryError.
+        """
 
     def enter(self) -> None:
-        """Take what was typed, or say why it is refused."""
+        """Accept the typed text, or show the reason for its rejection."""
         try:
             if self.take(self.entry.text):
                 self.entry.text = ""
@@ -124,11 +133,11 @@ class FigureFunction(SpecialFunction):
             self.desk.refuse(str(error))
 
     def takes(self, key: str) -> bool:
-        """Whether a character is a figure or a sign."""
+        """Return whether a character is a digit or an operator."""
         return self.entry.takes(key)
 
     def typed(self, key: str) -> bool:
-        """Figures are typed, Return takes them."""
+        """Handle a key of the entry."""
         if key == "Enter":
             self.enter()
             return True
@@ -138,32 +147,35 @@ class FigureFunction(SpecialFunction):
         return False
 
     def escape(self) -> bool:
-        """Take an entry back that was begun; False when there was none."""
+        """Clear the entry. Return False if it was empty."""
         begun, self.entry.text = bool(self.entry.text), ""
         return begun
 
     def left(self) -> None:
-        """The function goes: nothing stays typed."""
+        """Clear the entry when the function closes."""
         self.entry.text = ""
 
 
 @dataclass(slots=True)
 class SpecialFunctions:
-    """``at`` is the function that is shown; while ``inside`` the keys are its own, else the list's."""
+    """List of special functions.
+
+    ``at`` is the displayed one, which has the keys while ``inside`` is set.
+    """
 
     functions: Sequence[SpecialFunction]
     worker: Latest
     at: int = 0
     inside: bool = False
-    number: str = ""  # as typed in the list so far
+    number: str = ""  # digits typed in the list so far
 
     @property
     def current(self) -> SpecialFunction:
-        """The function that is shown."""
+        """Displayed function."""
         return self.functions[self.at]
 
     def show(self, number: int) -> None:
-        """Another function, seen from the list."""
+        """Display a function from the list."""
         self.number = ""
         number = max(0, min(len(self.functions) - 1, number))
         if number != self.at or self.inside:
@@ -173,12 +185,12 @@ class SpecialFunctions:
             self.current.opened()
 
     def enter(self, number: int) -> None:
-        """Open a function: the keys are its own now."""
+        """Open a function, which then receives the keys."""
         self.show(number)
         self.inside = True
 
     def typed(self, key: str) -> bool:
-        """Mark a function by arrows or by its number, and open it by Return; in a function its own keys."""
+        """Handle a key: select a function by arrows or number, open it with Enter, or pass the key to it."""
         if self.inside:
             return self.current.typed(key)
         if key in {"Up", "Down"}:
@@ -192,7 +204,7 @@ class SpecialFunctions:
         return True
 
     def _type_number(self, digit: str) -> None:
-        """Mark the function of the number typed so far; a digit that names none after it begins another."""
+        """Select the function of the typed number. A digit that does not fit starts a new number."""
         numbers = range(1, len(self.functions) + 1)
         typed = next((each for each in (self.number + digit, digit) if int(each) in numbers), "")
         if not typed:
@@ -203,11 +215,11 @@ class SpecialFunctions:
         self.number = typed
 
     def takes(self, key: str) -> bool:
-        """Whether a character is text now."""
+        """Return whether a character is text now."""
         return self.current.takes(key) if self.inside else key.isascii() and key.isdigit()
 
     def escape(self) -> bool:
-        """One step back; False from the list."""
+        """Go back one step. Return False from the list."""
         shown = self.current
         if not self.inside:
             return False
@@ -218,27 +230,27 @@ class SpecialFunctions:
         return True
 
     def prompt(self) -> str:
-        """Of the function, or how to choose one."""
+        """Return the prompt of the function or of the list."""
         if self.inside:
             return self.current.prompt()
         return "TAP A FUNCTION OR TYPE ITS NUMBER   ENTER: OPEN   ESC: BACK"
 
     def opened(self) -> None:
-        """The page comes up with the list."""
+        """Show the list when the page opens."""
         self.inside, self.number = False, ""
         self.current.opened()
 
     def leave(self) -> None:
-        """The page goes: nothing stays open."""
+        """Close the function when the page closes."""
         self.current.left()
         self.inside = False
 
     def look(self) -> None:
-        """Once a frame: what the worker has found."""
+        """Process the results of the worker; called once per frame."""
         self.worker.poll()
 
     def close(self) -> None:
-        """End the worker, and what a function has under way."""
+        """Finish pending work of all functions and stop the worker."""
         for function in self.functions:
             function.close()
         self.worker.close()

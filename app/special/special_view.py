@@ -1,4 +1,4 @@
-"""F10, the special functions: the list at the left, the one that is chosen at the right."""
+"""Page of the special functions (F10): list on the left, displayed function on the right."""
 
 from __future__ import annotations
 
@@ -22,21 +22,21 @@ from app.screen.window_layout import FINGER
 from app.special.special_functions import SpecialFunctions
 from core.executor.snapshot import Snapshot
 
-# --- the list of functions ---------------------------------------------------------------------------------
+# --- list of functions -------------------------------------------------------------------------------------
 
 
-ROW, GAP = 7.0, 0.4  # units: a row of the list with what is left free below it
+ROW, GAP = 7.0, 0.4  # units: height of a row and the gap below it
 
 
 class ItemList(RowPanel):
-    """The one that is shown is filled; it has a bar while the keys are its own. It stays in sight.
+    """List of functions. The displayed function is highlighted and has a wide bar while it has the keys.
 
-    Rows are never lower than a fingertip: where not all fit, two keys at the foot and the wheel scroll.
+    Rows are at least a fingertip high. If not all rows fit, the list scrolls with two keys and the wheel.
     """
 
     title = "SPECIAL FUNCTIONS"
     notch = 1
-    mark: Shown[object] = Shown(None)  # where it stands: redrawn when it has moved
+    mark: Shown[object] = Shown(None)  # present position; a change redraws the list
 
     def __init__(
         self, look: Look, model: SpecialFunctions, enter: Callable[[int], None], parent: QWidget
@@ -46,7 +46,7 @@ class ItemList(RowPanel):
 
     @property
     def _high(self) -> float:
-        """Of a row, pixels: what is touched of it is a fingertip high."""
+        """Height of a row in pixels, at least that of a fingertip with the gap."""
         return max(ROW * self.look.u, FINGER + GAP * self.look.u)
 
     def draw(self, painter: Painter) -> None:
@@ -73,12 +73,12 @@ class ItemList(RowPanel):
         painter.write(below, use, 1.6, "text" if here else "soft", bold=False)
 
 
-LIST, PAD = 34.0, 28.4  # units: widths
-LETTERS = 24.0  # units: height
+LIST, PAD = 34.0, 28.4  # units: widths of the list and the number pad
+LETTERS = 24.0  # units: height of the letter pad
 
 
 class SpecialPage(ListPage):
-    """The models decide; this shows them and hands the keys on."""
+    """Page of the special functions: shows the models and passes the keys to them."""
 
     NAME = page_table.SPECIAL
     model: SpecialFunctions
@@ -95,7 +95,7 @@ class SpecialPage(ListPage):
         self._page_instead()
 
     def typed(self, key: str) -> bool:
-        """As every list; a function that has a page of its own opens that."""
+        """Handle a key as in every list. A function with a separate page opens that page."""
         taken = super().typed(key)
         if taken:
             self._page_instead()
@@ -113,25 +113,25 @@ class SpecialPage(ListPage):
         self._page_instead()
 
     def touched(self, key: str) -> None:
-        """A finger on a key is for the function that is shown."""
+        """Pass a touched key to the displayed function."""
         self.model.inside = True
         super().touched(key)
 
     def page_keys(self) -> Mapping[str, Key]:
-        """Return those of the function that is shown."""
+        """Return the function keys of the displayed function."""
         return self.model.current.keys()
 
     def labels(self) -> tuple[str, ...]:
-        """Those of the function that is shown, beside the page's own."""
+        """Return the labels of the displayed function and of the page."""
         return self.labels_of({}, self.page_keys())
 
     def key_actions(self) -> KeyActions:
-        """The keys of the function that is shown; pressing one goes into it."""
+        """Return the key actions of the displayed function. Pressing one opens the function."""
         keys = self.model.current.keys()
         return {name: partial(self._do, name) for name in keys}
 
     def has_field(self) -> bool:
-        """The question of a function that is open."""
+        """Return whether an open function has an entry."""
         return self.model.inside and self.model.current.takes("1")
 
     def _do(self, name: str) -> None:
@@ -139,7 +139,7 @@ class SpecialPage(ListPage):
         self.model.current.keys()[name].action()
 
     def refresh(self, snapshot: Snapshot, _view: MachineStatus, _loaded: Loaded) -> None:
-        """The table of this snapshot."""
+        """Show the table for a snapshot."""
         self.model.look()
         shown = self.model.current
         sheet = shown.sheet(snapshot)
@@ -153,7 +153,7 @@ class SpecialPage(ListPage):
             self._lay_out()
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """List, table and pad side by side."""
+        """Arrange list, table and pads."""
         self._lay_out()
 
     def _lay_out(self) -> None:

@@ -1,1 +1,1 @@
-"""RS-232: programs sent and received over the serial line."""
+"""RS-232: sending and receiving programs over the serial line."""

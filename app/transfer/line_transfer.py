@@ -1,4 +1,4 @@
-"""What a transfer over the serial line is to the desk; who carries it out is told from outside."""
+"""Interfaces of a serial transfer. The implementation is provided from outside."""
 
 from __future__ import annotations
 
@@ -16,9 +16,10 @@ T_co = TypeVar("T_co", covariant=True)
 
 
 class TransferProgress(Protocol):
-    """How far it has come. ``total`` 0: nobody knows; ``what`` it waits for: held, dc1, sender, frame, noise.
+    """Progress of a transfer. ``total`` is 0 while unknown.
 
-    ``heard``: what came in its place while a program's first % is waited for.
+    ``what`` names the reason for waiting: held, dc1, sender, frame, noise or empty. ``heard`` is the data
+    received while the first % of a program is expected.
     """
 
     @property
@@ -39,10 +40,11 @@ class TransferProgress(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Received:
-    """A whole program that has come in and was looked at; it is not stored yet.
+    """Complete received program that was proved but not stored yet.
 
-    ``name``: the file name under which it was proved: as it calls itself, with an ending. ``digest``: SHA-256
-    of ``text``. ``seven``: it came in seven bits although eight are set. ``findings``: errors of the proof.
+    ``name`` is the file name from the program, with an extension. ``digest`` is the SHA-256 of ``text``.
+    ``seven`` means that it arrived with 7 data bits although 8 are set. ``findings`` are the errors of the
+    proof.
     """
 
     text: bytes
@@ -56,43 +58,47 @@ class Received:
 
 
 class Transfer(Protocol[T_co]):
-    """One transfer. ``run`` takes its time and is called on a worker; all else by anybody."""
+    """Transfer over the serial line.
+
+    ``run`` blocks and is called on a worker. All other members are callable from any thread.
+    """
 
     @property
     def reach(self) -> TransferProgress: ...
 
     def cancel(self) -> None:
-        """Give it up: ``run`` ends with a sentence, and nothing is kept."""
+        """Cancel the transfer. ``run`` then raises an error, and nothing is stored."""
         ...
 
     def run(self) -> T_co:
-        """Carry it out. Raises DriverError or FileError with a sentence."""
+        """Execute the transfer. Raises DriverError or FileError with a message for the operator."""
         ...
 
 
 class SerialPorts(Protocol):
-    """The serial ports, and transfers over them."""
+    """Serial ports and transfers over them."""
 
     def ports(self) -> Sequence[tuple[str, str]]:
-        """Device and what it is. Raises DriverError."""
+        """Return device and description of each port. Raises DriverError."""
         ...
 
     def send(self, settings: DncModel, path: Path) -> Transfer[int]:
-        """A program out; ``run`` answers how many bytes went."""
+        """Return a transfer that sends a program. Its ``run`` returns the number of bytes."""
         ...
 
     def receive(self, settings: DncModel) -> Transfer[Received]:
-        """A program in; ``run`` answers what came."""
+        """Return a transfer that receives a program. Its ``run`` returns the program."""
         ...
 
 
-# --- a received program becomes a new file; nothing that is there is ever touched ------------------------
+# --- Storing a received program; existing files are never changed. ---------------------------------------
 
 
 def store_new(received: Received, folder: Path, name: str) -> Path:
-    """The new file; ``name`` gets the ending of what was proved where it has none.
+    """Store a received program as a new file and return its path.
 
-    Raises FileError: the name is none, or is taken, or the disk does not take it.
+    ``name`` gets the extension of the received program if it has none. Raises FileError if the name is
+    invalid or exists, or if the disk rejects the file.
     """
     name = checked_name(name, Path(received.name))
     if other := same_name_in(folder, name):
@@ -102,7 +108,7 @@ def store_new(received: Received, folder: Path, name: str) -> Path:
 
 
 def free_name(folder: Path, name: str) -> str:
-    """``name``, or the first of ``name-2``, ``name-3`` … that is not taken."""
+    """Return ``name``, or the first unused name of ``name-2``, ``name-3`` and so on."""
     base = Path(name)
     tried, number = name, 1
     while same_name_in(folder, tried):

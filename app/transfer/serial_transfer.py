@@ -1,4 +1,7 @@
-"""F10, RS-232: settings, a program out, a program in; what comes in is stored as a new one, never started."""
+"""Special function RS-232: settings, sending and receiving.
+
+A received program is stored but never started.
+"""
 
 from __future__ import annotations
 
@@ -78,12 +81,12 @@ ROWS: tuple[SettingRow, ...] = (
 
 
 def stored_form(model: DncModel) -> dict[str, object]:
-    """The settings as the store keeps them."""
+    """Return the settings in the form for the store."""
     return asdict(model)
 
 
 def settings_of(kept: object, default: DncModel) -> DncModel:
-    """What was kept, as far as it is still good; else the machine file's."""
+    """Return the valid stored settings, or the settings of the machine file."""
     if not isinstance(kept, dict):
         return default
     good = {
@@ -96,15 +99,15 @@ def settings_of(kept: object, default: DncModel) -> DncModel:
     return model if known and model.parity in {"N", "E", "O"} and model.stop in {1, 2} else default
 
 
-# --- what it shows -----------------------------------------------------------------------------------------
+# --- tables ------------------------------------------------------------------------------------------------
 
 
 TITLE = "RS-232"
-SHOWN = 6  # findings
+SHOWN = 6  # maximum number of displayed findings
 
 
 def settings_sheet(settings: DncModel, marked: int, chosen: Path | None, last: str) -> Sheet:
-    """The line, and the program that would be sent."""
+    """Return the table of the line settings and of the program to send."""
     rows = tuple(Row((tr(name), value(settings))) for name, value, _ in ROWS)
     program = chosen.name if chosen is not None else "—"
     notes = (tr(Message("F4: send {program}", program=program)), last)
@@ -112,7 +115,7 @@ def settings_sheet(settings: DncModel, marked: int, chosen: Path | None, last: s
 
 
 def progress_sheet(reach: TransferProgress, settings: DncModel, sends: str) -> Sheet:
-    """How far a transfer has come."""
+    """Return the table with the progress of a transfer."""
     share = f"{reach.done / reach.total:.0%}" if reach.total else "—"
     rows = (
         Row((tr("SENDING") if sends else tr("RECEIVING"), sends or settings.port), True, Tone.RUN),
@@ -127,7 +130,7 @@ def progress_sheet(reach: TransferProgress, settings: DncModel, sends: str) -> S
 
 
 def _waits(what: str) -> str:
-    """What a transfer waits for, in words."""
+    """Return the text for a reason for waiting."""
     words = {
         "held": tr("STOPPED BY THE OTHER DEVICE (XOFF)"),
         "dc1": tr("WAITING FOR DC1 FROM THE OTHER DEVICE"),
@@ -139,7 +142,7 @@ def _waits(what: str) -> str:
 
 
 def received_sheet(received: Received, name: str) -> Sheet:
-    """What came, whether it is whole, and what proving found."""
+    """Return the table of a received program: completeness, proof and name."""
     code = tr("7 BITS, EVEN PARITY (DETECTED)") if received.seven else tr("SAME AS SETTINGS")
     errors = len(received.findings)
     some = tr("1 ERROR") if errors == 1 else tr(Message("{count} ERRORS", count=errors))
@@ -176,7 +179,7 @@ THROW_AWAY = "PRESS Y TO DISCARD THE RECEIVED PROGRAM, N TO KEEP IT"
 
 
 class SerialTransfer(SpecialFunction):
-    """Three faces: the settings, a transfer under way, and a program that waits for its name."""
+    """Special function RS-232 with three states: settings, transfer, and naming of a received program."""
 
     name = "RS-232"
     use = "send and receive programs over the serial port"
@@ -190,25 +193,25 @@ class SerialTransfer(SpecialFunction):
         self.settings = _stored_settings(persistence, default)
         self.ports: Sequence[str] = ()
         self.under_way: Transfer[int] | Transfer[Received] | None = None
-        self.sends = ""  # the name of the program that is being sent
+        self.sends = ""  # name of the program that is being sent
         self.received: Received | None = None
         self.entry = Entry(words=True)
-        self.last = ""  # what came of the last transfer
+        self.last = ""  # result of the last transfer
 
     @property
     def count(self) -> int:
-        """Settings, while nothing is under way."""
+        """Number of settings, or 0 during a transfer."""
         return 0 if self.under_way or self.received else len(ROWS)
 
     def opened(self) -> None:
-        """The function comes up: look for serial ports."""
+        """List the serial ports when the function opens."""
         self.worker.queue(lambda: [device for device, _ in self.lines.ports()], self._found, self.desk.refuse)
 
     def _found(self, ports: list[str]) -> None:
         self.ports = ports
 
     def sheet(self, _snapshot: Snapshot) -> Sheet:
-        """Settings, transfer under way, or a program that waits for its name."""
+        """Return the table of the present state."""
         self.worker.poll()
         if self.received is not None:
             return received_sheet(self.received, self.entry.text)
@@ -217,7 +220,7 @@ class SerialTransfer(SpecialFunction):
         return settings_sheet(self.settings, self.marked, self._chosen(), self.last)
 
     def keys(self) -> Mapping[str, Key]:
-        """The function keys of this moment."""
+        """Return the present function keys."""
         if self.received is not None:
             return {"F6": Key("DISCARD", self.discard)}
         if self.under_way is not None:
@@ -229,28 +232,28 @@ class SerialTransfer(SpecialFunction):
         }
 
     def takes(self, key: str) -> bool:
-        """Return whether a character belongs to the name of what was received."""
+        """Return whether a character is part of the name of the received program."""
         return self.received is not None and self.entry.takes(key)
 
     def typed(self, key: str) -> bool:
-        """Arrows mark a setting, Return steps it on; or the name of what has come."""
+        """Handle a key of the settings or of the name entry."""
         if self.received is not None:
             return self._named(key)
         return super().typed(key)
 
     def act(self) -> bool:
-        """Step the marked setting on, while nothing is under way."""
+        """Change the selected setting if no transfer is active."""
         if self.count:
             self._step()
         return bool(self.count)
 
     def choose(self, row: int) -> None:
-        """A finger marks a setting, while no transfer is under way."""
+        """Select the touched setting if no transfer is active."""
         if self.count:
             super().choose(row)
 
     def prompt(self) -> str:
-        """What the keys do, for the prompt line."""
+        """Return the prompt for the present keys."""
         if self.received is not None:
             return "ENTER: SAVE AS A NEW PROGRAM (DOES NOT START)   F6: DISCARD"
         if self.under_way is not None:
@@ -258,7 +261,7 @@ class SerialTransfer(SpecialFunction):
         return "ENTER: CHANGE VALUE   F4: SEND LOADED PROGRAM   F5: RECEIVE"
 
     def close(self) -> None:
-        """The desk shuts: nothing goes on."""
+        """Cancel the transfer and stop the worker when TurnDesk closes."""
         self.cancel()
         self.worker.close()
 
@@ -268,7 +271,7 @@ class SerialTransfer(SpecialFunction):
         return self.desk.session.now.path
 
     def send(self) -> None:
-        """F4: send the program on the desk."""
+        """Send the loaded program (F4)."""
         path = self._chosen()
         if path is None:
             self.desk.say("NO PROGRAM LOADED. F2: LOAD THE PROGRAM TO SEND")
@@ -279,7 +282,7 @@ class SerialTransfer(SpecialFunction):
             self.worker.queue(carrying.run, self._sent, self._failed)
 
     def receive(self) -> None:
-        """F5: receive a program."""
+        """Receive a program (F5)."""
         if self.desk.refused(Act.PROGRAMS):
             return
         if self._ready():
@@ -289,7 +292,7 @@ class SerialTransfer(SpecialFunction):
             self.worker.queue(carrying.run, self._came, self._failed)
 
     def cancel(self) -> None:
-        """Give it up; the worker says when it has ended."""
+        """Cancel the transfer. The worker reports the end."""
         if self.under_way is not None:
             self.under_way.cancel()
 
@@ -321,7 +324,7 @@ class SerialTransfer(SpecialFunction):
         self.last = text
         self.desk.done(text)
 
-    # --- the name of what has come -------------------------------------------------------------------
+    # --- name of the received program ----------------------------------------------------------------
 
     def _named(self, key: str) -> bool:
         if key == "Enter":
@@ -335,7 +338,7 @@ class SerialTransfer(SpecialFunction):
     def _store(self) -> None:
         assert self.received is not None
         if self.desk.refused(Act.PROGRAMS):
-            return  # what has come stays until somebody has signed in
+            return  # The received program remains until an authorized user has signed in.
         try:
             path = store_new(self.received, self.own, self.entry.text)
         except FileError as error:
@@ -346,7 +349,7 @@ class SerialTransfer(SpecialFunction):
         self._done(tr(Message("SAVED AS A NEW PROGRAM: {name}. NOTHING WAS STARTED", name=path.name)))
 
     def discard(self) -> None:
-        """Throw away what has come, after asking."""
+        """Discard the received program after confirmation."""
         self.desk.ask(THROW_AWAY, self._discarded)
 
     def _discarded(self) -> None:
@@ -375,4 +378,4 @@ def _stored_settings(persistence: Persistence, default: DncModel) -> DncModel:
     try:
         return settings_of(persistence.read_setting(SETTING), default)
     except StoreError:
-        return default  # the desk says by itself that nothing is kept
+        return default  # TurnDesk itself reports that nothing is stored.

@@ -1,1 +1,1 @@
-"""The 3-D view of a mill with rotary axes: table, blank, working plane and tool."""
+"""3D view of a mill with rotary axes: table, blank, working plane and tool."""

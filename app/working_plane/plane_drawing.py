@@ -1,7 +1,7 @@
-"""The machine at one instant as lines and faces in pixels: table, blank, path, working plane and tool.
+"""Drawing of the mill at one instant, as lines and faces in pixels.
 
-Everything on the table turns with it: what lies in the workpiece's system goes through the chain of axes at
-the angles of this instant. Faces come farthest first, so that painting them in order hides what is behind.
+Points in the workpiece system pass through the chain of axes at the angles of the instant. The faces are
+sorted with the farthest first, so that nearer faces cover them.
 """
 
 from __future__ import annotations
@@ -21,13 +21,17 @@ if TYPE_CHECKING:
     from core.geometry.rotary_axes import Kinematics, Place
 
 FloatArray = npt.NDArray[np.float64]
-_STEP = 1.25  # of a zoom
-_PAN = 0.15  # of the picture's smaller side
+_STEP = 1.25  # factor of one zoom step
+_PAN = 0.15  # ratio of the picture's smaller side
 
 
 @dataclass(frozen=True, slots=True)
 class Aspect:
-    """Where one looks from: degrees about Z from the front (negative Y) to the right, and above the table."""
+    """View direction in degrees.
+
+    ``around`` is the rotation about Z from the front (negative Y) to the right, and ``above`` is the
+    elevation.
+    """
 
     name: str
     around: float
@@ -44,39 +48,42 @@ ASPECTS = (
 
 @dataclass(frozen=True, slots=True)
 class Camera:
-    """Looks at ``centre`` (mm, machine); ``radius`` mm around it fill the picture at ``nearness`` 1."""
+    """View of ``centre`` (mm, machine).
+
+    A ``radius`` in mm around it fills the picture at ``nearness`` 1.
+    """
 
     centre: tuple[float, float, float]
     radius: float
     aspect: int = 0
     nearness: float = 1.0
-    across: float = 0.0  # of the picture's smaller side, by which it was moved
+    across: float = 0.0  # offset as a ratio of the picture's smaller side
     down: float = 0.0
 
     @property
     def shown(self) -> Aspect:
-        """The side one looks from."""
+        """Selected view direction."""
         return ASPECTS[self.aspect % len(ASPECTS)]
 
     def following(self) -> Camera:
-        """From the next side, the whole again."""
+        """Return the camera for the next view direction, showing everything."""
         return replace(self, aspect=(self.aspect + 1) % len(ASPECTS), nearness=1.0, across=0.0, down=0.0)
 
     def fitted(self) -> Camera:
-        """The camera that shows the whole again."""
+        """Return the camera that shows everything."""
         return replace(self, nearness=1.0, across=0.0, down=0.0)
 
     def zoomed(self, steps: int) -> Camera:
-        """Nearer by so many steps."""
+        """Return the camera zoomed in by ``steps``."""
         return replace(self, nearness=min(40.0, max(0.2, self.nearness * _STEP**steps)))
 
     def panned(self, across: int, down: int) -> Camera:
-        """Look further right and down."""
+        """Return the camera moved to the right and down by a number of steps."""
         return replace(self, across=self.across - _PAN * across, down=self.down - _PAN * down)
 
     @property
     def axes(self) -> FloatArray:
-        """Rows: right, down and towards the eye, as unit vectors of the machine."""
+        """Unit vectors right, down and towards the viewer as rows, in machine coordinates."""
         around, above = math.radians(self.shown.around), math.radians(self.shown.above)
         ca, sa, ce, se = math.cos(around), math.sin(around), math.cos(above), math.sin(above)
         right, eye = (ca, sa, 0.0), (sa * ce, -ca * ce, se)
@@ -84,7 +91,7 @@ class Camera:
         return np.array((right, down, eye))
 
     def seen(self, points: FloatArray, width: float, height: float) -> FloatArray:
-        """Pixels x, y and depth towards the eye (n, 3) of machine points (n, 3)."""
+        """Return pixel x, pixel y and depth towards the viewer (n, 3) of machine points (n, 3)."""
         size = min(width, height)
         scale = self.nearness * size / (2.0 * self.radius)
         found = (points - np.array(self.centre)) @ self.axes.T * scale
@@ -96,11 +103,11 @@ class Camera:
 # --- blank and table ----------------------------------------------------------------------------------
 
 
-_ROUND = 48  # corners of what is round
+_ROUND = 48  # corners of a circle
 
 
 def outline(camera: Camera, points: FloatArray) -> FloatArray:
-    """The convex outline of points (n, 3) as the camera sees them (monotone chain of Andrew)."""
+    """Return the convex outline of points (n, 3) as seen by the camera (Andrew's monotone chain)."""
     flat = points @ camera.axes[:2].T
     order = np.lexsort((flat[:, 1], flat[:, 0])).tolist()
     half: list[list[int]] = []
@@ -120,32 +127,33 @@ def _turns_back(flat: FloatArray, a: int, b: int, c: int) -> bool:
 
 
 def carried(place: Place, points: FloatArray) -> FloatArray:
-    """Machine positions (n, 3) of points (n, 3) of the system that the place is of, mm."""
+    """Return the machine positions (n, 3) of points (n, 3) in the system of ``place``, in mm."""
     return np.asarray(points @ np.array(place.turn).T + np.array(place.shift))
 
 
 def corners_of(scene: Scene) -> FloatArray:
-    """The blank's eight corners (8, 3) in the workpiece's system: x fastest, then y, then z."""
+    """Return the eight corners (8, 3) of the blank in the workpiece system, with x varying fastest."""
     (x0, y0, z0), (x1, y1, z1) = scene.corners
     return np.array([(x, y, z) for z in (z0, z1) for y in (y0, y1) for x in (x0, x1)])
 
 
 def middle_of(scene: Scene) -> tuple[float, float, float]:
-    """The middle of the blank in the workpiece's system."""
+    """Return the center of the blank in the workpiece system."""
     low, high = scene.corners
     x, y, z = (0.5 * (a + b) for a, b in zip(low, high, strict=True))
     return x, y, z
 
 
 def diagonal_of(scene: Scene) -> float:
-    """The blank's diagonal, mm: what sizes are measured by."""
+    """Return the diagonal of the blank in mm, which scales all other sizes."""
     low, high = scene.corners
     return max(1.0, math.dist(low, high))
 
 
 def table_rim(scene: Scene) -> FloatArray:
-    """The rim of the table (n, 3) in the machine with all axes at 0: round the first table's line, under the
-    blank and wide enough for it.
+    """Return the rim of the table (n, 3) in machine coordinates with all axes at 0.
+
+    The rim is a circle below the blank, around the axis of the first table and wide enough for the blank.
     """
     place = scene.kinematics.place({}, scene.kinematics.basic)
     corners = carried(place, corners_of(scene))
@@ -157,7 +165,7 @@ def table_rim(scene: Scene) -> FloatArray:
 
 
 def _foot(kinematics: Kinematics, middle: FloatArray) -> FloatArray:
-    """The point of a table's line along Z; the middle of the blank where no table turns so."""
+    """Return a point on a table axis parallel to Z, or the center of the blank without such an axis."""
     for axis in kinematics.rotaries:
         if axis.table and abs(axis.direction[2]) > 0.5:
             return np.array(axis.point)
@@ -165,22 +173,22 @@ def _foot(kinematics: Kinematics, middle: FloatArray) -> FloatArray:
 
 
 def spot(row: FloatArray) -> tuple[float, float, float]:
-    """One row as a point."""
+    """Return one row as a tuple of coordinates."""
     x, y, z = row.tolist()
     return x, y, z
 
 
-_SHARE = 0.34  # of the blank's diagonal: length of the plane's axes, and half a side of its square
+_SHARE = 0.34  # ratio to the blank's diagonal: length of the plane's axes and half the side of its square
 _TOOL = 12  # corners of the tool
-_MOST_POINTS = 10_000  # of the path; longer ones are thinned out to so many
+_MOST_POINTS = 10_000  # maximum number of path points; longer paths are thinned out
 _FACES = ((0, 1, 3, 2), (4, 5, 7, 6), (0, 1, 5, 4), (2, 3, 7, 6), (0, 2, 6, 4), (1, 3, 7, 5))
-_TOP = 1  # of those
+_TOP = 1  # index of the top face
 _SIDE_ONLY = 1e-9
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Face:
-    """A filled shape (n, 2): ``role`` is ``table table-under blank blank-top plane tool``."""
+    """Filled polygon (n, 2). ``role`` is table, table-under, blank, blank-top, plane or tool."""
 
     role: str
     points: FloatArray
@@ -188,7 +196,7 @@ class Face:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Stroke:
-    """A line (n, 2): ``role`` is ``rapid cut done x y z axis edge``; ``name`` stands at its end."""
+    """Line (n, 2). ``role`` is rapid, cut, done, x, y, z, axis or edge, and ``name`` labels its end."""
 
     role: str
     points: FloatArray
@@ -197,14 +205,14 @@ class Stroke:
 
 @dataclass(frozen=True, slots=True)
 class Figure:
-    """One picture, ready to be painted: faces, then strokes."""
+    """Picture that is ready to paint: faces, then strokes."""
 
     faces: tuple[Face, ...] = ()
     strokes: tuple[Stroke, ...] = ()
 
 
 def camera_for(scene: Scene) -> Camera:
-    """The whole table with the blank on it, and the tool above, whichever way it swivels."""
+    """Return a camera that shows the whole table with the blank and the tool at any tilt."""
     table = table_rim(scene)
     at = scene.kinematics.place({}).machine(middle_of(scene))
     reach = float(np.linalg.norm(table - np.array(at), axis=1).max())
@@ -212,7 +220,7 @@ def camera_for(scene: Scene) -> Camera:
 
 
 def figure(scene: Scene, instant: Instant, camera: Camera, width: float, height: float) -> Figure:
-    """What is seen in a picture of this size."""
+    """Return the drawing of a scene at an instant, for a picture of this size in pixels."""
     picture = _Picture(scene, instant, camera, width, height)
     return Figure(
         faces=tuple(sorted_faces([*picture.table(), *picture.blank(), *picture.plane(), *picture.tool()])),
@@ -221,7 +229,7 @@ def figure(scene: Scene, instant: Instant, camera: Camera, width: float, height:
 
 
 def sorted_faces(faces: Sequence[tuple[float, Face]]) -> list[Face]:
-    """The faces in painting order, farthest first."""
+    """Return the faces in painting order, with the farthest first."""
     return [face for _, face in sorted(faces, key=lambda pair: pair[0])]
 
 
@@ -231,14 +239,14 @@ class _Picture:
         self._size = width, height
         chain = scene.kinematics
         self._angles = {axis.name: instant.axes.get(axis.name, 0.0) for axis in chain.rotaries}
-        # Where the workpiece stands: a place counts slides, and a head that leans takes those elsewhere.
+        # Workpiece position: a place includes the linear axes, and a tilted head moves them.
         self._tables = {axis.name: self._angles[axis.name] for axis in chain.rotaries if axis.table}
         self._part = chain.place(self._tables, chain.basic)
 
     def table(self) -> list[tuple[float, Face]]:
-        """The disc that carries the workpiece: behind all else from above, before it from below.
+        """Return the table disc: painted first when seen from above, and last when seen from below.
 
-        Its middle says nothing of that: a small blank near the far rim has its own behind it.
+        The depth of its center is not sufficient, because a small blank near the far rim is farther away.
         """
         machine_parallel = self._scene.kinematics.place(self._tables)
         zero = self._scene.kinematics.place({})
@@ -249,7 +257,7 @@ class _Picture:
         return [(math.inf, self._face("table-under", flat)[1])]
 
     def blank(self) -> list[tuple[float, Face]]:
-        """Those faces of the blank that look at the eye."""
+        """Return the faces of the blank that are turned towards the viewer."""
         corners = carried(self._part, corners_of(self._scene))
         middle = corners.mean(axis=0)
         eye = self._camera.axes[2]
@@ -261,7 +269,7 @@ class _Picture:
         return found
 
     def plane(self) -> list[tuple[float, Face]]:
-        """A square of the working plane round its datum."""
+        """Return a square of the working plane around its datum."""
         swivel = self._instant.swivel
         if swivel is None or not swivel.system.tilted:
             return []
@@ -271,7 +279,7 @@ class _Picture:
         return [self._face("plane", carried(self._part, o + square @ r.T))]
 
     def tool(self) -> list[tuple[float, Face]]:
-        """A cutter on its tip, along the tool axis of this instant."""
+        """Return a cutter at the tool tip along the present tool axis."""
         chain, axes = self._scene.kinematics, self._instant.axes
         length = self._instant.swivel.system.tool_length if self._instant.swivel is not None else 0.0
         slides = axes["X"], axes["Y"], axes["Z"]
@@ -293,7 +301,7 @@ class _Picture:
         return faces
 
     def path(self) -> list[Stroke]:
-        """What the tip does on the workpiece: what is done apart from what is to come."""
+        """Return the path of the tip on the workpiece, with finished and remaining moves separate."""
         scene = self._scene
         if not len(scene.points):
             return []
@@ -304,7 +312,10 @@ class _Picture:
         return [*_ways(seen, ink, behind)]
 
     def axes(self) -> list[Stroke]:
-        """X' Y' Z' of the working plane at its datum; those of the workpiece where none is tilted."""
+        """Return the axes of the working plane at its datum.
+
+        Without a tilted plane, they are the axes of the workpiece.
+        """
         swivel = self._instant.swivel
         r = np.array(swivel.system.frame) if swivel is not None else np.eye(3)
         o = np.array(swivel.system.datum) if swivel is not None else np.zeros(3)
@@ -317,7 +328,7 @@ class _Picture:
         return found
 
     def lines_of_rotation(self) -> list[Stroke]:
-        """The lines about which the tables turn, as they stand now."""
+        """Return the rotation axes of the tables in their present position."""
         scene, found = self._scene, []
         reach = 0.75 * diagonal_of(scene)
         rotaries = scene.kinematics.rotaries
@@ -343,7 +354,7 @@ class _Picture:
 
 
 def _ways(seen: FloatArray, ink: npt.NDArray[np.int8], behind: npt.NDArray[np.bool_]) -> list[Stroke]:
-    """Runs of one ink, each from the point before it."""
+    """Return the lines of the path, split where the drawing style changes."""
     role = np.where(ink == Ink.CUT, np.where(behind, 3, 2), np.where(ink == Ink.RAPID, 1, 0))
     starts = np.flatnonzero(np.diff(role, prepend=-1))
     names = {1: "rapid", 2: "cut", 3: "done"}

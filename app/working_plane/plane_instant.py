@@ -1,4 +1,4 @@
-"""The instant that the view of the working plane shows: of a snapshot, or of the line under the cursor."""
+"""Instant of the 3D view: from a snapshot or from the line under the cursor."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _AXES = ("A", "B", "C")
 
 @dataclass(frozen=True, slots=True)
 class Instant:
-    """Where the machine stands: axes by name, the plane shown, and the block under way (0: none)."""
+    """Axis positions by name, the displayed plane, and the active block (0 for none)."""
 
     axes: Mapping[str, float]
     swivel: Swivel | None
@@ -27,14 +27,14 @@ class Instant:
 
 
 def running(scene: Scene, snapshot: Snapshot) -> Instant:
-    """The machine as it stands now."""
+    """Return the instant of a snapshot."""
     axes = dict(zip(snapshot.axes, snapshot.actual, strict=True))
     axes |= {name: 0.0 for name in scene.kinematics.names if name not in axes}
     return Instant(axes, snapshot.swivel, snapshot.block)
 
 
 def at_line(scene: Scene, line: int) -> Instant:
-    """The machine as it stands behind a line of the program: tables at the targets of its plane."""
+    """Return the instant after a program line, with the tables at the target angles of its plane."""
     swivel = scene.swivel_at(line)
     if swivel is None:
         return Instant(dict.fromkeys(scene.kinematics.names, 0.0), None)
@@ -47,7 +47,7 @@ def at_line(scene: Scene, line: int) -> Instant:
 
 
 def title_of(kinematics: Kinematics) -> str:
-    """What is seen of the machine beside the plane: its table, its head, or both."""
+    """Return the title of the view, which names the displayed parts: head, table or both."""
     heads = any(not axis.table for axis in kinematics.rotaries)
     if not heads:
         return "TABLE AND PLANE"
@@ -56,7 +56,7 @@ def title_of(kinematics: Kinematics) -> str:
 
 
 def plane_words(swivel: Swivel | None) -> str:
-    """The plane in one line: which it is, the angles that it asks for, and where its Z' points."""
+    """Return one line of text with the name, the angles and the Z' direction of the plane."""
     if swivel is None:
         return ""
     words = system_words(swivel)

@@ -1,6 +1,6 @@
-"""What a program does to the workpiece on a mill, collected once from its blocks on a worker thread.
+"""Scene of a mill program: tool path and planes on the workpiece, collected once on a worker thread.
 
-Points are in the workpiece's system, so that they turn with the table; mm.
+Points are in the workpiece system in mm, so that they turn with the table.
 """
 
 from __future__ import annotations
@@ -26,24 +26,24 @@ if TYPE_CHECKING:
     from core.interpreter.shared.working_plane import Corners, Swivel
 
 FloatArray = npt.NDArray[np.float64]
-_CHORD = 6.0  # degrees of an arc that are drawn as one line
+_CHORD = 6.0  # degrees of an arc per chord
 _EMPTY: Corners = ((-20.0, -20.0, -20.0), (20.0, 20.0, 0.0))
 
 
 class Ink(IntEnum):
-    """How the way to a point is drawn."""
+    """Drawing style of the move to a point."""
 
-    LIFTED = 0  # not at all: a new way begins here
+    LIFTED = 0  # not drawn: a new line starts at this point
     RAPID = 1
     CUT = 2
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Scene:
-    """``points`` (n, 3) of the tip, ``ink`` (n,) of the way to each, ``block`` (n,) the number it ends.
+    """Points (n, 3) of the tip, with the ``ink`` (n,) of the move to each and the ``block`` (n,) number.
 
-    ``by_line`` is the place behind the first pass through a source line, ``lines`` those that it holds, in
-    order; ``corners`` of the blank, or a stand-in where the program names none.
+    ``by_line`` maps a source line to the plane after its first pass, and ``lines`` contains its sorted keys.
+    ``corners`` are those of the blank, or a default if the program does not define one.
     """
 
     kinematics: Kinematics
@@ -56,17 +56,17 @@ class Scene:
     planes: frozenset[int] = frozenset()  # lines of PLANE blocks
 
     def swivel_at(self, line: int) -> Swivel | None:
-        """The place behind a source line, or behind the nearest one before it that makes a block."""
+        """Return the plane after a source line, or after the nearest earlier line that makes a block."""
         at = bisect_right(self.lines, line)
         return self.by_line[self.lines[at - 1]] if at else None
 
     def done(self, block: int) -> int:
-        """How many points lie behind once this block (from 1) is done."""
+        """Return the number of points that are finished after a block, counted from 1."""
         return int(np.searchsorted(self.block, block, side="right"))
 
 
 class SceneBuilder:
-    """Collects blocks that tell where they stand in a working plane."""
+    """Collects blocks that contain a position in a working plane."""
 
     def __init__(self) -> None:
         self._points, self._ink, self._block = array("d"), array("b"), array("q")
@@ -75,12 +75,12 @@ class SceneBuilder:
         self._last: Swivel | None = None
 
     def add(self, block: Block, swivel: Swivel) -> None:
-        """Append a block with its place in the working plane."""
+        """Append a block with its position in the working plane."""
         self._last = swivel
         self._by_line.setdefault(block.line, swivel)
         if block.kind is Kind.PLANE:
             self._planes.add(block.line)
-            self._by_line[block.line] = swivel  # its retract came first
+            self._by_line[block.line] = swivel  # The retract of the same line was added first.
             self._to(_on_part(swivel, swivel.end), Ink.LIFTED, block.n)
         elif block.moves:
             if not self._ink:
@@ -89,7 +89,7 @@ class SceneBuilder:
                 self._to(_on_part(swivel, point), Ink.RAPID if block.rapid else Ink.CUT, block.n)
 
     def scene(self) -> Scene | None:
-        """What was collected; None where no block stood in a plane."""
+        """Return the collected scene, or None if no block has a position in a plane."""
         if self._last is None:
             return None
         return Scene(
@@ -110,7 +110,7 @@ class SceneBuilder:
 
 
 def _on_the_way(block: Block, swivel: Swivel) -> list[Vector]:
-    """Points of the working plane up to the end of a block: of an arc as many as the eye asks for."""
+    """Return the points of a block in the working plane up to its end, with arcs as chords."""
     way = None if block.travel is None else block.travel.way
     if not isinstance(way, HelixMove):
         return [swivel.end]
@@ -121,5 +121,5 @@ def _on_the_way(block: Block, swivel: Swivel) -> list[Vector]:
 
 
 def _on_part(swivel: Swivel, q: Vector) -> Vector:
-    """A point of the working plane's system in the workpiece's."""
+    """Convert a point from the system of the working plane to that of the workpiece."""
     return plus(swivel.system.datum, applied(swivel.system.frame, q))

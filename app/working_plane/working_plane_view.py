@@ -1,4 +1,4 @@
-"""The 3-D view of a mill: table, workpiece, working plane and tool, laid out by ``plane_drawing``."""
+"""3D view of a mill: table, workpiece, working plane and tool, drawn from ``plane_drawing``."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ if TYPE_CHECKING:
     from app.working_plane.plane_instant import Instant
     from app.working_plane.plane_scene import Scene
 
-# Of each face: fill, how much of it (0 to 255), edge.
+# For each face: fill color, opacity (0 to 255), edge color.
 _FILLS = {
     "table": ("key", 255, "frame"),
-    "table-under": ("key", 110, "frame"),  # what stands on it is seen through it
+    "table-under": ("key", 110, "frame"),  # the workpiece is visible through the table
     "blank": ("ghost", 215, "soft"),
     "blank-top": ("here", 225, "soft"),
     "plane": ("accent", 70, "accent"),
     "tool": ("pause", 235, "text"),
 }
-# Of each stroke: colour, width in units, dashed.
+# For each stroke: color, width in units, dashed.
 _STROKES = {
     "rapid": ("rapid", 0.10, True),
     "cut": ("todo", 0.22, False),
@@ -37,12 +37,15 @@ _STROKES = {
     "z": ("wait", 0.30, False),
     "axis": ("soft", 0.10, True),
 }
-SMOOTH = 2000  # points of a line up to which it is drawn wide and smooth
-_DRAG_STEP = 60.0  # pixels of a drag that are one step of panning
+SMOOTH = 2000  # maximum number of points of a line that is drawn wide and antialiased
+_DRAG_STEP = 60.0  # pixels of a drag per panning step
 
 
 class WorkingPlaneView(Panel):
-    """Shows a scene at an instant; the next aspect comes by its button, its key or a tap on its name."""
+    """View of a scene at an instant.
+
+    A button, a key or a tap on its name selects the next direction.
+    """
 
     title = "TABLE AND PLANE"
     words = Shown("")
@@ -57,21 +60,21 @@ class WorkingPlaneView(Panel):
 
     @property
     def scene(self) -> Scene | None:
-        """The scene that is shown; None while there is none."""
+        """Displayed scene, or None."""
         return self._scene
 
     @property
     def instant(self) -> Instant | None:
-        """What is shown of it: axes, plane, and the block up to which the way is done."""
+        """Displayed axis positions, plane and active block, or None."""
         return self._instant
 
     @property
     def camera(self) -> Camera | None:
-        """The camera; None while there is no scene."""
+        """Camera of the view, or None without a scene."""
         return self._camera
 
     def show_scene(self, scene: Scene | None) -> None:
-        """Another program; where one looks from stays."""
+        """Show the scene of another program. The view direction remains."""
         if scene is self._scene:
             return
         aspect = self._camera.aspect if self._camera is not None else 0
@@ -85,25 +88,25 @@ class WorkingPlaneView(Panel):
         self.update()
 
     def show_instant(self, instant: Instant, words: str) -> None:
-        """Where the machine stands, and what the plane is called."""
+        """Show the machine at an instant, with a text about the plane."""
         self._instant, self.words = instant, words
 
-    # --- looking around ------------------------------------------------------------------------------
+    # --- navigation ----------------------------------------------------------------------------------
 
     def next_view(self) -> None:
-        """Look from the next side."""
+        """Select the next view direction."""
         self._look(self._camera.following() if self._camera else None)
 
     def fit(self) -> None:
-        """Show the whole table again."""
+        """Show the whole table."""
         self._look(self._camera.fitted() if self._camera else None)
 
     def zoom(self, steps: int) -> None:
-        """Go nearer by so many steps, farther by negative ones."""
+        """Zoom in by a number of steps. Negative steps zoom out."""
         self._look(self._camera.zoomed(steps) if self._camera else None)
 
     def pan(self, across: int, down: int) -> None:
-        """Look further right and down."""
+        """Move the visible area to the right and down by a number of steps."""
         self._look(self._camera.panned(across, down) if self._camera else None)
 
     def _look(self, camera: Camera | None) -> None:
@@ -113,16 +116,16 @@ class WorkingPlaneView(Panel):
     # --- Qt's calls ----------------------------------------------------------------------------------
 
     def wheelEvent(self, event: QWheelEvent) -> None:
-        """The mouse wheel zooms."""
+        """Zoom with the mouse wheel."""
         self.zoom(1 if event.angleDelta().y() > 0 else -1)
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
-        """A button of the view, or the start of a drag."""
+        """Press a button of the view, or start a drag."""
         if not self.touch(event.position()):
             self._held = event.position()
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
-        """A drag pans by steps."""
+        """Pan in steps during a drag."""
         if self._held is None:
             return
         way = event.position() - self._held
@@ -132,7 +135,7 @@ class WorkingPlaneView(Panel):
             self.pan(-across, -down)
 
     def mouseReleaseEvent(self, _event: QMouseEvent) -> None:
-        """A drag ends."""
+        """End a drag."""
         self._held = None
 
     # --- drawing -------------------------------------------------------------------------------------
@@ -165,7 +168,7 @@ class WorkingPlaneView(Panel):
     def _stroke(self, painter: Painter, stroke: Stroke) -> None:
         colour, width, dashed = _STROKES[stroke.role]
         pen = QPen(self.look.pen(colour, width))
-        fine = len(stroke.points) <= SMOOTH  # a wide, smoothed pen takes a tenth of a second for the others
+        fine = len(stroke.points) <= SMOOTH  # A wide, antialiased pen would take 0.1 s for longer lines.
         if not fine:
             pen.setWidth(1)
         elif dashed:

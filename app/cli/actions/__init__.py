@@ -1,1 +1,1 @@
-"""What commands do, imported only when they do it."""
+"""Implementations of commands, loaded only when they are needed."""

@@ -1,4 +1,4 @@
-"""The desktop entry, its icon and the autostart of the session, where XDG looks for them."""
+"""Desktop menu entry, its icon and the autostart entry, in the XDG folders."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def _under(variable: str, otherwise: str) -> Path:
 
 
 def _places() -> tuple[Path, Path, Path]:
-    """The menu entry, the icon, the autostart."""
+    """Return the paths of the menu entry, the icon and the autostart entry."""
     data, config = _under("XDG_DATA_HOME", ".local/share"), _under("XDG_CONFIG_HOME", ".config")
     return (
         data / "applications" / f"{NAME}.desktop",
@@ -53,7 +53,7 @@ def _places() -> tuple[Path, Path, Path]:
 
 
 def _command() -> str:
-    """How this very installation is started again."""
+    """Return the command that starts this installation."""
     beside = Path(sys.executable).with_name(NAME)
     if beside.exists():
         return _quoted(str(beside))
@@ -61,15 +61,15 @@ def _command() -> str:
 
 
 def _quoted(word: str) -> str:
-    """As an entry's Exec wants a word with blanks or signs, not as a shell does; % stands for itself."""
+    """Return a word quoted for the Exec line of a desktop entry, where % must be doubled."""
     if not _RESERVED.search(word):
         return word.replace("%", "%%")
     inside = re.sub(r'(["`$\\])', r"\\\1", word).replace("%", "%%")
-    return '"' + inside.replace("\\", "\\\\") + '"'  # a text of the entry has its own escapes beside
+    return '"' + inside.replace("\\", "\\\\") + '"'  # values of a desktop entry have another level of escapes
 
 
 def install(*, autostart: bool) -> list[Path]:
-    """Write them; the answer is what was written. Raises CommandError where that is not possible."""
+    """Write the entries and return their paths. Raises CommandError if a file cannot be written."""
     entry, icon, start = _places()
     try:
         for path in (entry, icon, *((start,) if autostart else ())):
@@ -84,7 +84,7 @@ def install(*, autostart: bool) -> list[Path]:
 
 
 def remove() -> list[Path]:
-    """Take away what is there; the answer is what was. Raises CommandError where that is not possible."""
+    """Remove the existing entries and return their paths. Raises CommandError if a file cannot be removed."""
     there = [path for path in _places() if path.exists()]
     for path in there:
         try:

@@ -1,4 +1,4 @@
-"""What ``turndesk offsets`` does: shows, sets and undoes offsets and tool shapes of the store; in inches."""
+"""Actions of ``turndesk offsets``: show, set and undo offsets and tool shapes of the store, in inches."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ _NAMES = (
     "T1…T32 (T1D2 is the second edge of T1), D1…D32 or G54…G59; on a mill, TOOL1…TOOL999 or PRESET1…PRESET99"
 )
 _CLEARED = {"T": "tool offsets", "D": "secondary offsets", "G": "zero offsets"}
-NO_SHAPE = "none"  # kind=none takes the shape of a tool away
+NO_SHAPE = "none"  # kind=none removes the shape of a tool
 _SUCH = {Kind.ZERO: "z=-120", Kind.MILL_TOOL: "L=80.5", Kind.PRESET: "x=100"}
 _ALIASES = {
     Kind.TOOL: ALIASES,
@@ -92,7 +92,7 @@ def _show(args: argparse.Namespace) -> int:
 
 
 def _in_inches(kind: Kind, row: Row) -> dict[str, Value]:
-    """Every field by its name, as it is entered: lengths of tools in inches."""
+    """Return every field by name in the unit of entry, which is inches for lengths of tools."""
     values: list[Value] = list(row)
     return {
         name: _typed(field, value) for (name, field), value in zip(FIELDS[kind].items(), values, strict=True)
@@ -119,7 +119,7 @@ def _line(name: str, row: Row) -> str:
 
 
 def _shape(row: ShapeRow) -> str:
-    """What is stated of a shape, as it would be entered."""
+    """Return the specified fields of a shape in the syntax of entry."""
     told = [f"{row.kind} {row.hand}"]
     values: list[Value] = list(row)
     for field, value in zip(FIELDS[Kind.SHAPE].values(), values, strict=True):
@@ -131,7 +131,7 @@ def _shape(row: ShapeRow) -> str:
 
 
 def _more(row: ToolRow) -> str:
-    """What else is set of a tool."""
+    """Return the wear, tip, master mark and remark of a tool, if they are set."""
     wear = (
         Message(
             "  wear X {wear_x} Z {wear_z}",
@@ -170,7 +170,7 @@ def _set(args: argparse.Namespace) -> int:
 def _set_all(
     connection: sqlite3.Connection, number: int, changes: Mapping[Kind, Mapping[str, Value]], reason: Reason
 ) -> list[Row]:
-    """Set the offset and the shape of one tool in one transaction: both or neither."""
+    """Set the offset and the shape of one tool in one transaction."""
     rows = list[Row]()
     for kind, values in changes.items():
         if values.get("kind") == NO_SHAPE:
@@ -181,7 +181,7 @@ def _set_all(
 
 
 def _check_shape(store: Store, number: int, shape: dict[str, Value], offset: dict[str, Value]) -> None:
-    """Raises CommandError where the tool's shape would contradict itself or begin without a kind."""
+    """Raise CommandError if the tool's shape is inconsistent or does not have a kind."""
     from app.desk.stored_shapes import row_mistakes
 
     row = with_fields(store.offsets.shapes.read_rows().get(number, ShapeRow()), shape)
@@ -220,7 +220,7 @@ def _name(kind: Kind, number: int) -> str:
 def _named(text: str) -> tuple[Kind, int]:
     of_mill = _OF_MILL.fullmatch(text)
     if of_mill:
-        return _MILL_KIND[of_mill[1].upper()], int(of_mill[2])  # the store tells which there are
+        return _MILL_KIND[of_mill[1].upper()], int(of_mill[2])  # the store reports invalid numbers
     edge = _EDGE.fullmatch(text)
     if edge and int(edge[1]) in OFFSETS:
         return Kind.TOOL, edge_key(int(edge[1]), int(edge[2]))
@@ -238,7 +238,10 @@ def _named(text: str) -> tuple[Kind, int]:
 
 
 def _values(kind: Kind, entries: list[str]) -> dict[str, Value]:
-    """Fields from entries such as ``x=1.25``, lengths mm. Raises CommandError for the first mistake."""
+    """Return the fields from entries such as ``x=1.25``, lengths in mm.
+
+    Raises CommandError for the first error.
+    """
     values: dict[str, Value] = {}
     for entry in entries:
         key, equals, text = entry.partition("=")
@@ -267,14 +270,14 @@ def _entered(field: Field, text: str) -> Value:
     if field.choices:
         return _chosen(field, str(value).lower())
     if field.sort in {Sort.METRIC, Sort.ANGLE, Sort.MINUTES}:
-        return value  # of a zero offset, or of a mill: the store tells its range
+        return value  # zero offsets and mill values, whose range the store checks
     if mistake := out_of_range(field.name, field, value, _typed(field, value)):
         raise CommandError(mistake, "out-of-range")
     return value
 
 
 def _chosen(field: Field, word: str) -> str:
-    """One of the field's choices. Raises CommandError with the nearest."""
+    """Return one of the field's choices. Raises CommandError with the most similar choice."""
     known = (*field.choices, NO_SHAPE) if field.name == "kind" else field.choices
     if word not in known:
         raise CommandError(f"{field.name}: {unknown(word, known)}", "unknown-word")
@@ -282,12 +285,12 @@ def _chosen(field: Field, word: str) -> str:
 
 
 def _typed(field: Field, value: Value) -> Value:
-    """The value again in the unit of the entry."""
+    """Return the value in the unit of entry."""
     return inches(value) if field.sort is Sort.LENGTH and not isinstance(value, str) else value
 
 
 def _value(field: Field, text: str) -> Value:
-    """What the text comes to; lengths mm. Raises CommandError."""
+    """Return the value of a text, lengths in mm. Raises CommandError if the text is invalid."""
     if field.sort is Sort.TEXT:
         return text.strip()
     if field.sort is Sort.FLAG and text.strip().lower() not in _FLAGS:
@@ -306,7 +309,7 @@ def _value(field: Field, text: str) -> Value:
 
 
 def _clear(args: argparse.Namespace) -> int:
-    """One offset, or a whole table; as one step, which can be taken back."""
+    """Clear one offset or a whole table as one step, which can be undone."""
     letter = args.offset.upper()
     with opened_store() as store:
         if letter in {**_KIND, **_MILL_KIND}:
@@ -345,7 +348,7 @@ def _history(args: argparse.Namespace) -> int:
 
 
 def _change(change: Change) -> dict[str, object]:
-    """One change for a program to read, inches."""
+    """Return a change for JSON output, with lengths in inches."""
     fields: dict[str, object] = change._asdict()
     for side, row in (("old", change.old), ("new", change.new)):
         fields[side] = row and _in_inches(change.kind, row)
@@ -353,7 +356,7 @@ def _change(change: Change) -> dict[str, object]:
 
 
 def _told(change: Change) -> str:
-    """One change for a person to read."""
+    """Return a change as a line of text."""
     sides = ["not set" if row is None else _line("", row).strip() for row in (change.old, change.new)]
     name = _name(change.kind, change.number)
     return f"{change.at}  {name:<3} {' → '.join(sides)}  {change.why} ({change.who})"

@@ -1,1 +1,1 @@
-"""Figures as the commands show them, for a person and as JSON."""
+"""Formatting of results as text and as JSON."""

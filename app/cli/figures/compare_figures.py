@@ -1,6 +1,6 @@
-"""``prove --compare OFFSETS``: what other offsets make of the same program: part, times, findings.
+"""Output of ``prove --compare OFFSETS``: part, times and findings with other offsets.
 
-How the parts are compared stands in ``core/proving/other_offsets.py``.
+``core/proving/other_offsets.py`` compares the parts.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ _NOUGHT = 5e-5  # in or mm
 
 
 def compared(job: ProofJob, source: Source, report: Report, part: PartReport | None) -> Json:
-    """The object ``compare``. Lengths are inches for OmniTurn programs, mm for the others."""
+    """Return the JSON object ``compare``. Lengths are inches for OmniTurn programs, otherwise mm."""
     from core.proving.other_offsets import ThisPart, other_part
 
     assert job.other is not None
@@ -58,15 +58,15 @@ def _pair_json(pair: Pair, dialect: Dialect) -> Json:
 
 
 def _rounded(value: float) -> float:
-    """To a millionth; no -0.0, and none that would be shown as such."""
+    """Return a value rounded to six decimals, and 0.0 for values that would be shown as zero."""
     return 0.0 if abs(value) < _NOUGHT else round(value, 6)
 
 
-# --- as a person reads it
+# --- Text output
 
 
 def compare_lines(found: Json, *, metric: bool, dialect: Dialect) -> str:
-    """The comparison in the sheet of a proof, in the unit of the program."""
+    """Return the comparison as text for the proof, in the unit of the program."""
     scale = MM_PER_INCH if metric and dialect is Dialect.OMNITURN else 1.0
     unit = "mm" if metric or dialect is not Dialect.OMNITURN else "in"
     pairs = found["features"]

@@ -1,4 +1,4 @@
-"""Elementary blocks of Klartext programs as the commands show them: mm, degrees and minutes."""
+"""Output of elementary blocks of Klartext programs, in mm, degrees and minutes."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _AXES = ("a", "b", "c")
 
 
 def block_json(block: Block, source_line: str, t0: float, t1: float) -> Json:
-    """One elementary block with the keys of docs/json.md; axes the machine lacks are null."""
+    """Return an elementary block with the keys of docs/json.md; missing axes are null."""
     feed, mode = _feed(block)
     swivel = block.swivel
     shown = {
@@ -38,7 +38,10 @@ def block_json(block: Block, source_line: str, t0: float, t1: float) -> Json:
 
 
 def figures(report: Report, mill: MillFigures) -> Json:
-    """What a proof says otherwise of a mill: ``limits`` are machine positions, ``final`` holds all axes."""
+    """Return the JSON keys of a proof that differ on a mill.
+
+    ``limits`` are machine positions, and ``final`` has all axes.
+    """
     limits: Json = {
         name.lower(): [millimetres(low), millimetres(high)]
         for name, (low, high) in zip(mill.axes, mill.reach, strict=False)
@@ -49,7 +52,7 @@ def figures(report: Report, mill: MillFigures) -> Json:
 
 
 def machine_reach(mill: MillFigures) -> str:
-    """The same for a person."""
+    """Return the limits of the machine positions as a line of text."""
     if not mill.reach:
         return "  machine stands\n"
     reached = zip(mill.axes, mill.reach, strict=False)
@@ -57,7 +60,7 @@ def machine_reach(mill: MillFigures) -> str:
 
 
 def place(mill: MillFigures, demand: Sequence[float], *, complete: bool) -> dict[str, float]:
-    """Where a run has ended: all axes of the machine, and its working plane where the program was done."""
+    """Return the final position of a run: all axes, and the working plane if the run is ``complete``."""
     if complete and mill.final is not None:
         return {name: at for name, at in _places(mill.final).items() if isinstance(at, float)}
     named = ((f"m{name.lower()}" if name in "XYZ" else name.lower()) for name in mill.axes)
@@ -65,7 +68,7 @@ def place(mill: MillFigures, demand: Sequence[float], *, complete: bool) -> dict
 
 
 def row(block: Block, t0: float) -> str:
-    """One line of the table for a person: places in the working plane, rotary axes as shown."""
+    """Return a block as a line of the table, with positions in the working plane."""
     feed, mode = _feed(block)
     speed = "" if feed is None else f"{feed:.1f}{'°' if mode == 'deg/min' else ''}/m"
     swivel = block.swivel
@@ -78,7 +81,7 @@ def row(block: Block, t0: float) -> str:
 
 
 def _places(swivel: Swivel) -> Json:
-    """End point in the working plane's system, and all axes of the machine."""
+    """Return the end point in the working plane, and the positions of all axes."""
     plane = dict(zip(("x", "y", "z"), map(millimetres, swivel.end), strict=True))
     machine = dict(zip(("mx", "my", "mz"), map(millimetres, swivel.slides), strict=True))
     angles = (None if angle is None else degrees(angle) for angle in swivel.rotary)
@@ -86,7 +89,7 @@ def _places(swivel: Swivel) -> Json:
 
 
 def _plane(swivel: Swivel) -> Json:
-    """The plane that a PLANE block has set: its frame by rows, its origin, the targets of the axes."""
+    """Return the plane of a PLANE block: its frame by rows, its origin and the targets of the axes."""
     q120, q121, q122 = (degrees(target) for target in swivel.system.targets)
     return {
         "frame": [[round(cell, 12) + 0.0 for cell in line] for line in swivel.system.frame],
@@ -98,7 +101,7 @@ def _plane(swivel: Swivel) -> Json:
 
 
 def _feed(block: Block) -> tuple[float | None, str | None]:
-    """The speed of the path in its own unit; of a rapid what the slowest axis allows."""
+    """Return the speed along the path and its unit; for a rapid, the speed that the slowest axis permits."""
     if not block.moves or block.travel is None or block.travel.length == 0.0:
         return None, None
     unit = "deg" if block.swivels else "mm"

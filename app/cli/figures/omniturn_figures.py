@@ -1,6 +1,6 @@
-"""Elementary blocks of OmniTurn programs as the commands show them: inches and minutes.
+"""Output of elementary blocks of OmniTurn programs, in inches and minutes.
 
-Long columns of numbers are rounded and written all at once, to the letter as Python does each by itself.
+Long columns of numbers are rounded and written together, with exactly the same text as for single numbers.
 """
 
 from __future__ import annotations
@@ -29,15 +29,15 @@ if TYPE_CHECKING:
     from core.interpreter.shared.elementary_blocks import Block, Floats, Ints, Series, TimedSeries
 
 
-_SURE = 1e12  # a number of steps up to which it is a whole one, with digits to spare
-_HALF = 1e-3  # nearer than that to the half of a step it is rounded by its decimals
-_DIGITS = 12  # of a whole number below _SURE
-_SHORT = 1e-4  # below it ``repr`` has an exponent
+_SURE = 1e12  # number of steps up to which a float is certainly an exact integer
+_HALF = 1e-3  # distance from half a step within which Python's ``round`` is used
+_DIGITS = 12  # digits of an integer below _SURE
+_SHORT = 1e-4  # limit below which ``repr`` uses an exponent
 _ZERO, _POINT, _MINUS, _LINE_END, _NOTHING = *b"0.-\n", 0
 
 
 def rounded(values: Floats, places: int) -> Floats:
-    """As ``round(value, places) + 0.0`` rounds each of them, (m,)."""
+    """Return the values (m,) rounded exactly like ``round(value, places) + 0.0``."""
     steps = values * 10.0**places
     whole = np.rint(steps)
     found: Floats = whole / 10.0**places + 0.0
@@ -48,10 +48,10 @@ def rounded(values: Floats, places: int) -> Floats:
 
 
 def decimals(values: Floats, places: int) -> list[str]:
-    """The shortest text of each of the ``rounded`` values, (m,), as ``repr`` has it; at most 11 places.
+    """Return the shortest text of each rounded value (m,), identical to ``repr``; at most 11 places.
 
-    A decimal fraction of twelve digits is the shortest of its double: what is left to do is to write digits
-    and to leave out the noughts at both ends.
+    A decimal fraction of twelve digits is the shortest text of its double. The function therefore only writes
+    the digits and omits leading and trailing zeros.
     """
     found = rounded(values, places)
     size = np.abs(found)
@@ -64,7 +64,7 @@ def decimals(values: Floats, places: int) -> list[str]:
 
 
 def _written(count: Ints, negative: npt.NDArray[np.bool_], places: int) -> list[str]:
-    """So many (m,) steps of as many ``places``, with one digit at least on either side of the point."""
+    """Return numbers (m,) of steps of 10^-``places`` as text, with a digit on each side of the point."""
     digits, point = _digits(count), _DIGITS - places
     for at in range(point - 1):
         digits[at] *= count >= 10 ** (_DIGITS - 1 - at)
@@ -83,7 +83,7 @@ def _written(count: Ints, negative: npt.NDArray[np.bool_], places: int) -> list[
 
 
 def _digits(count: Ints) -> npt.NDArray[np.uint8]:
-    """The twelve digits of each number, as characters: (12, m), the first ones first."""
+    """Return the twelve digits of each number as characters (12, m), the most significant first."""
     groups = np.stack([count // 10**8, count // 10**4 % 10**4, count % 10**4])
     fours = _fours()[groups].view(np.uint8)
     return fours.reshape(3, len(count), 4).transpose(0, 2, 1).reshape(_DIGITS, len(count))
@@ -91,19 +91,19 @@ def _digits(count: Ints) -> npt.NDArray[np.uint8]:
 
 @cache
 def _fours() -> npt.NDArray[np.uint32]:
-    """The four digits of 0 to 9999, as characters in one number (10000,)."""
+    """Return the four digits of 0 to 9999, each as four characters in one integer (10000,)."""
     return np.frombuffer("".join([f"{each:04d}" for each in range(10_000)]).encode(), np.uint32)
 
 
-_VARIES = "\0"  # no text in JSON holds it
+_VARIES = "\0"  # a character that JSON text cannot contain
 HEAD = "    n  line  kind        X radius          Z         feed      rpm       t  block\n"
 
 
 def block_json(block: Block, source_line: str, t0: float, t1: float) -> Json:
-    """One elementary block with the keys and units of docs/json.md; keys that do not apply are null."""
+    """Return an elementary block with the keys and units of docs/json.md; keys that do not apply are null."""
     arc = block.kind == "arc"
     circular = arc or block.kind == "plane-arc"
-    turned = block.kind == "rotate"  # its speed is rpm
+    turned = block.kind == "rotate"  # its speed is in rpm
     return {
         **block_head(block, source_line),
         "x": inches(block.x),
@@ -125,12 +125,12 @@ def block_json(block: Block, source_line: str, t0: float, t1: float) -> Json:
 
 
 def _feed_value(block: Block) -> float:
-    """Feed of a block in in/min or in/rev."""
+    """Return the feed of a block in in/min or in/rev."""
     return inches(block.feed) if block.per_rev else per_minute(block.feed)
 
 
 def row(block: Block, t0: float) -> str:
-    """One line of the table for a person."""
+    """Return a block as a line of the table."""
     return (
         f"{block.n:5d} {block.line:5d}  {block.kind:10s}{inches(block.x):11.5f}{inches(block.z):11.5f}"
         f"{_feed(block)}{t0:8.2f}  {block.text}\n"
@@ -138,16 +138,16 @@ def row(block: Block, t0: float) -> str:
 
 
 def _feed(block: Block) -> str:
-    """Feed and speed in the table."""
+    """Return feed and spindle speed as text for the table."""
     feed = f"{inches(block.feed):.5f}/r" if block.per_rev else f"{per_minute(block.feed):.2f}/m"
     return f"{feed:>13s}{block.rpm:9.0f}"
 
 
-# --- many moves at once, to the letter as one by one ------------------------------------------------------
+# --- Many moves together, with exactly the same text as single moves --------------------------------------
 
 
 def series_rows(moves: TimedSeries) -> str:
-    """The lines of the table."""
+    """Return the lines of the table for a series of moves."""
     series = moves.series
     line = f"%5d %5d  {series.pattern.kind:10s}%11.5f%11.5f%s%8.2f  %s\n"
     lines = series.line.tolist()
@@ -158,7 +158,7 @@ def series_rows(moves: TimedSeries) -> str:
 
 
 def _of_feeds(series: Series, text: Callable[[Block], str]) -> Iterable[str]:
-    """The text of each move, which follows from its feed."""
+    """Return the text of each move that depends only on its feed."""
     like = series.pattern
     if series.feed is None:
         return [text(like)] * len(series)
@@ -168,9 +168,9 @@ def _of_feeds(series: Series, text: Callable[[Block], str]) -> Iterable[str]:
 
 
 def series_json(moves: TimedSeries) -> str:
-    """The objects, a line each."""
+    """Return the JSON objects for a series of moves, one per line."""
     series, like, lines = moves.series, moves.series.pattern, moves.series.line.tolist()
-    texts = _texts_json(series.source_lines())  # a plain move's text is its line
+    texts = _texts_json(series.source_lines())  # the text of a plain move is its source line
     columns = {
         "n": map(str, series.n.tolist()),
         "line": map(str, lines),
@@ -192,12 +192,12 @@ def series_json(moves: TimedSeries) -> str:
 
 
 def _texts_json(texts: Sequence[str]) -> list[str]:
-    """Each text as JSON has it; all at once, for a call costs more than the text. None has a line end."""
+    """Return each text as JSON, encoded together for speed. The texts must not contain line breaks."""
     return json.dumps(texts, separators=("\n", ": "))[1:-1].split("\n")
 
 
 def _woven(between: Sequence[str], columns: Sequence[Iterable[str]], count: int) -> str:
-    """So many lines of columns with the same text before, ``between`` and after them in each."""
+    """Return ``count`` lines made of columns, with the same texts before, ``between`` and after them."""
     width = len(between) + len(columns)
     woven = [""] * (count * width)
     for at, text in enumerate(between):
@@ -208,7 +208,10 @@ def _woven(between: Sequence[str], columns: Sequence[Iterable[str]], count: int)
 
 
 def _plane_json(block: Block) -> Json:
-    """End and centre of a block in the virtual mill's frame; on the side of the part its Z is a diameter."""
+    """Return end and center of a block in the virtual mill's frame.
+
+    On the side of the part, its Z is a diameter.
+    """
     way = block.plane
     if way is None:
         return dict.fromkeys(("px", "py", "pz", "pcx", "pcy"))

@@ -1,4 +1,4 @@
-"""A proof as JSON, with the keys and units of docs/json.md; the stock also for a person to read."""
+"""Output of a proof as JSON, with the keys and units of docs/json.md, and of the stock as text."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ if TYPE_CHECKING:
     from core.part.turned_part import Profile
     from core.proving.proof_report import PartReport, Report
 
-# Checks that interpreting makes by itself, by the code of their findings.
+# Checks that the interpreter makes, by the codes of their findings.
 _CHECKS = {"spindle-stopped": "spindle-off", "collet-open": "collet-open", "thread-run-up": "thread-run-up"}
 
 
 def stock_json(part: PartReport, dialect: Dialect) -> Json | None:
-    """The keys of docs/json.md; null where nobody has said a stock and nothing is cut that would tell it."""
+    """Return the stock with the keys of docs/json.md; None if no stock is specified or can be assumed."""
     stock, last = part.stock, part.last
     if stock is None:
         return None
@@ -43,7 +43,7 @@ def stock_json(part: PartReport, dialect: Dialect) -> Json | None:
 
 
 def stock_lines(part: PartReport, dialect: Dialect) -> str:
-    """The stock in the sheet of a proof."""
+    """Return the stock as text for the proof."""
     if part.stock is None:
         return "".join(f"  {words}\n" for words in part.assumed)
     inch = dialect is Dialect.OMNITURN
@@ -80,7 +80,7 @@ def _points(profile: Profile, dialect: Dialect) -> list[list[float]]:
 
 
 def diagnostic_json(diagnostic: Diagnostic) -> Json:
-    """One diagnostic with the keys of docs/json.md; one about a whole line stands at its first column."""
+    """Return a diagnostic with the keys of docs/json.md; the column of a whole line is 1."""
     return {
         "line": diagnostic.line,
         "column": max(diagnostic.column, 1) if diagnostic.line else 0,
@@ -98,16 +98,16 @@ def diagnostic_json(diagnostic: Diagnostic) -> Json:
 
 
 def stops_of(report: Report, *, optional_stop: bool) -> int:
-    """How often a cycle waits for the operator."""
+    """Return how often a cycle waits for the operator."""
     return report.stops + (report.optional_stops if optional_stop else 0)
 
 
 def report_json(
     file: str, report: Report, part: PartReport | None = None, *, optional_stop: bool = False
 ) -> Json:
-    """A proof with the keys and units of docs/json.md; ``stock`` is null on a mill.
+    """Return a proof with the keys and units of docs/json.md; ``stock`` is null on a mill.
 
-    Lengths are inches for OmniTurn programs, mm for the others.
+    Lengths are inches for OmniTurn programs, otherwise mm.
     """
     reach, times = report.reach, report.times
     mill: Json = {}

@@ -1,4 +1,4 @@
-"""Elementary blocks of SINUMERIK programs as JSON: mm, degrees and minutes, X as the program counts it."""
+"""Output of elementary blocks of SINUMERIK programs in mm, degrees and minutes, with X as programmed."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ HEAD = (
 )
 
 _TURN = 360.0
-_M_PER_MIN = 60.0 / 1000.0  # of mm/s
+_M_PER_MIN = 60.0 / 1000.0  # m/min for 1 mm/s
 
 
 def block_json(block: Block, source_line: str, t0: float, t1: float) -> Json:
-    """One elementary block with the keys of docs/json.md; keys that do not apply are null."""
+    """Return an elementary block with the keys of docs/json.md; keys that do not apply are null."""
     arc, doubled = block.kind == "arc", 2.0 if block.modal.diameter else 1.0
     feed, mode = _feed(block)
     return {
@@ -45,7 +45,7 @@ def block_json(block: Block, source_line: str, t0: float, t1: float) -> Json:
 
 
 def row(block: Block, t0: float) -> str:
-    """One elementary block in the table for a person; X as the program counts it, C of the program."""
+    """Return a block as a line of the table, with X as programmed and C of the program."""
     feed, mode = _feed(block)
     x = block.x * (2.0 if block.modal.diameter else 1.0)
     shown = "" if feed is None else f"{feed:.2f} {mode}"
@@ -57,7 +57,7 @@ def row(block: Block, t0: float) -> str:
 
 
 def _feed(block: Block) -> tuple[float | None, str | None]:
-    """The programmed feed and what it counts; of a rapid the speed of its path."""
+    """Return the programmed feed and its unit; for a rapid, the speed along its path."""
     if not block.moves:
         return None, None
     alone = (block.x, block.z) == (block.x0, block.z0) and block.c != block.c0
@@ -66,6 +66,6 @@ def _feed(block: Block) -> tuple[float | None, str | None]:
 
 
 def _angle(value: float, block: Block) -> float:
-    """Degrees, of a modulo axis 0..<360."""
+    """Return an angle in degrees; for a modulo axis from 0 to less than 360."""
     angle = degrees(value)
     return degrees(angle % _TURN) % _TURN if block.modal.wraps_c else angle

@@ -1,1 +1,1 @@
-"""The reference of machine-readable output."""
+"""Reference of machine-readable output."""

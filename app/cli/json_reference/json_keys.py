@@ -1,4 +1,4 @@
-"""Keys of the JSON that the commands print, for the reference and its tests."""
+"""Keys of the JSON output of commands, for the reference page and its tests."""
 
 from __future__ import annotations
 
@@ -357,7 +357,7 @@ remedy | string | | What to do.
 
 
 def _in_inches(columns: tuple[Key, ...]) -> tuple[Key, ...]:
-    """Return columns of the store as ``offsets --json`` shows them: lengths of a lathe's tools in inches."""
+    """Return columns of the store as in ``offsets --json``, where lengths of lathe tools are in inches."""
     return tuple(key._replace(unit="in" if key.unit == "mm" else key.unit) for key in columns)
 
 

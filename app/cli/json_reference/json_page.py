@@ -1,4 +1,4 @@
-"""The reference of machine-readable output: ``python -m app.cli.json_reference.json_page docs/json.md``."""
+"""Generator of the JSON reference: ``python -m app.cli.json_reference.json_page docs/json.md``."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ undoes), `at`, the number, the row before and after the change as `old_…` and 
 
 
 def document() -> str:
-    """Return the whole page."""
+    """Return the complete page."""
     lines = [_HEAD.rstrip("\n"), *_commands(), *_shop_floor(), *_store()]
     return "\n".join([_TITLE, *_contents(), *lines]) + "\n"
 
@@ -127,7 +127,7 @@ def _wrapped(text: str) -> list[str]:
 
 
 def main(argv: list[str]) -> int:
-    """Write the page to the named file."""
+    """Write the page to the file named in the arguments."""
     Path(argv[0]).write_text(document(), encoding="utf-8")
     return 0
 

@@ -1,1 +1,1 @@
-"""Proving of many programs, on all cores and once only."""
+"""Proving of many programs on all cores, with a cache of proofs."""

@@ -1,4 +1,4 @@
-"""``turndesk prove DIR``: programs of folders, proved on all cores, told in the order of names."""
+"""The command ``turndesk prove DIR``: programs of folders, proved on all cores and reported by name."""
 
 from __future__ import annotations
 
@@ -39,16 +39,16 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class ProgramFiles:
-    """The programs in the order of their names, and how many files of the folders are none."""
+    """Paths of programs in order of names, and the number of other files."""
 
     paths: tuple[Path, ...]
     others: int
 
 
 def program_files(names: Iterable[str]) -> ProgramFiles:
-    """The programs that files and folders name; a file that is named counts whatever its ending is.
+    """Return the programs in these files and folders; a named file may have any suffix.
 
-    Raises CommandError for a folder that cannot be read or holds no program.
+    Raises CommandError if a folder cannot be read or contains no program.
     """
     found: set[Path] = set()
     others = 0
@@ -73,7 +73,7 @@ def program_files(names: Iterable[str]) -> ProgramFiles:
 
 
 def _named(names: Iterable[str]) -> Iterator[str]:
-    """They, unless one is empty, as a script's variable may be: that would be the folder one stands in."""
+    """Yield the names. Raises CommandError for an empty name, which would mean the current folder."""
     for name in names:
         if not name:
             raise CommandError("the file name is empty; use . for the programs in this folder", "empty-name")
@@ -89,7 +89,7 @@ def _by_name(path: Path) -> tuple[list[str], str]:
 
 
 def _files(folder: Path) -> Iterator[Path]:
-    """All files in and below a folder but those of hidden folders; links to folders lead nowhere."""
+    """Yield all files in and below a folder, except hidden folders; links to folders are not followed."""
     for where, folders, names in os.walk(folder, onerror=_unreadable):
         folders[:] = [name for name in folders if not name.startswith(".")]
         yield from (Path(where) / name for name in names)
@@ -113,7 +113,7 @@ def _is_program(path: Path) -> bool:
 
 
 def prove_many(args: argparse.Namespace, jobs: FittingJobs) -> int:
-    """Prove all programs; 1 when any has errors, 2 when one cannot be read."""
+    """Prove all programs; return 1 if a program has errors, or 2 if one cannot be read."""
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     files = program_files(args.files)
     with report_file(args) as report:
@@ -132,7 +132,7 @@ def _workers(args: argparse.Namespace) -> WorkerSource:
 
 @dataclass(frozen=True, slots=True)
 class _Unit:
-    """One program to prove: which it is in the order of names, and where its proof will be kept."""
+    """A program to prove, with its index in the order of names and the place of its proof in the cache."""
 
     index: int
     source: Source
@@ -142,7 +142,7 @@ class _Unit:
 
 
 class _Run:
-    """One call: what is proved, and what has been told of it."""
+    """One call of the command: the programs to prove, and the results reported so far."""
 
     def __init__(
         self, args: argparse.Namespace, jobs: FittingJobs, files: ProgramFiles, workers: WorkerSource,
@@ -154,15 +154,16 @@ class _Run:
         self._report = report
         names = (path.name for path in files.paths)
         self._kept_parts = kept_with_all(names)
-        self._version = code_version() if args.scheduler is not None else ""  # our own workers have ours
+        # worker processes of this computer have the same version
+        self._version = code_version() if args.scheduler is not None else ""
         self._folder = data_folder() / "proofs"
-        self._caches: dict[str, ProofCache] = {}  # by machine
+        self._caches: dict[str, ProofCache] = {}  # =
         self._proofs: dict[int, Proof] = {}
         self._told = 0
         self._progress = Progress("proving", len(files.paths))
 
     def prove(self) -> None:
-        """Go through all programs; what has been proved is kept even when it ends in the middle."""
+        """Prove all programs. Finished proofs are saved even if the command is interrupted."""
         proving: Proving[_Unit, Proof] = Proving(self._workers, self._submit)
         results = proving.results(self._units())
         try:
@@ -184,7 +185,7 @@ class _Run:
                 cache.trim()
 
     def outcome(self) -> int:
-        """The table or what is left to say, and the exit status."""
+        """Print the table or the number of other files; return the exit status."""
         rows = [(path, self._proofs[k]) for k, path in enumerate(self._files.paths)]
         others = self._files.others
         if not self._args.json:
@@ -197,7 +198,7 @@ class _Run:
         return executor.submit(proof_of, unit.job.packed, self._version, unit.source)
 
     def _units(self) -> Iterator[_Unit]:
-        """The programs that no proof is kept of, one after the other as workers are ready for them."""
+        """Yield the programs without a saved proof, as workers become available."""
         for index, path in enumerate(self._files.paths):
             try:
                 source = read_source(path, self._args)
@@ -216,7 +217,7 @@ class _Run:
                 yield _Unit(index, source, job, key, cache)
 
     def _cache_of(self, machine: str, job: ProofJob) -> ProofCache | None:
-        """What is kept of proofs on this machine; a machine that was not named is told once."""
+        """Return the cache for this machine; print once which machine was chosen."""
         if machine not in self._caches:
             if machine:
                 sys.stderr.write(on_machine("each Klartext program", machine))
@@ -224,7 +225,7 @@ class _Run:
         return None if self._args.no_cache else self._caches[machine]
 
     def _job_of(self, source: Source, common: ProofJob) -> ProofJob:
-        """The job of all, or with what the store keeps of the part of this program."""
+        """Return the common job, or a job with the stored part data of this program."""
         kept = self._kept_parts.get(source.name)
         if kept is None:
             return common
@@ -238,7 +239,7 @@ class _Run:
         return made
 
     def _why(self, error: BaseException) -> str:
-        """What has kept a program from its proof."""
+        """Return the reason why a program could not be proved."""
         if isinstance(error, self._workers.killed):
             return KILLED
         if isinstance(error, OtherVersionError):
@@ -267,13 +268,13 @@ class _Run:
         self._proofs[index] = proof
         while self._told in self._proofs:
             self._tell(self._files.paths[self._told], self._proofs[self._told])
-            # What is in the report already is not kept twice: thousands of them are large.
+            # The section is already in the report. Thousands of sections would need much memory.
             self._proofs[self._told] = replace(self._proofs[self._told], section="")
             self._told += 1
         self._progress.reach(len(self._proofs))
 
     def _tell(self, path: Path, proof: Proof) -> None:
-        """In the order of names, as soon as all before it are there."""
+        """Report the proof of a program, called in the order of names."""
         if proof.fault:
             sys.stderr.write(f"turndesk: {proof.fault}\n")
         elif self._args.json:
@@ -290,7 +291,7 @@ def _status(proof: Proof) -> int:
 
 
 def _own(setting: PartSetting) -> object:
-    """What counts for one program alone: what the store keeps of its part."""
+    """Return the part data that apply only to one program."""
     return setting.stock, setting.clamping, setting.silenced
 
 
@@ -301,12 +302,12 @@ Row = tuple[Path, Proof]
 
 
 def table(rows: Sequence[Row], others: int) -> str:
-    """All of it; ``others`` files in the folders are no programs."""
+    """Return the complete table; ``others`` is the number of files that are not programs."""
     return _HEAD + "".join(_line(path, proof) for path, proof in rows) + _sum(rows, others) + _slowest(rows)
 
 
 def verdict(proof: Proof) -> str:
-    """One word for what proving has come to."""
+    """Return the result of a proof in one or two words."""
     if proof.fault:
         return "not proved"
     return "errors" if proof.count("error") else "proved"
@@ -326,7 +327,7 @@ def _line(path: Path, proof: Proof) -> str:
 
 
 def _compared(proof: Proof) -> str:
-    """What other offsets change, in one line."""
+    """Return the effect of other offsets as one line."""
     found = proof.report.get("compare")
     if not isinstance(found, dict):
         return ""

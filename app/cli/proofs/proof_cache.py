@@ -1,7 +1,7 @@
-"""Proofs that are kept: found again by what they depend on, so that nothing is proved twice.
+"""Cache of proofs, found by everything on which they depend.
 
-A file is written aside and renamed: a process that is killed leaves no half of one. What is damaged all the
-same does not unpack, and counts as not there.
+A file is written under a temporary name and renamed, so a killed process leaves no incomplete proof. A
+damaged file cannot be decompressed and is ignored.
 """
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ if TYPE_CHECKING:
     from app.cli.proofs.proof_job import ProofJob
     from core.language.source import Source
 
-LARGEST = 256 * 2**20  # bytes of all proofs together
-_KEPT = 0.8  # of LARGEST, after the oldest have gone
+LARGEST = 256 * 2**20  # bytes of all proofs
+_KEPT = 0.8  # fraction of LARGEST after the oldest proofs have been deleted
 _ASIDE = ".part"
-_STALE = 3600.0  # s; a file aside that is so old was left by a process that has gone
+_STALE = 3600.0  # s; an older temporary file was left by a process that has ended
 
 
 class ProofCache:
-    """The proofs of one job in the folder ``proofs`` of the data folder, by content."""
+    """Proofs of one job in the folder ``proofs`` of the data folder, by their contents."""
 
     def __init__(self, folder: Path, job: ProofJob, largest: int = LARGEST) -> None:
         self._folder, self._largest = folder, largest
@@ -40,22 +40,22 @@ class ProofCache:
         self._full = False
 
     def key(self, source: Source, own: object = None) -> str:
-        """What the proof of a program depends on, in a name; ``own`` is what else counts for it alone."""
+        """Return the key of a program's proof; ``own`` are data that apply only to this program."""
         text = plain((source.name, str(source.dialect), source.text, source.subprograms, own))
         return sha256(self._job + text.encode("utf-8", "surrogatepass")).hexdigest()
 
     def find(self, key: str) -> Proof | None:
-        """The proof, or None where none is kept."""
+        """Return the saved proof, or None."""
         path = self._path(key)
         try:
             kept = json.loads(zlib.decompress(path.read_bytes()))
-            os.utime(path)  # the oldest that nobody asks for go first
+            os.utime(path)  # marks the file as used, because the oldest files are deleted first
             return Proof(kept["report"], kept["section"])
         except (OSError, zlib.error, ValueError, KeyError, TypeError):
             return None
 
     def keep(self, key: str, proof: Proof) -> None:
-        """Keep a proof; where the disk does not take it, that is told once, and nothing more is kept."""
+        """Save a proof. The first disk error is reported, and no more proofs are then saved."""
         if self._full:
             return
         path = self._path(key)
@@ -71,7 +71,7 @@ class ProofCache:
             sys.stderr.write(f"turndesk: proofs cannot be stored in {self._folder} ({error.strerror})\n")
 
     def trim(self) -> None:
-        """Throw the oldest away when there are too many, and what killed processes have left."""
+        """Delete the oldest proofs if the cache is too large, and temporary files of killed processes."""
         try:
             there = [_File(path, *_stamp(path)) for path in self._folder.glob("??/*")]
         except OSError:
@@ -93,22 +93,22 @@ class ProofCache:
 @dataclass(frozen=True, slots=True)
 class _File:
     path: Path
-    used: float  # s since the epoch
+    used: float  # =
     size: int
 
 
 def _stamp(path: Path) -> tuple[float, int]:
     try:
         found = path.stat()
-    except OSError:  # another process has thrown it away meanwhile
+    except OSError:  # another process has deleted the file
         return time.time(), 0
     return found.st_mtime, found.st_size
 
 
 def plain(value: object) -> str:
-    """A value as a text that is the same in every process: what a hash can be made of.
+    """Return a value as text that is identical in every process, for hashing.
 
-    Raises TypeError for what has no such text, such as a function.
+    Raises TypeError for a value without such a text, such as a function.
     """
     match value:
         case Enum():

@@ -1,6 +1,6 @@
-"""What is the same for all programs that are proved together: machine, setup, part and what is wanted.
+"""Common data of programs that are proved together: machine, context, part and options.
 
-Without --machine each program is proved on a machine that can run it: Klartext on a shipped mill.
+Without --machine, each program is proved on a machine that can run it, Klartext on a shipped mill.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class OtherOffsets:
-    """Offsets to compare with: the name of their file, and the setup with them."""
+    """Offsets for a comparison: the name of their file, and the context with them."""
 
     name: str
     setup: Setup
@@ -28,19 +28,19 @@ class OtherOffsets:
 
 @dataclass(frozen=True)
 class ProofJob:
-    """What is the same for all programs that are proved together."""
+    """Common data of programs that are proved together."""
 
     machine: Machine
     setup: Setup
     setting: PartSetting
     ideal: bool = False
     optional_stop: bool = False
-    reported: bool = False  # a section of a report is wanted too
+    reported: bool = False  # whether a section for a report is required
     other: OtherOffsets | None = None
 
     @cached_property
     def packed(self) -> bytes:
-        """The job as it is sent."""
+        """The job pickled for a worker."""
         import pickle
 
         return pickle.dumps(self)
@@ -48,14 +48,18 @@ class ProofJob:
 
 @dataclass(slots=True)
 class FittingJobs:
-    """The job of all programs, and one for each shipped machine that some of them need; ``make`` makes it."""
+    """Jobs by machine: the job of the options, and one for each shipped machine that a program needs.
+
+    ``make`` creates a job.
+    """
 
     args: argparse.Namespace
     make: Callable[[argparse.Namespace], ProofJob]
-    _made: dict[str, ProofJob] = field(default_factory=dict)  # by machine; empty: the one of the options
+    # by machine; the empty name means the machine of the options
+    _made: dict[str, ProofJob] = field(default_factory=dict)
 
     def machine_of(self, source: Source) -> str:
-        """The name of the shipped machine that is taken for this program; empty: the one of the options."""
+        """Return the shipped machine for this program; empty means the machine of the options."""
         if self.args.machine is not None:
             return ""
         from app.compose.machine.fitting_machine import fitting_machine
@@ -63,7 +67,7 @@ class FittingJobs:
         return fitting_machine(source)
 
     def of(self, machine: str) -> ProofJob:
-        """The job on this machine. Raises CommandError."""
+        """Return the job on this machine. Raises CommandError."""
         if machine not in self._made:
             args = self.args
             if machine:
@@ -73,5 +77,5 @@ class FittingJobs:
 
 
 def on_machine(what: str, machine: str) -> str:
-    """The line that says on which machine something is proved."""
+    """Return the line that reports the machine chosen for a program."""
     return f"turndesk: {what} is proved on the shipped {machine}; --machine chooses another one\n"

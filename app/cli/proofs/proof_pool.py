@@ -1,4 +1,4 @@
-"""Proving on all cores: worker processes that are started once, and what happens when one is killed."""
+"""Proving on all cores: a pool of worker processes, with recovery if a worker is killed."""
 
 from __future__ import annotations
 
@@ -19,41 +19,44 @@ Unit = TypeVar("Unit")
 Made = TypeVar("Made")
 
 KILLED = "the worker process was killed twice while proving this program (out of memory?)"
-# Imported once, in the process that all workers are forked from.
+# Modules imported once, in the process from which all workers are forked.
 _PRELOAD = (
     "app.cli.figures.proof_json",
     "app.cli.proofs.proof_work",
     "core.interpreter.omniturn.omniturn_interpreter",
     "core.proving.part_proof",
 )
-_AHEAD = 2  # units that wait in front of the workers
+_AHEAD = 2  # units queued in addition to those that workers process
 
 
 def cores() -> int:
-    """How many of them this process may use."""
+    """Return the number of cores that this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
 
 
 class WorkerSource(Protocol):
-    """Where workers come from; ``killed`` is the exception that a unit ends with which kills its worker."""
+    """Source of workers; ``killed`` is the exception of a unit that kills its worker."""
 
     killed: type[BaseException]
 
     @property
     def ahead(self) -> int:
-        """How many units may be under way."""
+        """Largest number of units in progress."""
 
     def open(self, jobs: int | None = None, /) -> Executor:
-        """Workers, as many as there are or so many."""
+        """Start workers, ``jobs`` or all, and return their executor."""
 
     def stop(self, executor: Executor | None, /, *, done: bool) -> None:
-        """Let the workers go; of what is not ``done`` end what is under way."""
+        """Stop the workers; unless ``done`` is true, also abort the units in progress."""
 
 
 class Workers:
-    """Processes of this computer. ``work`` is a function of a module, and its arguments can be sent."""
+    """Worker processes on this computer.
+
+    Units must be functions of modules with arguments that can be pickled.
+    """
 
     def __init__(self, jobs: int) -> None:
         self.jobs = jobs
@@ -66,13 +69,14 @@ class Workers:
             self._context.set_forkserver_preload(list(_PRELOAD))
 
     def open(self, jobs: int | None = None) -> Executor:
-        """So many workers, or all."""
+        """Start ``jobs`` workers, or all, and return their executor."""
         return ProcessPoolExecutor(jobs or self.jobs, mp_context=self._context, initializer=_begin)
 
     def stop(self, executor: Executor | None, *, done: bool) -> None:
-        """Let the workers go; of what is not ``done`` at once, with what they are at.
+        """Stop the workers; unless ``done`` is true, also abort the units in progress.
 
-        The pool's own thread is waited for: where Python ended beside it, one closed what the other wrote to.
+        The method waits for the thread of the pool, because Python's shutdown would otherwise close pipes
+        that this thread still uses.
         """
         if not done:
             self._terminate()
@@ -80,7 +84,7 @@ class Workers:
             executor.shutdown()
 
     def _terminate(self) -> None:
-        """The pool's own thread takes them away meanwhile: one that is gone already is no error."""
+        """Terminate the worker processes. Processes that the pool has already removed are ignored."""
         with contextlib.suppress(OSError, ValueError):
             for each in set(multiprocessing.active_children()) - self._before:
                 with contextlib.suppress(OSError, ValueError):
@@ -88,16 +92,16 @@ class Workers:
 
 
 def _begin() -> None:
-    """Ctrl-C is for the process that has started the workers; it ends them."""
+    """Initialize a worker, which ignores Ctrl-C because the parent process ends it."""
     gc.set_threshold(50_000)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 class Proving(Generic[Unit, Made]):
-    """Gives units of work to workers and hands out what they have made, in the order in which it comes.
+    """Distribution of units of work to workers; results are returned in the order in which they finish.
 
-    A worker that is killed takes all others of its pool with it. What they were at is done again, one unit
-    at a time in a worker of its own: what kills that one too is the cause.
+    If a worker is killed, all workers of its pool end. Their units are then repeated one at a time, each in
+    its own worker. A unit that kills its worker again is the cause.
     """
 
     def __init__(self, workers: WorkerSource, submit: Callable[[Executor, Unit], Future[Made]]) -> None:
@@ -106,7 +110,10 @@ class Proving(Generic[Unit, Made]):
         self._again: deque[Unit] = deque()
 
     def results(self, units: Iterator[Unit]) -> Generator[tuple[Unit, Made | BaseException], None, None]:
-        """Each unit with its result, or with what has kept it from one: a BrokenExecutor if it kills."""
+        """Yield each unit with its result or its exception.
+
+        A BrokenExecutor means that the unit kills its worker.
+        """
         executor: Executor | None = None
         done = False
         try:

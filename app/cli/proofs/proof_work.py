@@ -1,4 +1,4 @@
-"""One program to prove as a unit of work: it and its result can be sent to another process or computer."""
+"""Proof of one program as a unit of work that can be sent to another process or computer."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ if TYPE_CHECKING:
 
 
 _ROOT = Path(__file__).parents[3]
-_ROOMS = ("app/cli", "app/compose", "app/report", "core")  # what a proof is made by
+_ROOMS = ("app/cli", "app/compose", "app/report", "core")  # folders with the code that affects a proof
 
 
 @dataclass(frozen=True, slots=True)
 class Proof:
-    """What proving has found: the object of ``--json``, empty where ``fault`` says why there is none.
+    """Result of a proof: the JSON object, or the reason ``fault`` why the proof failed.
 
-    ``section`` is the program's part of a report, where one is wanted. ``seconds`` is how long it took, 0
-    where it was kept from another time.
+    ``section`` is the program's part of a report, if required. ``seconds`` is the duration of the proof, or 0
+    for a proof from the cache.
     """
 
     report: Json
@@ -36,22 +36,25 @@ class Proof:
     seconds: float = 0.0
 
     def count(self, severity: str) -> int:
-        """How many findings weigh so much."""
+        """Return the number of findings with this severity."""
         return sum(1 for _ in self.findings(severity))
 
     def findings(self, severity: str) -> Iterator[Json]:
-        """The findings that weigh so much."""
+        """Return an iterator over the findings with this severity."""
         found = self.report.get("diagnostics", [])
         assert isinstance(found, list)
         return (each for each in found if each["severity"] == severity)
 
 
 class OtherVersionError(Exception):
-    """The worker has another TurnDesk than the one that asks: its proofs would not be ours."""
+    """The worker has another version of TurnDesk, so its proofs would differ."""
 
 
 def proof_of(packed: bytes, version: str, source: Source) -> Proof:
-    """Prove one program; runs in a worker. Raises OtherVersionError, unless ``version`` is empty."""
+    """Prove one program in a worker. Raises OtherVersionError unless the versions match.
+
+    An empty ``version`` disables the check.
+    """
     if version and version != code_version():
         raise OtherVersionError
     start = time.perf_counter()
@@ -60,7 +63,7 @@ def proof_of(packed: bytes, version: str, source: Source) -> Proof:
 
 
 def proved(job: ProofJob, source: Source) -> Proof:
-    """Prove one program here."""
+    """Prove one program in this process."""
     from app.cli.figures.proof_json import report_json
 
     found = findings(job, source)
@@ -69,7 +72,7 @@ def proved(job: ProofJob, source: Source) -> Proof:
 
 
 class Findings(NamedTuple):
-    """What one pass through a program has found, and its section of a report (empty where none is wanted)."""
+    """Results of one proof: report, part, section of a report (empty if not required) and comparison."""
 
     report: Report
     part: PartReport | None
@@ -78,7 +81,7 @@ class Findings(NamedTuple):
 
 
 def findings(job: ProofJob, source: Source, progress: Callable[[float], None] | None = None) -> Findings:
-    """Prove one program, compare and report on it, as far as that is wanted."""
+    """Prove one program; make the comparison and the report section if the job requires them."""
     from core.proving.part_proof import prove_with_part, refusing_missing_offsets
 
     record = _record(job)
@@ -104,7 +107,7 @@ def findings(job: ProofJob, source: Source, progress: Callable[[float], None] | 
 
 
 def _record(job: ProofJob) -> RunRecord | None:
-    """What sees the pass for a report, where one is wanted."""
+    """Return the recorder for a report, or None if no report is required."""
     if not job.reported:
         return None
     from app.report.run_record import RunRecord
@@ -122,7 +125,7 @@ def _unpacked(packed: bytes) -> ProofJob:
 
 @lru_cache(maxsize=1)
 def code_version() -> str:
-    """A hash of the program text of TurnDesk itself: a version number does not change while it is mended."""
+    """Return a hash of TurnDesk's code, because the version number does not change during development."""
     from hashlib import sha256
 
     total = sha256()

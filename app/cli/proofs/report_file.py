@@ -1,4 +1,4 @@
-"""The file of ``--report``, HTML or PDF: written aside while programs are proved, in place when all are."""
+"""The file of ``--report``, HTML or PDF, written under a temporary name until all programs are proved."""
 
 from __future__ import annotations
 
@@ -21,20 +21,20 @@ _HTML, _PDF = {".html", ".htm"}, {".pdf"}
 
 
 class _Pages(Protocol):
-    """Where a report goes, a program after the other. Everything may raise OSError."""
+    """Writer of a report, one program after the other. All methods may raise OSError."""
 
     def add(self, name: str, part: str, /) -> None:
-        """The HTML of the next program, under its name."""
+        """Add the HTML of the next program under its name."""
 
     def end(self) -> None:
-        """All of it is on the disk: a full one is told here, before the old report goes."""
+        """Finish the file on the disk, so that a full disk is detected before the old report is replaced."""
 
     def close(self) -> None:
-        """Let go of the file, whatever has become of it."""
+        """Close the file in any state."""
 
 
 class _HtmlPages:
-    """One page for a browser."""
+    """Writer of one page for a browser."""
 
     def __init__(self, path: Path) -> None:
         from app.desk.translation import ENGLISH
@@ -57,7 +57,7 @@ class _HtmlPages:
 
 
 class _PdfPages:
-    """Numbered pages for a printer; each program begins a new one."""
+    """Writer of numbered pages for a printer; each program starts on a new page."""
 
     def __init__(self, path: Path, paper: str | None) -> None:
         from app.report.html_tables import headline
@@ -79,13 +79,16 @@ class _PdfPages:
 
 
 class ReportFile:
-    """A report as it is written, a program after the other. Raises CommandError when the disk refuses."""
+    """A report in progress, written one program after the other.
+
+    Methods raise CommandError for disk errors.
+    """
 
     def __init__(self, path: Path, pages: _Pages) -> None:
         self._path, self._pages = path, pages
 
     def add(self, path: Path, proof: Proof) -> None:
-        """The section of the next program."""
+        """Add the section of the next program."""
         from app.report.report_page import not_proved, program_part
 
         part = program_part(str(path), proof.section or not_proved(proof.fault))
@@ -95,7 +98,7 @@ class ReportFile:
             raise _unwritable(self._path, error) from error
 
     def end(self, aside: Path) -> None:
-        """The report is whole, and takes its place."""
+        """Finish the report and move it to its final place."""
         try:
             self._pages.end()
             self._pages.close()
@@ -106,7 +109,10 @@ class ReportFile:
 
 @contextlib.contextmanager
 def report_file(args: argparse.Namespace) -> Iterator[ReportFile | None]:
-    """The report of --report, None without one. What is refused is refused before anything is proved."""
+    """Yield the report of --report, or None without the option.
+
+    Invalid options raise CommandError before anything is proved.
+    """
     if args.report is None:
         if args.paper is not None:
             raise CommandError("--paper is only for --report FILE.pdf", "paper-is-for-pdf")
@@ -123,13 +129,13 @@ def report_file(args: argparse.Namespace) -> Iterator[ReportFile | None]:
         yield report
         report.end(aside)
     finally:
-        with contextlib.suppress(OSError):  # what could not be written before cannot be flushed now either
+        with contextlib.suppress(OSError):  # data that could not be written cannot be flushed either
             pages.close()
         aside.unlink(missing_ok=True)
 
 
 def _named(args: argparse.Namespace) -> Path:
-    """Where it goes. Raises CommandError for what is no report."""
+    """Return the path of the report. Raises CommandError if its suffix is not supported."""
     path = Path(args.report)
     ending = path.suffix.lower()
     if ending not in _HTML | _PDF:

@@ -1,1 +1,1 @@
-"""Machines as their files describe them: how each backend is connected, checked and played."""
+"""Connection, checking and simulation of machines by the backend in their machine file."""

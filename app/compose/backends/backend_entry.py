@@ -1,6 +1,6 @@
-"""What the composition asks of a backend: one ``BACKEND`` in the module that puts it together.
+"""Entries of the backends: one ``BACKEND`` in the module of each backend.
 
-And the rows of ``turndesk machine check``: what answered, and how it is.
+The module also defines the rows of ``turndesk machine check``.
 """
 
 from __future__ import annotations
@@ -26,24 +26,25 @@ BACKENDS = {
 }
 """By the word in machine.backend the module of this room with its ``BACKEND``."""
 
-NO_PRIORITY = "without real-time priority"  # begins what drives lose that want each setpoint at its time
-STATION = ("start", "hold")  # a machine whose file has neither has no operator station of its own
+NO_PRIORITY = "without real-time priority"  # start of the warning for drives that need each setpoint on time
+STATION = ("start", "hold")  # a machine without these inputs has no operator station
 Play = Callable[
     [Machine, Callable[[], bool], Callable[[str], None], Callable[[], Iterable[str]]], None
-]  # machine, while going, what to say, lines that were typed
+]  # machine, whether to continue, output of messages, typed lines
 
 
 @dataclass(frozen=True, slots=True)
 class Connected:
-    """The ports of a machine. ``panel``: the station on the screen, None where the machine has its own.
+    """The ports of a connected machine.
 
-    ``more_rows`` are rows of ``turndesk machine check`` that follow the station. ``measured`` lists those of
-    them, and the inputs beside the backend's own, whose values hardware reports.
+    ``panel`` is the operator station on the screen, or None if the machine has its own station. ``more_rows``
+    are rows of ``turndesk machine check`` that follow the station. ``measured`` lists those of these rows,
+    and the inputs outside the backend, whose values hardware reports.
     """
 
     ports: MachinePorts
     panel: StationPanel | None
-    set_input: Callable[[str, bool], None] | None  # of a simulated machine
+    set_input: Callable[[str, bool], None] | None  # only for a simulated machine
     close: Callable[[], None]
     more_rows: Callable[[], Iterable[Row]] = tuple
     measured: Callable[[], Iterable[str]] = tuple
@@ -51,15 +52,15 @@ class Connected:
 
 @dataclass(frozen=True, slots=True)
 class Backend:
-    """How a machine of this backend is driven.
+    """The functions of a backend.
 
-    ``word`` is what could not be reached where nothing answers. ``driven`` makes what the driver host owns,
-    and ``connect`` what lives in the control's own process, with its inverter; a backend that has both is
-    asked for the driver host by its machine file. ``played``: machine and other end are simulated here.
-    ``play`` is the other end alone, for trying a machine file without hardware. ``survey`` asks every node by
-    itself, or looks at every pin: its name, where it is, what is wrong with it and what it says. ``measured``
-    lists the rows of ``turndesk machine check`` whose values hardware reports; without it no row counts as
-    checked.
+    ``word`` is the name of the device in the message about a missing response. ``driven`` creates the part
+    that the driver host runs, and ``connect`` the part in the control's process, including its inverter. A
+    backend with both uses the driver host if the machine file specifies one. ``played`` returns whether the
+    machine and its devices are simulated here. ``play`` simulates only the devices, to try a machine file
+    without hardware. ``survey`` asks every node or checks every pin; it yields name, address, fault and
+    details. ``measured`` lists the rows of ``turndesk machine check`` whose values hardware reports; without
+    it no row counts as checked.
     """
 
     word: str
@@ -72,7 +73,10 @@ class Backend:
 
 
 def backend_of(machine: Machine) -> Backend:
-    """The backend of a machine; its libraries are loaded when it connects. Raises DriverError for no such."""
+    """Return the backend of a machine; its libraries are loaded on connection.
+
+    Raises DriverError if no driver exists for the backend.
+    """
     if machine.backend not in BACKENDS:
         raise DriverError(
             "{source}: backend {backend} does not have a driver yet",
@@ -89,12 +93,12 @@ def _backend(word: str) -> Backend:
 
 
 def playable() -> list[str]:
-    """Backends whose other end can be played alone."""
+    """Return the names of the backends whose devices can be simulated alone."""
     return [word for word in BACKENDS if _backend(word).play is not None]
 
 
 class AxisFields(TypedDict):
-    """The fields of ``drivers.setpoint_queue.AxisFigures``."""
+    """Keyword arguments for ``drivers.setpoint_queue.AxisFigures``."""
 
     name: str
     vmax: float
@@ -109,7 +113,7 @@ class AxisFields(TypedDict):
 
 
 def axis_figures(axis: Axis, machine: Machine) -> AxisFields:
-    """Return the values of an axis that every driver of setpoints needs."""
+    """Return the data of an axis that every driver with a setpoint queue needs."""
     return {
         "name": axis.name,
         "vmax": axis.vmax,
@@ -125,23 +129,23 @@ def axis_figures(axis: Axis, machine: Machine) -> AxisFields:
 
 
 def has_station(machine: Machine) -> bool:
-    """Whether the machine has buttons of its own, or is operated by those on the screen."""
+    """Return whether the machine has its own operator station, instead of the station on the screen."""
     return any(name in machine.inputs for name in STATION)
 
 
 def wired_inputs(machine: Machine) -> list[str]:
-    """Return the rows of ``turndesk machine check`` for inputs, and for a station that is wired to them."""
+    """Return the rows of ``turndesk machine check`` for inputs, and for a station wired to them."""
     inputs = [f"input {name}" for name in machine.inputs]
     return [*inputs, "station"] if has_station(machine) else inputs
 
 
 def has_inverter(machine: Machine) -> bool:
-    """Whether an inverter of its own turns the spindle."""
+    """Return whether a separate inverter drives the spindle."""
     return machine.hardware.spindle_driver == "vfd"
 
 
 def played(machine: Machine) -> bool:
-    """Whether the machine is simulated, on a virtual bus or on none."""
+    """Return whether the machine is simulated, with or without a virtual bus."""
     return backend_of(machine).played(machine)
 
 
@@ -151,11 +155,11 @@ FAILED = (
     "no answer",
     "wrong",
     MISSING,
-)  # states that are trouble; an E-stop that is pressed is none
+)  # states that are faults; a pressed E-stop is not a fault
 
 
 class Row(NamedTuple):
-    """One thing of the machine: where it hangs, how it is, and what it says."""
+    """One row of the check: name, address, state and details."""
 
     name: str
     at: str
@@ -164,13 +168,19 @@ class Row(NamedTuple):
 
     @property
     def verdict(self) -> str:
-        """Return ``ok``, ``FAIL`` where it is not as the machine file has it, or ``not checked``."""
+        """Result of the check.
+
+        The result is ``ok``, ``FAIL`` if the state contradicts the machine file, or ``not checked``.
+        """
         if self.state in FAILED:
             return "FAIL"
         return NOT_CHECKED if self.state == NOT_CHECKED else "ok"
 
     def checked(self, measured: Container[str]) -> Row:
-        """Return the row as ``not checked`` if it is not one of the ``measured`` rows and does not fail."""
+        """Return the row as ``not checked`` if hardware did not report it and it does not fail.
+
+        ``measured`` has the names of the rows that hardware reported.
+        """
         if self.name in measured or self.state in FAILED:
             return self
         return self._replace(state=NOT_CHECKED, detail=self.detail or self.state)
@@ -178,9 +188,10 @@ class Row(NamedTuple):
 
 @dataclass(slots=True)
 class Answers:
-    """What answered; ``warnings``: worth knowing although nothing is broken; ``trouble``: what is.
+    """Results of a machine check: rows, warnings, faults and process rights.
 
-    ``rights`` are those that the computer grants the process of the control.
+    ``warnings`` are notes about conditions that are not faults. ``rights`` are the rights that the system
+    grants to the control process.
     """
 
     rows: list[Row] = field(default_factory=list)

@@ -1,4 +1,4 @@
-"""The CAN bus as the machine file describes it. Loads python-can and canopen, which not everybody has."""
+"""CANopen backend. Loads python-can and canopen, which are optional."""
 
 from __future__ import annotations
 
@@ -35,7 +35,10 @@ _LIBRARIES = frozenset(("can", "canopen", "msgpack"))
 
 
 def canopen_machine(machine: Machine, clock: Clock, idle: Callable[[], None] | None = None) -> CanopenMachine:
-    """Connect to the bus of a machine file. Raises DriverError; one that names a library that is missing."""
+    """Connect to the bus of a machine file.
+
+    Raises DriverError, which names a missing library.
+    """
     try:
         from drivers.canopen.canopen_machine import CanopenMachine
     except ImportError as error:
@@ -44,7 +47,7 @@ def canopen_machine(machine: Machine, clock: Clock, idle: Callable[[], None] | N
 
 
 def canopen_peers(machine: Machine, clock: Clock) -> CanopenDevices:
-    """Simulated drives and terminals for the other end of that bus. Raises DriverError."""
+    """Return simulated drives and terminals for the bus of a machine file. Raises DriverError."""
     from app.compose.backends.simulated_backend import sim_config
 
     try:
@@ -55,7 +58,7 @@ def canopen_peers(machine: Machine, clock: Clock) -> CanopenDevices:
 
 
 def canopen_survey(machine: Machine, clock: Clock) -> list[Answer]:
-    """Each node of that bus asked what it is. Raises DriverError."""
+    """Ask each node of the bus for its identity. Raises DriverError."""
     try:
         from drivers.canopen.canopen_survey import survey
     except ImportError as error:
@@ -64,7 +67,7 @@ def canopen_survey(machine: Machine, clock: Clock) -> list[Answer]:
 
 
 def lacking(error: ImportError) -> str:
-    """One sentence for a library that is not there."""
+    """Return the message for a missing library."""
     name = (error.name or "").partition(".")[0]
     library = {"can": "python-can"}.get(name, name) if name in _LIBRARIES else str(error)
     return Message(
@@ -73,11 +76,11 @@ def lacking(error: ImportError) -> str:
 
 
 def canopen_config(machine: Machine) -> CanopenConfig:
-    """The bus's figures from the machine file's. Raises DriverError for a machine without a bus."""
+    """Return the configuration of the bus. Raises DriverError if the machine file has no bus."""
     can = machine.hardware.table(CanopenTable)
     if can is None:
         raise DriverError("{source}: the [canopen] table is missing", source=machine.source)
-    folder = Path(machine.source).parent  # of EDS files, unless their path says otherwise
+    folder = Path(machine.source).parent  # folder of EDS files with relative paths
     found = [replace(node, eds=str(folder / node.eds) if node.eds else "") for node in can.nodes]
     nodes = {node.name: node for node in found}
     modules = tuple(node for node in found if node.profile == 401)
@@ -126,7 +129,10 @@ def _spindle(machine: Machine, nodes: dict[str, CanNode]) -> SpindleConfig | Non
 
 
 def _encoder(machine: Machine, nodes: dict[str, CanNode]) -> EncoderConfig | None:
-    """A drive's node is its own: its second input is mapped there."""
+    """Return the configuration of the encoder, or None.
+
+    The encoder of a drive has no node entry, because the drive's node maps its second input.
+    """
     model = machine.hardware.table(EncoderTable)
     if model is None:
         return None
@@ -143,16 +149,16 @@ def _terminal(text: str, first: str) -> CanTerminal:
 
 
 def _played(machine: Machine) -> bool:
-    """On a virtual bus the other end is here too: there is none elsewhere."""
+    """Return whether the bus is virtual, so that its devices are simulated in this process."""
     can = machine.hardware.table(CanopenTable)
     return can is not None and not can.own_process
 
 
 def can_driven(machine: Machine, clock: Clock) -> Driven:
-    """The machine on its bus, for the driver host. Raises DriverError."""
+    """Return the machine on its bus for the driver host. Raises DriverError."""
     peers = canopen_peers(machine, clock) if _played(machine) else None
     try:
-        # A clock that stands waits for nobody: the peers are looked after in between.
+        # A stopped clock does not let the peers run, so they are served between the steps.
         owned = canopen_machine(machine, clock, peers.pump if peers is not None else None)
     except DriverError:
         if peers is not None:
@@ -205,7 +211,7 @@ def _survey(machine: Machine, clock: Clock) -> Iterator[tuple[str, str, str, str
 
 
 def _measured(machine: Machine) -> Iterator[str]:
-    """Axes and a spindle that have a node, and everything at the terminals of the modules."""
+    """Yield the axes and the spindle with a node, and all inputs of the modules."""
     config = canopen_config(machine)
     yield from (axis.name for axis in config.axes if axis.node is not None)
     if config.spindle is not None or config.encoder is not None:
@@ -218,11 +224,11 @@ def _measured(machine: Machine) -> Iterator[str]:
 BACKEND = Backend("bus", driven=can_driven, played=_played, play=_play, survey=_survey, measured=_measured)
 
 
-# --- What a control writes to the nodes of a bus at each start, to be compared with what it wrote before.
+# --- Values that a control writes to the nodes at each start, to be compared with those of the last start.
 
 
 def written_at_start(machine: Machine) -> dict[str, Objects]:
-    """Every object that each node is told at a start, by the node's name. Raises DriverError."""
+    """Return every object written to each node at a start, by node name. Raises DriverError."""
     try:
         from drivers.canopen.canopen_objects import drive_dictionary
         from drivers.canopen.canopen_setup import axis_objects, stopping, watching

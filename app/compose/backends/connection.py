@@ -1,6 +1,6 @@
-"""From a machine file to ports: in this process, or through the driver host's.
+"""Connection of a machine to its ports, in this process or through the driver host.
 
-The driver host is loaded by the machines that have it: everybody waits for what a start loads.
+The driver host is loaded only for machines that use it, because loading delays the start.
 """
 
 from __future__ import annotations
@@ -12,11 +12,12 @@ from app.compose.extra import extras
 from core.machine.machine_model import Machine
 from core.ports import Clock
 
-HAS_DRIVER_HOST = sys.platform != "win32"  # elsewhere a simulated machine lives in the control's own process
+# on other systems a simulated machine runs in the control's process
+HAS_DRIVER_HOST = sys.platform != "win32"
 
 
 def connect(machine: Machine, clock: Clock) -> Connected:
-    """Everything the executor needs. Raises DriverError for what does not answer."""
+    """Return everything that the executor needs. Raises DriverError if a device does not respond."""
     connected = _connected(wired(machine), clock)
     for extra in extras().values():
         connected = extra.connect(machine, connected)
@@ -24,7 +25,7 @@ def connect(machine: Machine, clock: Clock) -> Connected:
 
 
 def wired(machine: Machine) -> Machine:
-    """Return the machine as its backend is wired: without the inputs that optional features provide."""
+    """Return the machine without the inputs that optional features provide, as its backend is wired."""
     for extra in extras().values():
         machine = extra.wired(machine)
     return machine
@@ -41,5 +42,5 @@ def _connected(machine: Machine, clock: Clock) -> Connected:
 
 
 def real_time(machine: Machine) -> bool:
-    """Whether something of it keeps its own time: no clock that is moved by hand will do."""
+    """Return whether a part of the machine runs in real time, so that a step clock cannot be used."""
     return has_inverter(machine) or not played(machine)

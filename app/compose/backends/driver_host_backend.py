@@ -1,4 +1,4 @@
-"""Connects a machine through the driver host: in a separate process, or in this one with a test clock."""
+"""Connection of a machine through the driver host, in a separate process or in this one for tests."""
 
 from __future__ import annotations
 
@@ -15,10 +15,7 @@ from drivers.waiting import RealClock
 
 
 def connect_driver_host(machine: Machine, clock: Clock) -> Connected:
-    """Start the driver host and ask it for the machine's ports.
-
-    Raises DriverError where it does not answer.
-    """
+    """Start the driver host and return the machine's ports. Raises DriverError if it does not respond."""
     line, close = _line(machine, clock)
     try:
         ports = host_ports(line)
@@ -31,7 +28,10 @@ def connect_driver_host(machine: Machine, clock: Clock) -> Connected:
 
 
 def _line(machine: Machine, clock: Clock) -> tuple[Line, Callable[[], None]]:
-    """The driver host in its own process where time is real, else the same messages in this thread."""
+    """Return the connection to the driver host and its close function.
+
+    With a real clock the driver host is a process; otherwise the same messages run in this thread.
+    """
     if isinstance(clock, RealClock) and not _virtual(machine):
         process = DriverHostProcess(machine, clock)
         return process.line, process.close
@@ -40,5 +40,5 @@ def _line(machine: Machine, clock: Clock) -> tuple[Line, Callable[[], None]]:
 
 
 def _virtual(machine: Machine) -> bool:
-    """A bus that cannot be reached from another process."""
+    """Return whether the machine has a bus that another process cannot reach."""
     return backend_of(machine).connect is None and played(machine)

@@ -1,6 +1,6 @@
-"""Starts the driver host, and is it.
+"""The driver host process, and the class that starts it.
 
-``python -m app.compose.backends.driver_host_process FD ZERO BELL``, with the machine on stdin.
+The command is ``python -m app.compose.backends.driver_host_process FD ZERO BELL``, with the machine on stdin.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from drivers.waiting import Bell, Opening, RealClock
 
 
 def driven(machine: Machine, clock: Clock) -> Driven:
-    """What the machine file's backend and its spindle are driven by. Raises DriverError."""
+    """Return the backend and spindle of a machine for the driver host. Raises DriverError."""
     make = backend_of(machine).driven
     if make is None:
         raise DriverError(f"{machine.source}: the driver host does not support backend {machine.backend}")
@@ -35,22 +35,22 @@ def driven(machine: Machine, clock: Clock) -> Driven:
     if not has_inverter(machine):
         return inner
     ports, close = with_inverter(machine, inner.ports, clock, inner.close)
-    # The inverter's thread wakes nobody: what it has heard is looked at as often as before.
+    # The inverter's thread does not wake the control, so its values are polled at this interval.
     return replace(inner, ports=ports, close=close, idle=lambda asleep: min(inner.idle(asleep), _INVERTER))
 
 
-_INVERTER = 0.05  # s between two looks at what an inverter has told, while the control sleeps
-_START = 20.0  # s for the first answer: the process has to start and to configure every drive
+_INVERTER = 0.05  # s between two polls of the inverter's values while the control is idle
+_START = 20.0  # s until the first response, because the process must start and configure every drive
 _END = 10.0
 
 
 class DriverHostProcess:
-    """A driver host in its own process, and the line to it."""
+    """A driver host in a separate process, and the connection to it."""
 
     def __init__(self, machine: Machine, clock: RealClock) -> None:
         self._machine, self._clock = machine, clock
         self._closed = False
-        self._bell = Bell()  # the same for whichever driver host there is
+        self._bell = Bell()  # retained when the driver host is restarted
         try:
             link = self._begin()
         except DriverError:
@@ -59,7 +59,7 @@ class DriverHostProcess:
         self.line = Line(link, clock, self._again, self._bell)
 
     def _again(self) -> Opening[Link]:
-        """Another process, once the one before has ended: two would be two masters on one bus."""
+        """Start another process after the old one has ended, so that the bus never has two masters."""
 
         def begun() -> Link:
             self._end()
@@ -70,7 +70,7 @@ class DriverHostProcess:
         return Opening(begun)
 
     def _begin(self) -> Link:
-        """Raises DriverError with what it says of its drivers."""
+        """Start the process and return its link. Raises DriverError with the error of its drivers."""
         machine, clock = self._machine, self._clock
         ours, theirs = socket.socketpair()
         with theirs:
@@ -82,7 +82,8 @@ class DriverHostProcess:
                 repr(clock.zero),
                 str(self._bell.far.fileno()),
             ]
-            # A session of its own: Ctrl-C is for the control, which then ends the driver host in good order.
+            # A separate session, so that Ctrl-C reaches only the control, which then ends the driver host
+            # properly.
             self.process = subprocess.Popen(
                 command,
                 stdin=subprocess.PIPE,
@@ -94,7 +95,7 @@ class DriverHostProcess:
             pipe.write(pickle.dumps(machine))
         self._link = SocketLink(ours)
         ready = self._first(ours)
-        if self._closed:  # while it started again
+        if self._closed:  # closed during a restart
             self._end()
             raise DriverError("the control is shutting down", "feeder-gone")
         if why := fault_of(ready.head, "error", "feeder-gone"):
@@ -103,7 +104,7 @@ class DriverHostProcess:
         return self._link
 
     def close(self) -> None:
-        """The driver host stops what is left and ends; one that is being started again, too."""
+        """Let the driver host stop the machine and end, even if it is being restarted."""
         self._closed = True
         self._end()
         self._bell.close()
@@ -117,7 +118,7 @@ class DriverHostProcess:
             self.process.wait()
 
     def _first(self, sock: socket.socket) -> Message:
-        """The driver host's own first word: it is ready, or why not."""
+        """Return the first message of the driver host: ready, or the reason for a failure."""
         inbox = Inbox()
         sock.settimeout(_START)
         try:
@@ -126,19 +127,22 @@ class DriverHostProcess:
                     return message
         except TimeoutError:
             return Message({"error": "the driver host does not start"}, NOTHING)
-        except OSError as error:  # closed while it starts
+        except OSError as error:  # closed during the start
             return Message({"error": f"no response from the driver host ({error.strerror})"}, NOTHING)
         return Message({"error": "the driver host ended during start-up; see its message above"}, NOTHING)
 
 
 def beat(machine: Machine) -> float:
-    """Seconds from setpoint to setpoint where the drives want each at its time; else 0."""
+    """Return the seconds between setpoints if the drives need each setpoint on time, otherwise 0."""
     can = machine.hardware.table(CanopenTable)
     return can.sync if can is not None and can.mode in CYCLIC else 0.0
 
 
 def without_priority(period: float, late: float) -> str:
-    """What a driver host cannot promise whose trial has come so late, in words for the operator."""
+    """Return the warning for the operator that the driver host has no real-time priority.
+
+    ``period`` is the time between setpoints, and ``late`` the largest delay in the test, in seconds.
+    """
     template = (
         (
             "{cause}, a SYNC every {period} ms is not reliable, even though the SYNC arrived in "
@@ -164,10 +168,10 @@ def without_priority(period: float, late: float) -> str:
 
 
 def main(arguments: list[str]) -> int:
-    """The process: connect, say so, serve until the control has gone."""
+    """Connect the drivers, report the result, and serve requests until the control disconnects."""
     sock = socket.socket(fileno=int(arguments[0]))
     clock: Clock = RealClock(float(arguments[1]))
-    machine = pickle.load(sys.stdin.buffer)  # of our own parent, over a pipe that nobody else has
+    machine = pickle.load(sys.stdin.buffer)  # from the parent process, over a pipe that no other process has
     warnings = real_time()
     locked = keep_memory()
     if warnings and (period := beat(machine)):
@@ -179,7 +183,7 @@ def main(arguments: list[str]) -> int:
         return 1
     if machine_driven.wake() is None:
         locked = keep_memory()
-    else:  # a tenth of a second without a setpoint is more than drives wait for one
+    else:  # a garbage collection could take 0.1 s, which is longer than drives wait for a setpoint
         gc.freeze()
     warnings += locked
     sock.sendall(packed(Message({"ready": True}, NOTHING)))

@@ -1,4 +1,4 @@
-"""The grblHAL controller as the machine file describes it."""
+"""Backend for a grblHAL controller."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ from drivers.simulators.grblhal_firmware import Firmware
 from drivers.waiting import RealClock
 
 _WIRED = frozenset(("X", "Z"))
-_HERE = frozenset((35, 37))  # homing methods of CiA 402 that take the present place
+_HERE = frozenset((35, 37))  # homing methods of CiA 402 that use the present position
 
 
 def grblhal_config(machine: Machine) -> GrblConfig:
-    """The controller's figures from the machine file's. Raises DriverError for what it cannot be."""
+    """Return the configuration of the controller. Raises DriverError if the machine file does not fit."""
     model = machine.hardware.table(GrblhalTable)
     if model is None:
         raise DriverError("{source}: the [grblhal] table is missing", source=machine.source)
@@ -54,7 +54,7 @@ def _play(
     say: Callable[[str], None],
     _typed: Callable[[], Iterable[str]],
 ) -> None:
-    """A simulator of the controller, on the TCP port of the machine file or on a new pseudo terminal."""
+    """Run a simulator of the controller on the TCP port of the machine file, or on a new pseudo terminal."""
     address = tcp_address(grblhal_config(machine).table.port)
     end: TcpEnd | PtyEnd = PtyEnd() if address is None else TcpEnd(*address)
     say(
@@ -74,9 +74,9 @@ def _axis(axis: Axis, machine: Machine) -> GrblAxis:
 
 
 def _connect(machine: Machine, clock: Clock) -> Connected:
-    """A controller that plans by itself; it knows no buttons, so the station is the screen's.
+    """Connect a controller that plans motion itself; its operator station is on the screen.
 
-    Where an inverter turns the spindle, the controller's encoder, if any, measures it.
+    If an inverter drives the spindle, the controller's encoder, if any, measures its speed.
     """
     controller = GrblMachine(grblhal_config(machine), clock)
     ports, close, encoder = controller.ports, controller.close, controller.encoder
@@ -89,9 +89,10 @@ def _connect(machine: Machine, clock: Clock) -> Connected:
 
 
 def _measured(machine: Machine) -> Iterator[str]:
-    """The controller, a spindle with an encoder, and the inputs.
+    """Yield the controller, a spindle with an encoder, and the inputs.
 
-    The controller counts the steps that it sends, and the overrides are those of the screen.
+    Axis positions are only counted steps, and the overrides are those of the screen, so they are not
+    measured.
     """
     yield "controller"
     if machine.spindle.encoder_ppr:

@@ -1,4 +1,4 @@
-"""LinuxCNC's HAL as the machine file describes it."""
+"""Backend for LinuxCNC HAL."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from drivers.waiting import RealClock
 
 
 def hal_config(machine: Machine) -> HalConfig:
-    """HAL's figures from the machine file's. Raises DriverError for a machine without it."""
+    """Return the configuration of HAL. Raises DriverError if the machine file has no [hal] table."""
     hal = machine.hardware.table(HalTable)
     if hal is None:
         raise DriverError("{source}: the [hal] table is missing", source=machine.source)
@@ -53,7 +53,7 @@ def hal_config(machine: Machine) -> HalConfig:
 
 
 def _file(machine: Machine, name: str) -> Path:
-    """The HAL file: beside the machine file, or of a shipped machine among those that are shipped."""
+    """Return the path of the HAL file: next to the machine file, or among the shipped files."""
     beside = Path(machine.source).parent / name
     return resources.hal_file(name) if not Path(machine.source).exists() else beside.resolve()
 
@@ -76,7 +76,7 @@ def _is_spindle(axis: Axis, machine: Machine, hal: HalTable) -> bool:
 
 
 def hal_driven(machine: Machine, clock: Clock) -> Driven:
-    """The machine behind HAL, for the driver host. Raises DriverError."""
+    """Return the machine on HAL for the driver host. Raises DriverError."""
     config = hal_config(machine)
     zero = clock.zero if isinstance(clock, RealClock) else 0.0
     owned = HalMachine(config, clock, lambda: HalSession(config, zero))
@@ -89,7 +89,7 @@ def hal_driven(machine: Machine, clock: Clock) -> Driven:
 
 
 def _survey(machine: Machine, _clock: Clock) -> Iterator[tuple[str, str, str, str]]:
-    """Every pin that the machine file names: whether HAL has it, and as what."""
+    """Yield every pin that the machine file names, with the fault that HAL reports."""
     session = HalSession(hal_config(machine), 0.0, only_check=True)
     session.close()
     for each in session.verdicts:
@@ -97,10 +97,10 @@ def _survey(machine: Machine, _clock: Clock) -> Iterator[tuple[str, str, str, st
 
 
 def _measured(machine: Machine) -> Iterator[str]:
-    """Axes with an encoder, a spindle with an encoder, and all inputs; nothing on a simulated board.
+    """Yield the axes and the spindle with encoders, and all inputs; nothing for a simulated board.
 
-    The position of a step drive is the number of steps that were sent. Without [board], the driver does not
-    know what is at the pins of the axes.
+    The position of a step drive is only the number of steps sent. Without [board], the driver does not know
+    the kind of the axes' drives.
     """
     board, hal = machine.hardware.table(BoardTable), machine.hardware.table(HalTable)
     if board is not None and board.kind == SIM:

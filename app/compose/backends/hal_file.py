@@ -1,4 +1,4 @@
-"""The HAL file of LinuxCNC that belongs to a machine file, and what is wired where."""
+"""The LinuxCNC HAL file for a machine file, with its wiring table."""
 
 from __future__ import annotations
 
@@ -30,9 +30,10 @@ _BOARDS: Mapping[str, Callable[[Lathe], HalFile]] = {
 
 @dataclass(frozen=True, slots=True)
 class WrittenHal:
-    """What is written for a machine: its HAL file, ``name`` as [hal] has it, and files beside it.
+    """The generated files and tables for a machine.
 
-    ``wires`` are rows of the wiring table, ``table`` the same as lines, ``measure`` what to measure.
+    ``name`` is the file name in [hal], and ``wires`` are the rows of the wiring table. Other attributes are
+    the additional files, the wiring table as text lines, and the required measurements.
     """
 
     name: str
@@ -45,7 +46,7 @@ class WrittenHal:
 
 
 def written_hal(machine: Machine) -> WrittenHal:
-    """The HAL file of a machine as text. Raises as ``hal_file``."""
+    """Return the HAL file of a machine as text. Raises the errors of ``hal_file``."""
     file, hal = hal_file(machine), machine.hardware.table(HalTable)
     return WrittenHal(
         name=hal.file if hal is not None else "",
@@ -59,10 +60,10 @@ def written_hal(machine: Machine) -> WrittenHal:
 
 
 def hal_file(machine: Machine) -> HalFile:
-    """The HAL file of a machine behind LinuxCNC's HAL.
+    """Return the HAL file of a machine that uses LinuxCNC HAL.
 
-    Raises CommandError for a machine without [hal] or [board], MachineFileError for names that its board has
-    not.
+    Raises CommandError if the machine file has no [hal] or [board], and MachineFileError for names that the
+    board does not have.
     """
     hal, board = machine.hardware.table(HalTable), machine.hardware.table(BoardTable)
     if hal is None or machine.backend != "hal":
@@ -84,7 +85,7 @@ def hal_file(machine: Machine) -> HalFile:
             ),
             "no-board",
         )
-    if machine.hardware.spindle_driver != "hal":  # an inverter on a line of its own
+    if machine.hardware.spindle_driver != "hal":  # an inverter on a separate serial line
         board = replace(board, spindle=replace(board.spindle, full_speed=0.0, pwm="", channel=-1))
     axes = [
         LatheAxis(axis.name, axis.count, axis.vmax, axis.amax)
@@ -111,7 +112,7 @@ def hal_file(machine: Machine) -> HalFile:
 
 
 def _names(machine: Machine, hal: HalTable) -> Iterator[tuple[str, str]]:
-    """Every pin or signal that the machine file names, by its key."""
+    """Yield every pin or signal in the machine file, with its key."""
     yield from ((f"hal.{key}", getattr(hal, key)) for key in ("machine_on", "charge_pump", "link_fault"))
     for axis, pins in hal.axes.items():
         yield from ((f"hal.axes.{axis}.{key}", name) for key, name in asdict(pins).items())

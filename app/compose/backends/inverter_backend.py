@@ -1,4 +1,4 @@
-"""A frequency inverter on a serial line takes the place of a backend's own spindle."""
+"""Frequency inverter on a serial line, in place of the backend's own spindle."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ def with_inverter(
     close: Callable[[], None],
     measures: Encoder | None = None,
 ) -> tuple[MachinePorts, Callable[[], None]]:
-    """The ports with the inverter for their spindle, and how to let all of it go: the spindle first.
+    """Return the ports with the inverter as spindle, and a function that closes both, the spindle first.
 
-    ``close`` lets the rest go, also where the inverter does not answer: DriverError. ``measures`` is an
-    encoder beside the backend's spindle.
+    ``close`` closes the other devices. It is also called if the inverter does not respond. ``measures`` is an
+    encoder in addition to the backend's spindle. Raises DriverError if the inverter does not respond.
     """
     try:
         thread, joined = _attended(machine, ports, clock, measures)
@@ -54,7 +54,7 @@ def _attended(
             "an inverter on a serial line works only in real time, not with a clock that is advanced manually"
         )
     config = machine.hardware.table(InverterTable)
-    assert config is not None  # a rule of the machine file
+    assert config is not None  # checked by a rule of the machine file
     line = config.line
     attended = attendant(config, lambda: open_wire(line), clock, Path(machine.source).parent)
     thread = AttendantThread(attended)
@@ -89,7 +89,7 @@ def _attended(
         if ports.samples is not None
         else None,
         warnings=(*ports.warnings, *said),
-        wakeup=None,  # nobody rings for what the inverter does by itself
+        wakeup=None,  # the inverter does not notify changes
         halt=partial(halt_with, ports, spindle),
         unknown=partial(unknown_with, ports, spindle),
         spindle_lag=spindle.lag,
@@ -98,22 +98,22 @@ def _attended(
 
 
 def unknown_with(ports: MachinePorts, spindle: InverterSpindle) -> frozenset[Unknown]:
-    """Of the rest what it says; of the spindle what its own line and its encoder say."""
+    """Return the unknown parts of the backend, with the spindle judged by the inverter and its encoder."""
     rest = ports.unknown() - {Unknown.SPINDLE}
     return rest | {Unknown.SPINDLE} if spindle.unknown else rest
 
 
 def halt_with(ports: MachinePorts, spindle: InverterSpindle) -> None:
-    """The inverter's thread takes its stop from any other; then the rest."""
+    """Stop the inverter from any thread, then the other devices."""
     spindle.coast()
     if ports.halt is not None:
         ports.halt()
 
 
 class SlidesAlone:
-    """``SampleSource``: the same samples without what they say of a spindle, which is not the one that turns.
+    """A ``SampleSource`` without the spindle values of the backend, whose spindle is not used.
 
-    Of that one the record has what is measured at each tick.
+    The record has the values of the real spindle from each tick.
     """
 
     def __init__(self, inner: SampleSource, axes: int, load: Callable[[], float]) -> None:
@@ -121,7 +121,7 @@ class SlidesAlone:
         self._spindle = slice(1 + 3 * axes, 4 + 3 * axes)
 
     def take(self, most: int = 8192) -> FloatArray:
-        """Speed and turns of the spindle are not known; its load is what the inverter said last."""
+        """Return the samples with unknown spindle speed and revolutions, and the inverter's last load."""
         rows = self._inner.take(most)
         rows[:, self._spindle] = float("nan")
         rows[:, self._spindle.stop - 1] = self._load()
@@ -129,7 +129,7 @@ class SlidesAlone:
 
 
 class ClearingAxes:
-    """``AxisSink``: the same axes, whose fault is cleared together with the spindle's."""
+    """An ``AxisSink`` whose faults are cleared together with those of the spindle."""
 
     def __init__(self, inner: AxisSink, beside: Callable[[], None]) -> None:
         self._clear, self._beside = inner.clear_fault, beside
@@ -139,6 +139,6 @@ class ClearingAxes:
         self.stop, self.home = inner.stop, inner.home
 
     def clear_fault(self) -> None:
-        """Both. Raises DriverError."""
+        """Clear the faults of the spindle and of the axes. Raises DriverError."""
         self._beside()
         self._clear()

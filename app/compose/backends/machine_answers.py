@@ -1,4 +1,4 @@
-"""Connects to a machine and asks everything in it how it is."""
+"""Check of a connected machine: state of every node, drive, input and output."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ from drivers.inverter.inverter_spindle import InverterSpindle
 from drivers.inverter.inverter_table import InverterTable
 from drivers.waiting import RealClock, StepClock
 
-_SETTLED = 0.3  # s in which pots and inputs have been heard that are told only now and then
-_LONGEST = 3.0  # s for inputs that are read in turns
+_SETTLED = 0.3  # s after which pots and inputs that are reported occasionally are known
+_LONGEST = 3.0  # s for inputs that are read one after the other
 _LOOK = 0.02  # s
 
 
 def check_ports(machine: Machine) -> Answers:
-    """Each node of a bus, each drive, spindle, station, input, output and pot. Raises nothing of its own.
+    """Check each node, drive, spindle, station, input, output and pot. Driver errors become results.
 
     Nothing is switched on and nothing moves.
     """
@@ -54,7 +54,7 @@ def check_ports(machine: Machine) -> Answers:
 
 
 def _ask_nodes(machine: Machine, clock: Clock, answers: Answers) -> None:
-    """On a real bus every node by itself, so that one that is missing does not hide the others."""
+    """Ask every node of a real bus separately, so that a missing node does not hide the others."""
     survey = backend_of(machine).survey
     if survey is None or played(machine):
         return
@@ -97,7 +97,7 @@ def _measured(machine: Machine, connected: Connected) -> set[str]:
 
 
 def _settle(clock: Clock, ports: MachinePorts, machine: Machine) -> None:
-    """Look on like a control that is awake; a controller reads its auxiliary inputs one after the other."""
+    """Poll the axes until all inputs are known, as a controller may read auxiliary inputs one by one."""
     began = clock.now()
     while (waited := clock.now() - began) < _LONGEST:
         ports.axes.sample()
@@ -107,7 +107,7 @@ def _settle(clock: Clock, ports: MachinePorts, machine: Machine) -> None:
 
 
 def _blamed(machine: Machine) -> str:
-    """What it was that could not be reached."""
+    """Return the name of the part that could not be reached."""
     word = backend_of(machine).word
     return "spindle" if word == "feeder" and has_inverter(machine) else word
 
@@ -168,7 +168,7 @@ def _place(axis: Axis, at: float, machine: Machine) -> str:
 
 
 def _node(machine: Machine, name: str) -> str:
-    """The node of a drive, or the port of an inverter."""
+    """Return the node of a drive, or the port of an inverter."""
     hardware = machine.hardware
     inverter, can = hardware.table(InverterTable), hardware.table(CanopenTable)
     if name == "spindle" and hardware.spindle_driver == "vfd" and inverter is not None:

@@ -1,4 +1,4 @@
-"""Simulated drives and terminals on a real bus, and hands for them: words typed where they play."""
+"""Simulated drives and terminals on a real bus, operated by typed commands."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from drivers.simulators.canopen_devices import CanopenDevices
     from drivers.simulators.plant_hands import PlantHands
 
-# --- Hands at a simulated machine that runs in another process: words typed where it plays.
+# --- Operation of a simulated machine in another process, by commands typed in its terminal.
 
 
 HELP = (
@@ -32,17 +32,18 @@ _CHUNK = 4096
 
 
 class Typed:
-    """Whole lines from a descriptor, without ever waiting for one."""
+    """Reader of whole lines from a file descriptor that never blocks."""
 
     def __init__(self, source: int) -> None:
         self._source = source
         self._open = True
         self._text = b""
-        # In the background of a shell a read would stop this process; so it fails, and that is the end.
+        # In the background of a shell, a read would stop this process. With the signal ignored, the read
+        # fails and reading ends.
         signal.signal(signal.SIGTTIN, signal.SIG_IGN)
 
     def lines(self) -> Iterator[str]:
-        """What has been typed since."""
+        """Yield the lines typed since the last call."""
         if self._open and select.select([self._source], [], [], 0)[0]:
             data = b""
             with contextlib.suppress(OSError):
@@ -56,7 +57,7 @@ class Typed:
 
 
 def obey(line: str, peers: CanopenDevices) -> str:
-    """Do what one line says; what was done or why not, in words."""
+    """Carry out one typed command; return the result or the error as text."""
     name, *values = line.split()
     try:
         act = _ACTS[name]
@@ -109,7 +110,7 @@ _ACTS: dict[str, Callable[..., None]] = {
 }
 
 _ROUND = 0.001  # s
-_STEP = 0.005  # s; a peer that was away catches up in such steps, frame by frame
+_STEP = 0.005  # s, the step in which a delayed simulation catches up, frame by frame
 
 
 def play_peers(
@@ -119,12 +120,13 @@ def play_peers(
     typed: Callable[[], Iterable[str]],
     make: Callable[[Machine, Clock], CanopenDevices],
 ) -> None:
-    """Answer on the machine file's bus while ``going``; ``say`` tells what it is and what was ``typed``.
+    """Simulate the devices on the machine file's bus while ``going`` returns True.
 
-    Raises DriverError when it cannot be opened.
+    ``say`` outputs messages, and ``typed`` returns typed lines. Raises DriverError if the bus cannot be
+    opened.
     """
     can = machine.hardware.table(CanopenTable)
-    assert can is not None  # a rule of the machine file
+    assert can is not None  # checked by a rule of the machine file
     if not can.own_process:
         raise DriverError(
             "the CAN interface virtual works only within a single process that also simulates "
@@ -133,7 +135,8 @@ def play_peers(
     clock, zero, epoch = StepClock(), time.monotonic(), time.time()
     peers = make(machine, clock)
     keep_memory()
-    real_time(PRIORITY - 10)  # drives are punctual; where this is refused the driver host has said so already
+    # drives respond on time; if priority is refused, the driver host has already reported it
+    real_time(PRIORITY - 10)
     peers.arrival = lambda stamp: stamp - epoch
     say(
         Message(

@@ -1,4 +1,4 @@
-"""Serial ports. Loads pyserial, which a machine without a serial line need not have."""
+"""Serial ports. Loads pyserial, which is needed only for machines with a serial line."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ MISSING = "serial ports need pyserial; install it with: pip install pyserial"
 
 
 def open_wire(settings: LineSettings, *, watch: bool = False) -> FlowWire:
-    """A port for us alone; ``watch`` counts damaged characters.
+    """Open a port exclusively; ``watch`` counts damaged characters.
 
-    Raises DriverError; it names the library where that is missing.
+    Raises DriverError, which names a missing library.
     """
     try:
         from drivers.serial_port import SerialWire
@@ -21,7 +21,7 @@ def open_wire(settings: LineSettings, *, watch: bool = False) -> FlowWire:
 
 
 def serial_ports() -> list[tuple[str, str]]:
-    """(device, what it is) of each port of this computer. Raises DriverError."""
+    """Return device and description of each port of this computer. Raises DriverError."""
     try:
         from drivers.serial_port import list_ports
     except ImportError as error:

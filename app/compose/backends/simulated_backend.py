@@ -1,4 +1,4 @@
-"""The simulated lathe as the machine file describes it."""
+"""Backend for the simulated lathe."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ if TYPE_CHECKING:
 
 
 def simulated(machine: Machine, clock: Clock) -> Simulation:
-    """Ports and handle of a simulated lathe on this clock."""
+    """Return the ports and the simulated operator station of a simulated lathe on this clock."""
     return build_simulation(sim_config(machine), clock)
 
 
 def sim_config(machine: Machine) -> SimConfig:
-    """The plant's figures from the machine file's."""
+    """Return the configuration of the simulation."""
     spindle, sim = machine.spindle, machine.hardware.table(SimulatedTable) or SimulatedTable()
     return SimConfig(
         axes=tuple(_axis(axis, machine) for axis in machine.axes),
@@ -56,7 +56,7 @@ def sim_config(machine: Machine) -> SimConfig:
 
 
 def _setter(machine: Machine, tips: tuple[tuple[float, float], ...]) -> SimSetter | None:
-    """The tool setter of the machine file, for the tips that its simulation has."""
+    """Return the simulated tool setter if the machine file has one with tool tips, or None."""
     model = machine.hardware.table(SetterModel)
     return SimSetter(model.x, model.z, model.width, tips) if model is not None and tips else None
 
@@ -66,7 +66,7 @@ def _axis(axis: Axis, machine: Machine) -> SimAxis:
 
 
 def _driven(machine: Machine, clock: Clock) -> Driven:
-    """For the driver host; the plant goes on also when nobody looks."""
+    """Return the simulated machine for the driver host; the simulation also runs while no client polls it."""
     from drivers.driver_host.host_server import RESTS, Driven
 
     ports, hands = simulated(machine, clock)
@@ -80,7 +80,7 @@ def _driven(machine: Machine, clock: Clock) -> Driven:
 
 
 def _in_process(machine: Machine, clock: Clock) -> Connected:
-    """The simulated machine, whose spindle may be a real one."""
+    """Connect the simulated machine in this process; its spindle may be a real inverter."""
     ports, hands = simulated(machine, clock)
     close = _nothing
     if has_inverter(machine):
@@ -91,7 +91,7 @@ def _in_process(machine: Machine, clock: Clock) -> Connected:
 
 
 def _nothing() -> None:
-    """There is nothing to let go."""
+    """Close nothing, because the simulation has no resources."""
 
 
 BACKEND = Backend("feeder", driven=_driven, connect=_in_process, played=lambda _machine: True)

@@ -1,1 +1,1 @@
-"""The control in a process of its own: executor and drivers there, the screen is its client."""
+"""The control in a separate process with executor and drivers; the operator screen is its client."""

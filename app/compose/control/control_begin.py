@@ -1,4 +1,4 @@
-"""Begins to start the screen: finds the control that a killed screen has left, or starts one."""
+"""First step of the screen's start: find a control that is still running, or start one."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ if TYPE_CHECKING:
 
 
 def begin_control(machine_file: str | None) -> Begun:
-    """Return the machine of the file, and its control without waiting for it.
+    """Return the machine of the file, and its control without waiting for the control.
 
-    The control is None where it runs on a thread of the screen's process. Raises CommandError for a bad
-    machine file, and for a control that runs a program with another machine file.
+    The control is None if it runs in a thread of the screen's process. Raises CommandError for an invalid
+    machine file, and if a running control executes a program with another machine file.
     """
     machine = read_machine(machine_file)
     if not OWN_PROCESS:

@@ -1,4 +1,4 @@
-"""The control as the screen sees it: what is posted to its process, and what has come from there."""
+"""The control as seen by the screen: commands sent to its process, and messages received from there."""
 
 from __future__ import annotations
 
@@ -49,11 +49,11 @@ from drivers.operator_station import PostedHands
 from drivers.waiting import RealClock
 
 _log = logging.getLogger(__name__)
-STARTS_IN = 20.0  # s for the first message: drives may have to be configured
+STARTS_IN = 20.0  # s until the first message, because drives may have to be configured
 ALIVE_EVERY = 0.25  # s
-ENDS = 1.0  # s that closing waits for a thread
-ANSWERS_IN = 2.0  # s for that of a control that runs already
-# What ``recv`` raises at the end of the connection, and for bytes that are no message of this version.
+ENDS = 1.0  # =
+ANSWERS_IN = 2.0  # s until the first message of a control that is already running
+# Exceptions that ``recv`` raises at the end of the connection, and for messages of another version.
 _NO_MESSAGE = (
     OSError,
     EOFError,
@@ -66,13 +66,13 @@ _NO_MESSAGE = (
 )
 _ENDED = "ended"
 _SILENT = "the control that is running does not respond: restart the computer"
-_SAVED_IN = 5.0  # s for the record of an alarm
-CLOSES_IN = 20.0  # s: drives that come on are waited for, then the machine is halted
+_SAVED_IN = 5.0  # s to save the record of an alarm
+CLOSES_IN = 20.0  # s, for drives that are switching on; then the machine is halted
 
 
 @dataclass(slots=True)
 class ControlEvents:
-    """What is called on the client's thread when something comes from the control."""
+    """Functions called in the client's thread for messages of the control."""
 
     event: Callable[[Event], None]
     note: Callable[[InterruptedJob | None], None]
@@ -81,13 +81,13 @@ class ControlEvents:
 
 
 class ControlClient:
-    """The process of the control. ``snapshot`` is the newest; ``post`` never waits."""
+    """Connection to the control process. ``snapshot`` is the newest snapshot, and ``post`` never blocks."""
 
     def __init__(self, started: StartedControl, folder: Path) -> None:
         self._connection, self.process = connection, process = started
         hello = _hello(connection, STARTS_IN if process is not None else ANSWERS_IN)
         self.hello = hello
-        self.attached = process is None  # to a control that another screen had started
+        self.attached = process is None  # connected to a control that another screen has started
         memory = SharedMemory(receive_file(connection))
         ring = Ring.of(hello.recorded, memory.view)
         self.records = ControlRecords(ring, folder / RECORDS, hello.trouble)
@@ -96,43 +96,44 @@ class ControlClient:
         self.hands = ControlHands(self) if hello.station else None
         self._outbox: queue.SimpleQueue[object] = queue.SimpleQueue()
         self._closed = threading.Event()
-        self._closing = False  # by this screen
-        self._came = threading.Event()  # a snapshot
+        self._closing = False  # closed by this screen
+        self._came = threading.Event()  # a snapshot has arrived
         self._events: ControlEvents | None = None
         self._threads: list[threading.Thread] = []
         self._next_alive = 0.0  # s
-        self._kept: dict[type[Command], Command] = {}  # for the end of the program that was found under way
-        self._keeping = threading.Lock()  # workers post as well
+        # commands to be sent when the running program has ended
+        self._kept: dict[type[Command], Command] = {}
+        self._keeping = threading.Lock()  # worker threads also send commands
 
     def begin(self, events: ControlEvents) -> None:
-        """Begin to listen and to send."""
+        """Start the threads that receive and send messages."""
         self._events = events
         for run, name in ((self._listen, "control-events"), (self._send, "control-posts")):
             self._threads.append(threading.Thread(target=run, name=name, daemon=True))
             self._threads[-1].start()
 
     def post(self, command: Command) -> None:
-        """Ask the executor for something."""
+        """Send a command to the executor."""
         if self.attached and isinstance(command, LoadJob | GiveProof):
             with self._keeping:
                 if self._kept or self.snapshot.state in CYCLE:
-                    self._kept[type(command)] = command  # the program that is under way has its job already
+                    self._kept[type(command)] = command  # the running program already has its job
                     return
         self._outbox.put(Post(command, self.clock.now()))
 
     def wait_for(self, shown: Callable[[Snapshot], bool]) -> None:
-        """Wait until a snapshot is as it was asked for, or the control does not answer."""
+        """Wait until ``shown`` returns True for a snapshot, or until the control does not respond in time."""
         until = time.monotonic() + ANSWERS_IN
         while not shown(self.snapshot) and not self._closed.is_set() and time.monotonic() < until:
             self._came.wait(ALIVE_EVERY)
             self._came.clear()
 
     def hand(self, name: str, *values: object) -> None:
-        """Use the simulated operator station."""
+        """Operate the simulated operator station."""
         self._outbox.put(Hand(name, values, self.clock.now()))
 
     def open_stop_line(self) -> socket | None:
-        """Return a line on which stop keys reach the control past this process."""
+        """Return a socket through which stop keys reach the control without this process."""
         ours, theirs = socketpair(AF_UNIX, SOCK_SEQPACKET)
         self._outbox.put(theirs)
         return ours
@@ -142,7 +143,7 @@ class ControlClient:
         self._outbox.put(SetInput(name, on))
 
     def see(self, snapshot: Snapshot) -> None:
-        """Tell the control that the screen handles its keys; called once a frame."""
+        """Report to the control that the screen handles its keys; called once per frame."""
         now = self.clock.now()
         if now >= self._next_alive:
             self._next_alive = now + ALIVE_EVERY
@@ -154,16 +155,19 @@ class ControlClient:
                 self._kept.clear()
 
     def leave(self, *, close: bool) -> None:
-        """Disconnect before ``begin``; ``close``: end the control, whose machine is at rest."""
+        """Disconnect before ``begin`` was called. ``close`` also ends the control.
+
+        The machine of a control that is ended must be at rest.
+        """
         with self._connection, suppress(OSError, EOFError):
             if close:
                 self._connection.send(Close())
                 until = time.monotonic() + CLOSES_IN
                 while self._connection.poll(max(until - time.monotonic(), 0.0)):
-                    self._connection.recv()  # to the end of its process, which has the socket
+                    self._connection.recv()  # until its process ends and closes the socket
 
     def close(self) -> None:
-        """Stop the machine, close its drivers, and wait for the end of the process."""
+        """Stop the machine, close its drivers and wait for the end of the process."""
         self._closing = True
         self._outbox.put(Close())
         self._closed.wait(CLOSES_IN)
@@ -216,7 +220,7 @@ class ControlClient:
                 self.snapshot = snapshot
                 self._came.set()
                 if stirred:
-                    with Attempt():  # a window that is being closed
+                    with Attempt():  # the window may be closing
                         events.stirs()
             case Happened(number, event):
                 self.records.hear(event)
@@ -232,7 +236,7 @@ class ControlClient:
                 _log.error("the screen does not know this message of the control: %r", message)
 
     def _lose(self, events: ControlEvents) -> None:
-        """The process of the control has ended: its drivers have stopped the machine in their own way."""
+        """Show an alarm because the control process has ended; its drivers have stopped the machine."""
         why = Message("the process of the control has ended")
         last = self.snapshot
         alarm = make_alarm("control-silent", why, last.line, last.t)
@@ -242,30 +246,30 @@ class ControlClient:
 
 
 class ControlHands(PostedHands):
-    """The hands at the simulated station of the control; any thread may act."""
+    """The simulated operator station of the control; methods can be called from any thread."""
 
     def __init__(self, client: ControlClient) -> None:
         self._client = client
 
     def post(self, name: str, *values: object) -> None:
-        """Use the method of this name at the station."""
+        """Call the method with this name at the station."""
         self._client.hand(name, *values)
 
 
 class ControlRecords(Recordings):
-    """What the scope of the control records. ``hear`` gets the events, which name the records of alarms."""
+    """Scope data of the control. ``hear`` receives the events that name alarm records."""
 
     def __init__(self, ring: Ring, folder: Path, trouble: str) -> None:
         super().__init__(ring, folder, trouble)
-        self._named: dict[str, float] = {}  # records by their name, and when it was heard, s
+        self._named: dict[str, float] = {}  # announced records by name, with the time in s
 
     def hear(self, event: Event) -> None:
-        """Note which record is being written now."""
+        """Note the name of a record that is now being written."""
         if event.record:
             self._named.setdefault(event.record, time.monotonic())
 
     def is_saving(self, name: str) -> bool:
-        """Return whether the record is expected, and is not there yet."""
+        """Return whether the record was announced and its file does not exist yet."""
         there = self.folder is not None and (self.folder / name).exists()
         return not there and time.monotonic() < self._named.get(name, -_SAVED_IN) + _SAVED_IN
 
@@ -275,14 +279,17 @@ def _not_taken(error: BaseException) -> None:
 
 
 def _hello(connection: Connection, limit: float) -> Hello:
-    """Return the first message of the control. Raises DriverError for what it says else, or does not say."""
+    """Return the first message of the control.
+
+    Raises DriverError if the control reports an error, does not respond or has another version.
+    """
     try:
         message = connection.recv() if connection.poll(limit) else None
     except (OSError, EOFError):
         words = "the process of the control ended during start-up; see its message above"
         raise DriverError(words, reason=_ENDED) from None
     except _NO_MESSAGE:
-        message = b""  # of another version
+        message = b""  # a message of another version
     match message:
         case Hello() if message.version == VERSION:
             return message
@@ -298,11 +305,11 @@ def _hello(connection: Connection, limit: float) -> Hello:
 
 
 def find_control(machine: Machine, folder: Path, path: Path) -> ControlClient | None:
-    """Return the control that runs already, since its screen was killed.
+    """Return a control that is still running because its screen was killed, or None.
 
-    It listens at the socket ``path``. Returns None where nobody does, and where another screen has it.
-
-    Raises DriverError where it runs another machine file or another version, and where it does not answer.
+    The control listens at the socket ``path``. The result is None if no control is running or another screen
+    is connected to it. Raises DriverError if the control executes another machine file, has another version,
+    or does not respond.
     """
     connection = _connected(path)
     if connection is None:
@@ -327,12 +334,15 @@ def find_control(machine: Machine, folder: Path, path: Path) -> ControlClient | 
 
 
 def _connected(path: Path) -> Connection | None:
-    """The connection to who listens there, as long as it is the same user: what is read is executed."""
+    """Return a connection to the control at a socket, or None.
+
+    The control must belong to the same user, because its messages are unpickled.
+    """
     with socket(AF_UNIX) as sock:
         sock.setblocking(False)
         try:
             sock.connect(str(path))
-        except BlockingIOError:  # others wait before us
+        except BlockingIOError:  # other connections are waiting
             raise DriverError(_SILENT) from None
         except OSError:
             return None

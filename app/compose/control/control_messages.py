@@ -1,6 +1,6 @@
-"""What the screen and the process of the control tell each other: pickled tuples over one socket.
+"""Messages between the screen and the control process: pickled tuples over one socket.
 
-Both ends belong to the same user. Times are seconds of one monotonic clock, whose zero the control states.
+Both ends belong to the same user. Times are seconds of one monotonic clock, whose zero the control sends.
 """
 
 from __future__ import annotations
@@ -19,23 +19,23 @@ from core.machine.machine_model import Machine
 from core.records.record_ring import Recorded
 
 VERSION = 2  # of these messages
-BUSY = "busy"  # why a second screen is refused; it is not shown
-STALE = 0.5  # s after which a press that moves something does not count any more
+BUSY = "busy"  # reason for rejecting a second screen, never shown to the user
+STALE = 0.5  # s after which a key press that starts motion expires
 _CREDENTIALS = struct.Struct("3i")  # process, user, group
 
 
-# --- from the screen --------------------------------------------------------------------------------------
+# --- Messages from the screen -----------------------------------------------------------------------------
 
 
 class Post(NamedTuple):
-    """Ask the executor for something. ``at`` is when it was asked for, s."""
+    """Send a command to the executor. ``at`` is the time of the request in s."""
 
     command: Command
     at: float
 
 
 class Hand(NamedTuple):
-    """Use the method of this name at the simulated operator station. ``at`` is when the hand did it, s."""
+    """Call a method of the simulated operator station. ``at`` is the time of the action in s."""
 
     name: str
     values: tuple[object, ...]
@@ -50,15 +50,15 @@ class SetInput(NamedTuple):
 
 
 class Alive(NamedTuple):
-    """The screen has handled its keys and looked at the machine."""
+    """The screen has handled its keys and drawn the state of the machine."""
 
 
 class StopLine(NamedTuple):
-    """After it comes the file descriptor of a socket with the records of stop keys."""
+    """The file descriptor of a socket for stop keys follows this message."""
 
 
 class Heard(NamedTuple):
-    """The event of this number is kept: it need not be sent again."""
+    """The event with this number is stored and need not be sent again."""
 
     number: int
 
@@ -67,53 +67,53 @@ class Close(NamedTuple):
     """Stop the machine, close the drivers and end the process."""
 
 
-# --- from the control -------------------------------------------------------------------------------------
+# --- Messages from the control ----------------------------------------------------------------------------
 
 
 class Hello(NamedTuple):
-    """The first message. After it comes the file descriptor of the shared memory of the scope."""
+    """First message of the control. The file descriptor of the scope's shared memory follows it."""
 
     version: int
-    machine: Machine  # that the control runs
-    zero: float  # of its clock: s of the monotonic clock of the computer
+    machine: Machine  # machine of the control
+    zero: float  # zero of its clock, in s of the computer's monotonic clock
     warnings: tuple[str, ...]
-    rights: tuple[Right, ...]  # that the system has granted and refused
+    rights: tuple[Right, ...]  # rights that the system has granted or refused
     recorded: Recorded
-    trouble: str  # why the scope does not write its file
-    station: bool  # whether the station on the screen operates this machine
-    inputs: bool  # whether its inputs can be switched from the screen
+    trouble: str  # reason why the scope does not write its file; empty if it does
+    station: bool  # whether the operator station on the screen operates this machine
+    inputs: bool  # whether the screen can switch the inputs of this machine
     snapshot: Snapshot
-    noted: InterruptedJob | None  # what a power failure would leave interrupted now
+    noted: InterruptedJob | None  # job that a power failure would interrupt now
 
 
 class Failed(NamedTuple):
-    """The control cannot be had, and why. It is the first and the last message."""
+    """The control cannot be used, with the reason. No other message follows."""
 
     why: str
 
 
 class Shown(NamedTuple):
-    """The newest snapshot. ``stirred``: something has changed on a machine at rest."""
+    """The newest snapshot. ``stirred`` means that something has changed on a machine at rest."""
 
     snapshot: Snapshot
     stirred: bool
 
 
 class Happened(NamedTuple):
-    """An event for the log, with its number."""
+    """A numbered event for the event log."""
 
     number: int
     event: Event
 
 
 class Noted(NamedTuple):
-    """What a power failure would leave interrupted now; None: nothing."""
+    """The job that a power failure would interrupt now, or None."""
 
     job: InterruptedJob | None
 
 
 class ThreadEnded(NamedTuple):
-    """A thread of the control's process has ended by itself."""
+    """A thread of the control process has ended unexpectedly."""
 
     name: str
 

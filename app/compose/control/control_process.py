@@ -1,7 +1,7 @@
-"""The process of the control: ``python -m app.compose.control.control_process FD ZERO FOLDER``.
+"""The control process: ``python -m app.compose.control.control_process FD ZERO FOLDER``.
 
-The machine comes over stdin. FD is the socket to the screen that has started it; another screen finds the
-control at the socket of the data folder FOLDER.
+The machine is read from stdin. FD is the socket to the screen that started the process. Another screen finds
+the control at the socket in the data folder FOLDER.
 """
 
 from __future__ import annotations
@@ -26,14 +26,14 @@ from core.machine.machine_model import Machine
 from core.ports import DriverError
 from drivers.waiting import RealClock
 
-_GIVE_WAY = 0.001  # s after which a thread that reads a program lets the executor go on
+_GIVE_WAY = 0.001  # s after which a thread that reads a program yields to the executor
 LOG_FILE = "control.log"
 
 
 def main(arguments: list[str]) -> int:
-    """Drive the machine until the screen closes it, or no screen has come back."""
+    """Run the machine until the screen closes it, or until no screen reconnects in time."""
     first, clock, folder = Connection(int(arguments[0])), RealClock(float(arguments[1])), Path(arguments[2])
-    machine = pickle.load(sys.stdin.buffer)  # of our own parent, over a pipe that nobody else has
+    machine = pickle.load(sys.stdin.buffer)  # from the parent process, over a pipe that no other process has
     assert isinstance(machine, Machine)
     sys.setswitchinterval(_GIVE_WAY)
     log = Log(LOG_FILE)
@@ -46,11 +46,11 @@ def main(arguments: list[str]) -> int:
         log.close()
         return 1
     gc.collect()
-    gc.freeze()  # modules and the like: collections need not look at them again
-    for number in (signal.SIGTERM, signal.SIGINT):  # of a computer that shuts down
+    gc.freeze()  # modules and other permanent objects need not be scanned again
+    for number in (signal.SIGTERM, signal.SIGINT):  # sent when the computer shuts down
         signal.signal(number, lambda *_: server.closing.set())
     server.start()
-    _serve(server, first)  # before anybody else finds the control
+    _serve(server, first)  # before another screen can find the control
     listener = ScreenListener.at(socket_path(folder))
     if listener is not None:
         threading.Thread(target=_serve_screens, args=(server, listener), name="screens", daemon=True).start()
@@ -64,7 +64,7 @@ def main(arguments: list[str]) -> int:
 
 
 def _serve_screens(server: ControlServer, listener: ScreenListener) -> None:
-    """Talk to one screen after the other that finds the control."""
+    """Accept screens that find the control, one after the other."""
     while not server.closing.is_set():
         with suppress(OSError, EOFError):
             connection = listener.accept()
@@ -75,12 +75,15 @@ def _serve_screens(server: ControlServer, listener: ScreenListener) -> None:
 
 
 def _serve(server: ControlServer, connection: Connection) -> None:
-    """On a thread of its own: a second screen is answered while another is connected."""
+    """Serve a screen in a new thread, so that a second screen gets a response at the same time."""
     threading.Thread(target=server.serve, args=(connection,), name="screen", daemon=True).start()
 
 
 class ScreenListener:
-    """The socket in the data folder at which a screen finds the control. Raises OSError."""
+    """Socket in the data folder at which a screen finds the control.
+
+    The constructor raises OSError if the socket cannot be created.
+    """
 
     def __init__(self, path: Path) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -96,7 +99,10 @@ class ScreenListener:
 
     @classmethod
     def at(cls, path: Path | None) -> ScreenListener | None:
-        """Return one at this path; None where there can be none: no other screen finds this control."""
+        """Return a listener at this path, or None if the path cannot be used.
+
+        Another screen cannot find a control without a listener.
+        """
         if path is None or _listens(path):
             return None
         try:
@@ -109,7 +115,7 @@ class ScreenListener:
         return Connection(self._socket.accept()[0].detach())
 
     def close(self) -> None:
-        """Listen no more. The file goes, if it is still that of this socket. Raises nothing."""
+        """Stop listening and delete the socket file if it belongs to this socket. Raises no exception."""
         with suppress(OSError):
             if self._path.stat().st_ino == self._inode:
                 self._path.unlink()
@@ -117,13 +123,13 @@ class ScreenListener:
 
 
 def _listens(path: Path) -> bool:
-    """Return whether another control has the socket."""
+    """Return whether another control is listening at the socket."""
     try:
         with socket.socket(socket.AF_UNIX) as other:
             other.setblocking(False)
             other.connect(str(path))
     except BlockingIOError:
-        return True  # so many wait there
+        return True  # its queue of connections is full
     except OSError:
         return False
     return True

@@ -1,7 +1,7 @@
-"""The control as its process runs it: executor, watchdog, recorder, and the screen that is connected now.
+"""The control inside its process: executor, watchdog, recorder, and the connected screen.
 
-The executor never waits for the screen. What it shows replaces what was not sent yet; events and notes wait
-in order until a screen takes them.
+The executor never waits for the screen. A new snapshot replaces one that was not sent yet. Events and notes
+wait in order until a screen receives them.
 """
 
 from __future__ import annotations
@@ -71,27 +71,27 @@ from core.store.store_rows import EventRow, utc
 from drivers.waiting import RealClock
 
 _log = logging.getLogger(__name__)
-HELD = 10_000  # events that wait while no screen is connected
-PACE = 0.015  # s between two snapshots of a machine that moves
-SEND_AGAIN = 0.1  # s after which a snapshot that nobody announced is looked for
-LOOK = 0.1  # s between two looks at the screen
-SILENT_LOOKS = 30  # looks without a message after which the screen counts as hung: 3 s
-REST_LOOKS = 150  # looks without a screen after which a machine at rest is closed: 15 s
-STOPPED_LOOKS = 600  # the same for a program that is stopped: a minute
+HELD = 10_000  # events that can wait while no screen is connected
+PACE = 0.015  # =
+SEND_AGAIN = 0.1  # s after which the snapshot is checked without notification
+LOOK = 0.1  # s between two checks of the screen
+SILENT_LOOKS = 30  # checks without a message after which the screen is treated as hung (3 s)
+REST_LOOKS = 150  # checks without a screen after which a machine at rest is closed (15 s)
+STOPPED_LOOKS = 600  # the same for a stopped program (60 s)
 _STARTING_HANDS = frozenset({"press_left", "press_right"})
 _GOES = frozenset({State.RUN, State.WAIT, State.JOG, State.HOME})
 _STOPPING_HANDS = frozenset({"press_hold", "press_estop"})
-ENDS = 1.0  # s that closing waits until the screen has been told
-EXECUTOR_CLOSES = 12.0  # s: drives that come on are waited for, then the machine is halted
-_STOPS = FeedHold | JogStop | Reset | SpindleStop | WheelOff  # they overtake other commands
+ENDS = 1.0  # s that closing waits for the last messages to the screen
+EXECUTOR_CLOSES = 12.0  # s, for drives that are switching on; then the machine is halted
+_STOPS = FeedHold | JogStop | Reset | SpindleStop | WheelOff  # stop commands, which overtake other commands
 _UNSAVED = object()
 _ALONE = Message("TurnDesk, because the screen did not respond")
 
 
 class Outbox:
-    """What waits for the screen. Any thread fills it, and the screen's sender empties it.
+    """Messages waiting for the screen. Any thread adds messages, and the screen's sender sends them.
 
-    An event waits until the screen has answered that it is kept; another screen gets it again.
+    An event waits until the screen confirms that it is stored. Otherwise the next screen receives it again.
     """
 
     def __init__(self, snapshot: Callable[[], Snapshot]) -> None:
@@ -100,17 +100,17 @@ class Outbox:
         self._ended: deque[ThreadEnded] = deque()
         self._noted: Noted | None = None
         self._ready = threading.Event()
-        self._lock = threading.Lock()  # held for the blink in which an event gets its number
-        self._number = self._sent = 0  # of the newest event, of the last that this screen got
+        self._lock = threading.Lock()  # locked briefly while an event gets its number
+        self._number = self._sent = 0  # numbers of the newest event and of the last event sent to this screen
         self._stirred = self._closed = False
         self._shown: Snapshot | None = None
 
     def show(self) -> None:
-        """Have the newest snapshot sent."""
+        """Request that the newest snapshot is sent."""
         self._ready.set()
 
     def stir(self) -> None:
-        """Have it sent at once, and told that something has changed."""
+        """Request that the newest snapshot is sent immediately and marked as changed."""
         self._stirred = True
         self._ready.set()
 
@@ -122,34 +122,34 @@ class Outbox:
         self._ready.set()
 
     def heard(self, number: int) -> None:
-        """Forget the events up to this number."""
+        """Discard the events up to this number, because the screen has stored them."""
         with self._lock:
             while self._events and self._events[0].number <= number:
                 self._events.popleft()
 
     @property
     def unheard(self) -> list[Event]:
-        """Events that no screen has kept."""
+        """Events that no screen has stored."""
         with self._lock:
             return [each.event for each in self._events]
 
     def note(self, job: InterruptedJob | None) -> None:
-        """Replace the note of the interrupted job."""
+        """Replace the note about the interrupted job."""
         self._noted = Noted(job)
         self._ready.set()
 
     def thread_ended(self, name: str) -> None:
-        """Have it told that a thread has ended."""
+        """Queue the message that a thread has ended."""
         self._ended.append(ThreadEnded(name))
         self._ready.set()
 
     def close(self) -> None:
-        """Have it told that the machine is closed."""
+        """Request the message that the machine is closed."""
         self._closed = True
         self._ready.set()
 
     def send(self, connection: Connection, gone: threading.Event) -> None:
-        """Send what there is to one screen until it is gone. Raises OSError when its connection ends."""
+        """Send waiting messages to a screen until ``gone`` is set. Raises OSError if its connection ends."""
         self._shown, self._sent = None, 0
         while not gone.is_set():
             self._ready.wait(SEND_AGAIN)
@@ -160,7 +160,7 @@ class Outbox:
                 gone.wait(PACE)
 
     def _send_all(self, connection: Connection) -> bool:
-        """Send what waits; returns whether that was the end."""
+        """Send all waiting messages; return whether the machine is closed."""
         with self._lock:
             events = [each for each in self._events if each.number > self._sent]
         for event in events:
@@ -170,8 +170,8 @@ class Outbox:
             _send(connection, self._ended.popleft())
         noted, self._noted = self._noted, None
         if noted is not None:
-            _send(connection, noted)  # a screen that comes later has it from Hello
-        closed = self._closed  # first: what is shown behind it is the last snapshot
+            _send(connection, noted)  # a later screen receives it in Hello
+        closed = self._closed  # read first, so that the snapshot sent afterwards is the last
         stirred, self._stirred = self._stirred, False
         snapshot = self._snapshot()
         if stirred or snapshot is not self._shown:
@@ -183,7 +183,7 @@ class Outbox:
 
 
 def _send(connection: Connection, message: object) -> None:
-    """Send one message. One that cannot be pickled is logged and left out. Raises OSError."""
+    """Send one message. A message that cannot be pickled is logged and omitted. Raises OSError."""
     with ReportedAttempt(lambda _: _log.error("the screen does not get %s", type(message).__name__)) as trial:
         data = ForkingPickler.dumps(message)
     if trial.error is None:
@@ -191,9 +191,10 @@ def _send(connection: Connection, message: object) -> None:
 
 
 class ControlServer:
-    """The machine of one machine file, and the connection to its screen. Raises DriverError.
+    """The control of one machine, with the connection to its screen.
 
-    ``folder`` is the data folder, in which the scope writes its records.
+    ``folder`` is the data folder, in which the scope writes its records. Raises DriverError if the machine
+    cannot be connected.
     """
 
     def __init__(self, machine: Machine, clock: RealClock, folder: Path, rights: tuple[Right, ...]) -> None:
@@ -217,26 +218,27 @@ class ControlServer:
         self._noted: InterruptedJob | None = None
         self._reading: ReadProgram | None = None
         self._screen: Connection | None = None
-        self._served = threading.Lock()  # held while a screen is connected
+        self._served = threading.Lock()  # locked while a screen is connected
         self._sender: threading.Thread | None = None
-        self._quiet = self._away = 0  # looks since the screen was heard, since it has gone
-        self._met = False  # whether this screen has looked at the machine: until then it opens its window
-        self._alone = False  # the screen has gone, or hangs
-        self._barred = ""  # why no next part was to begin before that
-        self._saved: object = _UNSAVED  # the note that is kept in the data folder
+        # numbers of checks since the last message of the screen and since its disconnection
+        self._quiet = self._away = 0
+        self._met = False  # whether this screen has sent Alive; before that it is opening its window
+        self._alone = False  # the screen has disconnected or hangs
+        self._barred = ""  # reason why the next part was locked before the screen was lost
+        self._saved: object = _UNSAVED  # the note stored in the data folder
         self._posts: queue.SimpleQueue[Post] = queue.SimpleQueue()
-        self._stopped_at = -1.0  # s, when a hand or a key has asked for a stop
+        self._stopped_at = -1.0  # s, time of the last stop request
         self.closing = threading.Event()
 
     def start(self) -> None:
-        """Begin to tick."""
+        """Start the executor, the recorder and the watchdog."""
         self._thread.start()
         threading.Thread(target=self._carry_out, name="commands", daemon=True).start()
         self.recorder.start()
         self._watchdog.start()
 
     def close(self) -> None:
-        """Stop the machine as E-stop would leave it, and close its drivers."""
+        """Stop the machine as an E-stop does, and close its drivers."""
         close_in_order(
             (
                 ClosingStep("watchdog", self._watchdog.end),
@@ -252,7 +254,7 @@ class ControlServer:
         close_in_order([ClosingStep("events", self._leave_events)])
 
     def _leave_events(self) -> None:
-        """Keep for the next start what no screen has kept."""
+        """Save the events that no screen has stored, for the next start."""
         left = self.outbox.unheard if self._screen is None else []
         if left:
             began = datetime.now(UTC) - timedelta(seconds=self._clock.now())
@@ -263,7 +265,7 @@ class ControlServer:
             ]
             save_events(self._folder, self.executor.snapshot.program, rows)
 
-    # --- the executor's thread ------------------------------------------------------------------------
+    # --- Executor thread ------------------------------------------------------------------------------
 
     def _hear(self, event: Event) -> None:
         self.outbox.put(self.recorder.note(event))
@@ -276,12 +278,12 @@ class ControlServer:
         self.recorder.tell(tick)
         self.outbox.show()
 
-    # --- the screen -----------------------------------------------------------------------------------
+    # --- Screen ---------------------------------------------------------------------------------------
 
     def serve(self, connection: Connection) -> None:
-        """Talk to one screen until its connection ends, and close that; a second screen is refused."""
+        """Serve one screen until its connection ends, then close it; a second screen is rejected."""
         with connection:
-            if not self._served.acquire(timeout=ENDS):  # one that was killed a moment ago has it still
+            if not self._served.acquire(timeout=ENDS):  # a screen that was just killed may still be connected
                 with suppress(OSError):
                     connection.send(Failed(BUSY))
                 return
@@ -301,20 +303,21 @@ class ControlServer:
             send_file(connection, self._memory.file)
             self._quiet, self._met, self._screen = 0, False, connection
             remove_note(self._folder)
-            self._saved = _UNSAVED  # should it go before it has kept what was noted
+            self._saved = _UNSAVED  # if the screen disconnects before it has stored the note
             sender.start()
             self._sender = sender
             while True:
                 message = connection.recv()
                 with ReportedAttempt(_not_obeyed):
                     self._obey(message)
-        if not isinstance(talk.error, OSError | EOFError):  # else ``look`` does what the machine file says
+        # otherwise ``look`` reacts as the machine file specifies
+        if not isinstance(talk.error, OSError | EOFError):
             _log.error("the screen has sent what is no message; it is disconnected", exc_info=talk.error)
         self._screen = None
         gone.set()
         if sender.is_alive():
             with fromfd(connection.fileno(), AF_UNIX, SOCK_STREAM) as sock, suppress(OSError):
-                sock.shutdown(SHUT_RDWR)  # it may wait for a screen that does not read
+                sock.shutdown(SHUT_RDWR)  # the sender may be blocked by a screen that does not read
             sender.join()
         self._let_go()
 
@@ -356,14 +359,15 @@ class ControlServer:
             case Heard(number):
                 self.outbox.heard(number)
             case Alive():
-                self._quiet, self._met = 0, True  # with this alone: its threads answer also while it hangs
+                # only this message counts, because the screen's other threads run even while it hangs
+                self._quiet, self._met = 0, True
             case Close():
                 self.closing.set()
             case _:
                 _log.error("the control does not know this message of the screen: %r", message)
 
     def _stop(self, stop: Stop) -> None:
-        """Obey a stop key. Called from the thread of its line."""
+        """Carry out a stop key. Called in the thread of its socket."""
         self._stopped_at = max(self._stopped_at, self._clock.now())
         panel = self._connected.panel
         if stop.kind is StopKind.ESTOP and panel is not None:
@@ -372,9 +376,9 @@ class ControlServer:
             self.executor.post(FeedHold(stop.kind.by, stop.press))
 
     def _carry_out(self) -> None:
-        """Post commands in their order, on a thread of their own: to read a program takes its time.
+        """Send commands to the executor in order, in a separate thread, because reading a program takes time.
 
-        A stop overtakes them, and what would start something and was asked for before it is dropped.
+        A stop overtakes them. Commands that start something and were sent before the stop are dropped.
         """
         while not self.closing.is_set():
             command, at = self._posts.get()
@@ -391,7 +395,7 @@ class ControlServer:
         getattr(self._connected.panel, hand.name)(*hand.values)
 
     def _let_go(self) -> None:
-        """Release the buttons that the screen has held; an E-stop stays pressed."""
+        """Release the buttons that the screen has pressed; an E-stop remains pressed."""
         if self._connected.panel is not None:
             for release in ("release_left", "release_right", "release_hold"):
                 getattr(self._connected.panel, release)()
@@ -402,7 +406,10 @@ class ControlServer:
                 self._connected.set_input(name, on)
 
     def _with_reading(self, command: Command) -> Command:
-        """The command with a job whose text was read here: the executor's thread has no time for that."""
+        """Return the command with its program already read.
+
+        The executor's thread has no time for reading a program.
+        """
         if not isinstance(command, LoadJob | Renew | Prepare) or command.job is None:
             return command
         job = command.job
@@ -412,13 +419,16 @@ class ControlServer:
             job.reading.read()
             self._reading = job.reading
             gc.collect(1)
-            gc.freeze()  # to look through a long program for cycles would stop the executor's thread
+            gc.freeze()  # scanning a long program for reference cycles would delay the executor's thread
         return replace(command, job=replace(job, reading=self._reading))
 
-    # --- a screen that is silent or gone --------------------------------------------------------------
+    # --- Screen that is silent or disconnected --------------------------------------------------------
 
     def look(self) -> None:
-        """Look at the screen, every ``LOOK`` seconds: a cut goes on without it, or stops."""
+        """Check the screen, every ``LOOK`` seconds.
+
+        Without a screen, a cut continues or stops, as the machine file specifies.
+        """
         self._quiet += 1
         self._away = 0 if self._screen is not None else self._away + 1
         silent = self._quiet >= SILENT_LOOKS if self._met else self._alone
@@ -430,13 +440,13 @@ class ControlServer:
             self._save_note()
         state = self.executor.snapshot.state
         if alone and state in _GOES and not self._machine.hardware.continues_alone:
-            self.executor.post(FeedHold(_ALONE))  # also where the machine's own buttons have started it
+            self.executor.post(FeedHold(_ALONE))  # also if the machine's own buttons have started the motion
         longest = STOPPED_LOOKS if state in STOPPED else REST_LOOKS
         if self._away >= longest and state not in ACTIVE:
             self.closing.set()
 
     def _go_alone(self) -> None:
-        """The screen has gone, or hangs: its keys stop nothing now, and it counts no parts."""
+        """React to a lost screen, which can no longer stop the machine or count parts."""
         self._saved = _UNSAVED
         if self._machine.hardware.continues_alone:
             self.executor.post(BarNextPart(_ALONE))
@@ -448,12 +458,12 @@ class ControlServer:
     def _save_note(self) -> None:
         self._saved = noted = self._noted
         save_note(self._folder, noted)
-        if self._screen is not None:  # it has come meanwhile, and has the note
+        if self._screen is not None:  # a screen has connected since and has the note
             remove_note(self._folder)
 
 
 def watched() -> tuple[str, ...]:
-    """Names of threads that may run in this process and whose end an operator is told."""
+    """Return the names of threads in this process whose end is reported to the operator."""
     return "commands", "recorder", "inverter", WATCHDOG, *(n for e in extras().values() for n in e.threads)
 
 

@@ -1,4 +1,7 @@
-"""Starts the process of the control. A screen does this first: the process loads while the window opens."""
+"""Start of the control process.
+
+A screen does this first, so that the process loads while the window opens.
+"""
 
 from __future__ import annotations
 
@@ -15,17 +18,17 @@ from typing import NamedTuple
 
 from core.machine.machine_model import Machine
 
-_PATH_LENGTH = 100  # bytes of the path of a socket; Linux allows 107
+_PATH_LENGTH = 100  # =
 
 
 class StartedControl(NamedTuple):
-    """The connection to a control, and its process; None for a control that another screen has started."""
+    """Connection to a control, with its process; None for a control that another screen has started."""
 
     connection: Connection
     process: subprocess.Popen[bytes] | None
 
     def abandon(self) -> None:
-        """Kill a process whose machine has not begun to move."""
+        """Kill the process before its machine has moved."""
         self.connection.close()
         if self.process is not None:
             self.process.kill()
@@ -33,16 +36,16 @@ class StartedControl(NamedTuple):
 
 
 def socket_path(folder: Path) -> Path | None:
-    """Return where the control of this data folder listens for a screen.
+    """Return the path of the socket at which the control of this data folder listens for a screen.
 
-    Returns None if the path is too long for a socket. Nobody can find such a control again.
+    The result is None if the path is too long for a socket. Another screen cannot find such a control.
     """
     path = folder / "control.sock"
     return path if len(os.fsencode(path)) < _PATH_LENGTH else None
 
 
 def start_control(machine: Machine, folder: Path) -> StartedControl:
-    """Start the process for this machine and this data folder, without waiting for it."""
+    """Start the control process for this machine and data folder, without waiting for it."""
     ours, theirs = socket.socketpair()
     with theirs:
         command = [
@@ -53,7 +56,7 @@ def start_control(machine: Machine, folder: Path) -> StartedControl:
             repr(time.monotonic()),
             str(folder),
         ]
-        # A session of its own: Ctrl-C is for the screen, which then ends the control in good order.
+        # A separate session, so that Ctrl-C reaches only the screen, which then ends the control properly.
         process = subprocess.Popen(
             command,
             stdin=subprocess.PIPE,
@@ -62,6 +65,7 @@ def start_control(machine: Machine, folder: Path) -> StartedControl:
             start_new_session=True,
         )
     assert process.stdin is not None
-    with suppress(BrokenPipeError), process.stdin as pipe:  # one that has ended is told of by its connection
+    # a process that has ended is reported by its connection
+    with suppress(BrokenPipeError), process.stdin as pipe:
         pipe.write(pickle.dumps(machine))
     return StartedControl(Connection(ours.detach()), process)

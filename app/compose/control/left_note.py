@@ -1,4 +1,4 @@
-"""What happened while no screen was connected: files in the data folder, for the next start."""
+"""Files in the data folder with events and the interrupted job of a control without a screen."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ EVENTS = "left_events.json"
 
 
 def save_note(folder: Path, job: InterruptedJob | None) -> None:
-    """Keep the interrupted job, None: that nothing is interrupted. A disk that fails is logged."""
+    """Save the interrupted job, or None if no job is interrupted. A disk error is logged."""
     try:
         write_in_place(folder / NAME, json.dumps(None if job is None else plain(job)).encode())
     except OSError as error:
@@ -27,7 +27,7 @@ def save_note(folder: Path, job: InterruptedJob | None) -> None:
 
 
 def take_note(folder: Path) -> tuple[bool, InterruptedJob | None]:
-    """Return whether there is a note of a control that had no screen, and its job; it is removed then."""
+    """Return whether a control without a screen has saved a note, and its job; delete the note."""
     path = folder / NAME
     try:
         value = json.loads(path.read_bytes())
@@ -39,13 +39,13 @@ def take_note(folder: Path) -> tuple[bool, InterruptedJob | None]:
 
 
 def remove_note(folder: Path) -> None:
-    """Remove the note: a screen is connected, whose store has it."""
+    """Delete the note, because the store of a connected screen has it."""
     with suppress(OSError):
         (folder / NAME).unlink(missing_ok=True)
 
 
 def save_events(folder: Path, program: str, rows: Iterable[EventRow]) -> None:
-    """Keep the events of this program that no screen has kept. A disk that fails is logged."""
+    """Save the events of this program that no screen has stored. A disk error is logged."""
     told = [[*row[:5], pack_message(row.text)] for row in rows]
     try:
         write_in_place(folder / EVENTS, json.dumps([program, told]).encode())
@@ -54,7 +54,7 @@ def save_events(folder: Path, program: str, rows: Iterable[EventRow]) -> None:
 
 
 def take_events(folder: Path) -> tuple[str, tuple[EventRow, ...]]:
-    """Return the program and its events that no screen has kept; the file is removed then."""
+    """Return the program and its events that no screen has stored; delete the file."""
     path = folder / EVENTS
     try:
         program, told = json.loads(path.read_bytes())

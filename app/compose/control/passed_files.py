@@ -1,4 +1,4 @@
-"""Shared memory, and the line of the stop keys: file descriptors that pass through a connection."""
+"""Shared memory and the socket of the stop keys, passed as file descriptors through a connection."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from socket import AF_UNIX, SOCK_SEQPACKET, SOCK_STREAM, fromfd, recv_fds, send_
 
 from app.desk.stop_keys.stop_records import LONGEST, Stop
 
-_MARK = b"f"  # a descriptor needs a byte to go with
+_MARK = b"f"  # a descriptor must be sent together with a byte
 
 
 def send_file(connection: Connection, file: int) -> None:
-    """Give a file descriptor to the process at the other end. Raises OSError."""
+    """Send a file descriptor to the process at the other end. Raises OSError."""
     with fromfd(connection.fileno(), AF_UNIX, SOCK_STREAM) as sock:
         send_fds(sock, [_MARK], [file])
 
 
 def receive_file(connection: Connection) -> int:
-    """Return the file descriptor that the process at the other end gives. Raises OSError and EOFError."""
+    """Return the file descriptor that the other process sends. Raises OSError and EOFError."""
     with fromfd(connection.fileno(), AF_UNIX, SOCK_STREAM) as sock:
         _, files, _, _ = recv_fds(sock, len(_MARK), 1)
     if not files:
@@ -31,7 +31,7 @@ def receive_file(connection: Connection) -> int:
 
 
 class SharedMemory:
-    """Memory without a file. It ends with the last process that has it. ``view`` is its bytes."""
+    """Shared memory without a file, which exists until the last process closes it. ``view`` has its bytes."""
 
     def __init__(self, file: int) -> None:
         self.file = file
@@ -39,16 +39,16 @@ class SharedMemory:
 
     @classmethod
     def of_size(cls, size: int) -> SharedMemory:
-        """Return new memory of so many bytes, all of them zero. Raises OSError."""
+        """Return new memory of ``size`` bytes, all zero. Raises OSError."""
         file = os.memfd_create("turndesk-scope")
         os.ftruncate(file, size)
         return cls(file)
 
 
 def obey_line(line: int, stop: Callable[[Stop], None]) -> None:
-    """Call ``stop`` on a thread for each record of a stop key, until the line with this descriptor ends.
+    """Call ``stop`` in a new thread for each stop key received from the socket ``line``, until it closes.
 
-    The thread obeys the keys whatever the screen does meanwhile.
+    The thread works independently of the screen's state.
     """
     sock = socket(AF_UNIX, SOCK_SEQPACKET, fileno=line)
     threading.Thread(target=_obey, args=(sock, stop), name="stop-keys", daemon=True).start()
@@ -57,5 +57,5 @@ def obey_line(line: int, stop: Callable[[Stop], None]) -> None:
 def _obey(line: socket, stop: Callable[[Stop], None]) -> None:
     with line, suppress(OSError):
         while record := line.recv(LONGEST):
-            with suppress(ValueError):  # a record of another version
+            with suppress(ValueError):  # =
                 stop(Stop.unpacked(record))

@@ -1,4 +1,4 @@
-"""What the system grants the process of the control: real-time priority, locked memory, nice value."""
+"""Rights that the system grants to the control process: real-time priority, locked memory, nice value."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from typing import NamedTuple
 from core.message import Message
 from drivers.process_rights import ask_real_time, lock_memory
 
-OWN_PROCESS = sys.platform == "linux"  # elsewhere the control runs on a thread of the screen's process
-PRIORITY = 40  # of SCHED_RR: below the driver host, whose bus has the shorter period
+OWN_PROCESS = sys.platform == "linux"  # on other systems the control runs in a thread of the screen's process
+PRIORITY = 40  # priority of SCHED_RR, below that of the driver host, whose bus has a shorter period
 NICE = -10
 _AUTOGROUP = Path("/proc/sys/kernel/sched_autogroup_enabled")
 
 
 class Right(NamedTuple):
-    """One right: what was granted, and what is missing without it, empty if nothing is."""
+    """A right: the granted value, and the consequence if it was refused, or empty."""
 
     name: str
     granted: str
@@ -26,14 +26,14 @@ class Right(NamedTuple):
 
 
 def acquire_rights() -> tuple[Right, ...]:
-    """Ask the system for all of them, for this process. Raises nothing."""
+    """Request all rights for this process. Raises no exception."""
     scheduling = _scheduling()
     others = (_nice(), *_autogroup()) if scheduling.missing else ()
     return scheduling, _memory(), *others
 
 
 def check_rights() -> tuple[Right, ...]:
-    """Return what a control would be granted; this process gives it back."""
+    """Return the rights that a control would get; this process returns them afterwards."""
     policy, priority, nice = (
         os.sched_getscheduler(0),
         os.sched_getparam(0),
@@ -80,7 +80,10 @@ def _nice() -> Right:
 
 
 def _autogroup() -> tuple[Right, ...]:
-    """A kernel that groups processes by session makes nice values count within one session only."""
+    """Return a warning row if the kernel groups processes by session.
+
+    Nice values then apply only within one session.
+    """
     with suppress(OSError):
         if _AUTOGROUP.read_text().strip() == "1":
             return (Right("automatic groups", "on"),)

@@ -1,1 +1,1 @@
-"""Machine files and what is made of them: circumstances of a program, setups, pages of the manual."""
+"""Machine files, and the program contexts, setup files and manual pages made from them."""

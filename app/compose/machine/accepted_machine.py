@@ -1,4 +1,4 @@
-"""The machine file that was accepted last, kept in the store, against the one that is in force now."""
+"""Comparison of the machine file in use with the one that was last accepted."""
 
 from __future__ import annotations
 
@@ -19,32 +19,35 @@ _TEXT, _DRIVES = "text", "drives"
 
 
 class Settings(Protocol):
-    """Settings of the store."""
+    """Access to the settings of the store."""
 
     def read_setting(self, key: str) -> object: ...
 
 
 def key_of(machine: Machine) -> str:
-    """Under which its file is kept: by its place, whatever way it was named."""
+    """Return the settings key of a machine file, which depends on its resolved path."""
     path = Path(machine.source)
     place = path.resolve() if path.exists() else machine.source
     return " ".join(("machine file", str(place)))
 
 
 def record_of(machine: Machine) -> dict[str, object]:
-    """What is kept: the text, and for each node a hash of all that is written to it at a start."""
+    """Return the record to be stored for a machine file.
+
+    The record has the text of the file and a hash of the values written to each node at a start.
+    """
     return {_TEXT: machine.text, _DRIVES: _hashes(machine)}
 
 
 def differences(machine: Machine, kept: Settings) -> tuple[Change, ...] | None:
-    """What differs from what was accepted; None: this file was never accepted."""
+    """Return the differences from the accepted machine file; None if this file was never accepted."""
     record = kept.read_setting(key_of(machine))
     if not isinstance(record, dict) or not isinstance(record.get(_TEXT), str):
         return None
     told = changes(record[_TEXT], machine.text)
     if told or not isinstance(old := record.get(_DRIVES), dict):
         return told
-    new = _hashes(machine)  # the file is the same: what the control makes of it need not be
+    new = _hashes(machine)  # the file is the same, but the values derived from it may differ
     return tuple(
         Change(
             Message("canopen.nodes.{name}, all values written to the node", name=name),
@@ -57,7 +60,10 @@ def differences(machine: Machine, kept: Settings) -> tuple[Change, ...] | None:
 
 
 def file_changes(machine: Machine, kept: Persistence, tell: Callable[[str], None]) -> FileChanges:
-    """For the screen. A file that is new here is accepted by being chosen; ``tell`` is for the log."""
+    """Return the changes for the screen. A new machine file is accepted because it was chosen.
+
+    The callback writes to the event log.
+    """
     told = differences(machine, kept)
 
     def keep() -> None:
@@ -78,7 +84,10 @@ def file_changes(machine: Machine, kept: Persistence, tell: Callable[[str], None
 def guarded(
     post: Callable[[Command], None], changed: FileChanges, refuse: Callable[[str], None]
 ) -> Callable[[Command], None]:
-    """``post``, but no drive is switched on while changes of the machine file wait to be accepted."""
+    """Return ``post`` with a check that rejects switching on the drives.
+
+    Drives cannot be switched on while changes of the machine file are not accepted.
+    """
 
     def give(command: Command) -> None:
         if changed.barred and isinstance(command, EnableDrives):

@@ -1,4 +1,4 @@
-"""The shipped machine that can run a program, for whoever proves one without saying on which machine."""
+"""Selection of a shipped machine that can run a program, if no machine is specified."""
 
 from __future__ import annotations
 
@@ -10,14 +10,17 @@ from core.interpreter.dialects import ReadProgram
 from core.language.source import Dialect, Source
 
 MILLS = ("ac-table-mill", "bc-table-mill", "head-table-mill", "fork-head-mill")
-_SHORT = 20_000  # blocks of a program that are looked at
+_SHORT = 20_000  # blocks of a program that are checked
 _MOVED = re.compile(r"^[\s/]*[0-9]*[\s/]*(?:L\b|PLANE\s+AXIAL\b)(.*)$", re.IGNORECASE)
 _ROTARY = re.compile(r"(?<![A-Z])I?([ABC])(?=\s*[+-]?\s*[0-9.Q])", re.IGNORECASE)
 
 
 def fitting_machine(source: Source) -> str:
-    """Name of the first shipped mill that a Klartext program runs on, the first with its rotary axes where it
-    runs on none; empty for other languages, which the shipped lathe reads."""
+    """Return the name of the first shipped mill that can run a Klartext program.
+
+    If none can, the result is the first mill with the program's rotary axes. For other languages the result
+    is empty, because the shipped lathe reads them.
+    """
     if source.dialect is not Dialect.KLARTEXT:
         return ""
     reading = ReadProgram(source)
@@ -26,12 +29,12 @@ def fitting_machine(source: Source) -> str:
 
 
 def mills_with(axes: frozenset[str]) -> tuple[str, ...]:
-    """The shipped mills that have all of these rotary axes."""
+    """Return the shipped mills that have all of these rotary axes."""
     return tuple(name for name in MILLS if axes <= {axis.name for axis in shipped_machine(name).axes})
 
 
 def rotary_axes(source: Source) -> frozenset[str]:
-    """Rotary axes that the program moves by name, in L and PLANE AXIAL."""
+    """Return the rotary axes that the program moves by name in L and PLANE AXIAL."""
     moved = (match.group(1) for text in source.lines if (match := _MOVED.match(text.split(";", 1)[0])))
     return frozenset(axis.upper() for words in moved for axis in _ROTARY.findall(words))
 

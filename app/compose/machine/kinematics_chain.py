@@ -1,4 +1,4 @@
-"""From a mill's machine file to the chain of axes that the interpreter reckons with."""
+"""Kinematic chain of a mill for the interpreter, from the machine file."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _SLIDES = ("X", "Y", "Z")
 
 
 def kinematics_of(machine: Machine) -> Kinematics | None:
-    """Slides and rotary axes of a mill; None for a machine without Y, or whose file has no [kinematics]."""
+    """Return the linear and rotary axes of a mill; None without Y or without [kinematics]."""
     names = tuple(axis.name for axis in machine.axes)
     if machine.kinematics is None or not set(_SLIDES) <= set(names):
         return None

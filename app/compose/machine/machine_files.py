@@ -1,4 +1,4 @@
-"""Machine files by their names, shipped ones and others, read with what the list of drivers adds."""
+"""Reading of machine files by name or path, shipped or not, with the tables that drivers add."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from drivers.inverter import inverter_table
 from drivers.simulated import simulated_table
 
 SHIPPED = "gt75.toml"
-# What each driver adds to the file, in the order in which a machine file's owner is told of them. The module
-# that puts a backend together stands in ``backend_entry``, where no table has to be loaded for it.
+# Tables that each driver adds, in the order of the findings. The module that assembles a backend is named in
+# ``backend_entry``, so that it is loaded only when needed.
 _OWN_DRIVERS: tuple[Driver, ...] = (
     simulated_table.DRIVER,
     canopen_table.DRIVER,
@@ -41,11 +41,11 @@ DRIVERS: tuple[Driver, ...] = tuple(
 )
 
 
-@lru_cache(maxsize=8)  # by the text itself: a folder of proofs and its workers ask for the same one
+@lru_cache(maxsize=8)  # cached by text, because folder proofs and their workers read the same file
 def parse_machine(text: str, source: str) -> Machine:
-    """The machine that the TOML ``text`` describes, with everything that drivers add; ``source`` names it.
+    """Return the machine that the TOML ``text`` describes, including the tables of drivers.
 
-    Raises MachineFileError naming every mistake.
+    ``source`` names the file in messages. Raises MachineFileError with every finding.
     """
     machine = machine_file.parse_machine(text, source, DRIVERS)
     if machine.silenced:
@@ -64,9 +64,9 @@ def _known_checks(silenced: tuple[str, ...], source: str) -> None:
 
 
 def load_machine(path: Path | None = None) -> Machine:
-    """The machine that ``path`` describes; None: the shipped simulated lathe.
+    """Return the machine that the file ``path`` describes, or the shipped simulated lathe for None.
 
-    Raises MachineFileError with everything that is wrong, also where the file cannot be read at all.
+    Raises MachineFileError with every finding, also if the file cannot be read.
     """
     if path is None:
         return _shipped(SHIPPED)
@@ -74,14 +74,17 @@ def load_machine(path: Path | None = None) -> Machine:
 
 
 def named_machine(name: str | None) -> Machine:
-    """The machine of a file, a shipped one by its name, or (None) the shipped lathe; as ``load_machine``."""
+    """Return the machine of a file or a shipped machine by name, or the shipped lathe for None.
+
+    Raises MachineFileError with every finding.
+    """
     if name and name in resources.machine_names() and not Path(name).exists():
         return shipped_machine(name)
     return load_machine(Path(name) if name else None)
 
 
 def shipped_machine(name: str) -> Machine:
-    """One of the machines that come with the product. Raises FileNotFoundError for another name."""
+    """Return a machine that is shipped with TurnDesk. Raises FileNotFoundError if the name is unknown."""
     return _shipped(f"{name}.toml")
 
 

@@ -1,7 +1,7 @@
-"""The machine file and the circumstances of one pass through a program.
+"""The machine file, and the context in which a program is executed.
 
-The machine in use is the one that the operator screen was opened for last: commands about offsets take its
-travel.
+The machine in use is the machine for which the operator screen was last opened. Commands about offsets use
+its travel.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ if TYPE_CHECKING:
     from core.geometry.rotary_axes import Kinematics
     from core.machine.machine_model import Machine
 
-_KEY = "machine in use"  # the setting: the path of its file, or the name of a shipped machine
+_KEY = "machine in use"  # key of the setting with the path of the file or the name of a shipped machine
 
 
 def read_machine(path: str | None) -> Machine:
-    """The machine that a file describes, one that is shipped by its name, or the shipped lathe.
+    """Return the machine of a file, a shipped machine by name, or the shipped lathe for None.
 
-    Raises CommandError naming every mistake.
+    Raises CommandError with every finding.
     """
     from app.compose.machine.machine_files import named_machine
     from core.table_schema import MachineFileError
@@ -37,7 +37,7 @@ def read_machine(path: str | None) -> Machine:
 
 
 def control_limits(machine: Machine) -> ControlLimits:
-    """What the interpreter must know of a machine."""
+    """Return the properties of a machine that the interpreter needs."""
     c_axis = machine.axes[2]
     return ControlLimits(
         max_feed=machine.limits.max_feed,
@@ -70,12 +70,12 @@ def control_limits(machine: Machine) -> ControlLimits:
 
 @dataclass(frozen=True, slots=True)
 class InputStates:
-    """Answers for inputs as they are named; one that nobody names is open. Can be sent to another process."""
+    """States of inputs by name for conditional calls; an unknown input is open. The object can be pickled."""
 
     states: Mapping[str, bool]
 
     def __call__(self, terminal: str) -> bool:
-        """Whether the input is closed."""
+        """Return whether the input is closed."""
         return self.states.get(terminal, False)
 
 
@@ -90,7 +90,7 @@ def setup_for(
     block_delete: bool = False,
     strict: bool = False,
 ) -> Setup:
-    """Circumstances of a pass after power-up, from the machine's home; inputs that nobody names are open."""
+    """Return the context of a program after power-up at machine home; unspecified inputs are open."""
     return Setup(
         start=(0.0,) * len(machine.axes),
         kinematics=_kinematics(machine),
@@ -108,7 +108,7 @@ def setup_for(
 
 
 def _kinematics(machine: Machine) -> Kinematics | None:
-    """The chain of axes of a mill."""
+    """Return the kinematic chain of a mill, or None."""
     if machine.kinematics is None:
         return None
     from app.compose.machine.kinematics_chain import kinematics_of
@@ -117,7 +117,7 @@ def _kinematics(machine: Machine) -> Kinematics | None:
 
 
 def remember_machine(machine_file: str | None, persistence: Persistence) -> None:
-    """Store which machine is in use; None: the shipped lathe."""
+    """Store which machine is in use; None means the shipped lathe."""
     path = Path(machine_file) if machine_file else None
     place = str(path.resolve()) if path is not None and path.exists() else machine_file
     if persistence.read_setting(_KEY) != place:

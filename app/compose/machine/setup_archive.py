@@ -1,6 +1,6 @@
-"""Unpack a setup archive within limits, and check every file in it by its kind.
+"""Extraction of a setup archive with limits and checks of every file.
 
-Nothing that the archive says about itself is trusted: bytes are counted while they are unpacked.
+No size that the archive states is trusted; bytes are counted while they are extracted.
 """
 
 from __future__ import annotations
@@ -27,21 +27,21 @@ from core.store.store_errors import StoreError
 _KIND = "turndesk setup "
 FORMAT = f"{_KIND}1"
 MANIFEST, STORE, PROGRAMS, MACHINE = "manifest.json", "store.db", "programs", "machine"
-BESIDE = (".hal", ".xml")  # files that belong to a machine file and have its name
+BESIDE = (".hal", ".xml")  # suffixes of files that belong to a machine file and have its name
 MOST_MEMBERS = 10_000
-MOST_DEPTH = 8  # parts of a name: folders in each other, and the file
+MOST_DEPTH = 8  # parts of a name: nested folders and the file
 _MIB = 1024 * 1024
 MOST_BYTES = {MANIFEST: 4 * _MIB, STORE: 512 * _MIB, PROGRAMS: 64 * _MIB, MACHINE: 16 * _MIB}
 MOST_BYTES_OF_ALL = 1024 * _MIB
 _MOST_BYTES_PACKED = 1024 * _MIB
-_MOST_BYTES_OF_DIRECTORY = 4 * _MIB  # of ZIP's own list of members
+_MOST_BYTES_OF_DIRECTORY = 4 * _MIB  # size of ZIP's central directory
 _CHUNK = _MIB
-_END, _END_64 = 22, 20  # bytes: ZIP's last record without a comment, and the one of ZIP64 in front of it
+_END, _END_64 = 22, 20  # bytes of ZIP's end record without a comment, and of the ZIP64 locator in front of it
 NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
 def unpack(source: Path, folder: Path) -> list[str]:
-    """Write the checked members of the archive below ``folder``; return their names. Raises CommandError."""
+    """Extract the checked members of the archive to ``folder``; return their names. Raises CommandError."""
     with (
         failures_as(lambda error: _not_unpacked(source, folder, error)),
         open_input(source, _MOST_BYTES_PACKED) as raw,
@@ -90,7 +90,7 @@ def _not_unpacked(source: Path, folder: Path, error: Exception) -> CommandError:
 
 
 def problem(name: str, path: Path) -> CodedError | None:
-    """Return why the file cannot be a member called ``name``, or None where it can. Raises OSError."""
+    """Return the reason why a file cannot be a member called ``name``, or None. Raises OSError."""
     top = name.partition("/")[0]
     try:
         _check_place(name)
@@ -106,19 +106,19 @@ def problem(name: str, path: Path) -> CodedError | None:
 
 
 def is_machine_file(path: Path) -> bool:
-    """Return whether a file of a machine's folder is the machine file itself."""
+    """Return whether a file in a machine's folder is the machine file itself."""
     return path.suffix not in BESIDE
 
 
 class _Unpacking:
-    """One archive on its way below ``folder``, with the bytes that were unpacked so far."""
+    """Extraction of one archive, with the number of bytes extracted so far."""
 
     def __init__(self, source: Path, file: zipfile.ZipFile, folder: Path) -> None:
         self._source, self._file, self._folder = source, file, folder
         self._bytes = 0
 
     def all(self) -> list[str]:
-        """Every member that the manifest lists, and no other."""
+        """Extract every member that the manifest lists; return their names."""
         self._take(MANIFEST)
         hashes = _hashes(self._source, json.loads((self._folder / MANIFEST).read_bytes()))
         self._check_names(list(hashes))
@@ -153,7 +153,7 @@ class _Unpacking:
             )
 
     def _take(self, name: str) -> str:
-        """Unpack one member; return the SHA-256 of its bytes."""
+        """Extract one member; return the SHA-256 of its bytes."""
         info = self._file.getinfo(name)
         if info.compress_type not in {zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED}:
             raise NotImplementedError(Message("{name} is compressed with an unsupported method", name=name))
@@ -178,7 +178,7 @@ class _Unpacking:
 
 
 def _check_directory(source: Path, raw: BinaryIO) -> None:
-    """Refuse a list of members that is too long before zipfile reads it as a whole."""
+    """Raise CommandError for a central directory that is too large, before zipfile reads it."""
     size = raw.seek(0, 2)
     raw.seek(max(0, size - _END - _END_64))
     tail = raw.read()
@@ -196,7 +196,10 @@ def _check_directory(source: Path, raw: BinaryIO) -> None:
 
 
 def _hashes(source: Path, told: object) -> dict[str, str]:
-    """The SHA-256 of every member as the manifest states it. Raises CommandError for another manifest."""
+    """Return the SHA-256 of every member from the manifest.
+
+    Raises CommandError if the manifest is invalid or from another version.
+    """
     form = told.get("format") if isinstance(told, dict) else None
     if isinstance(form, str) and form.startswith(_KIND) and form != FORMAT:
         raise CommandError(
@@ -228,7 +231,7 @@ def _no_place() -> CommandError:
 
 
 def _check_place(name: str) -> None:
-    """Raise CommandError or StoreError for a name that no file of a setup has."""
+    """Raise CommandError or StoreError for a name that is not allowed in a setup."""
     parts = PurePosixPath(name).parts
     if name == STORE:
         return
@@ -259,7 +262,7 @@ def _check_store(source: Path, store: Path) -> None:
 
 
 def _check_program(path: Path) -> None:
-    """Raise SourceError for a file that is neither program text nor a drawing; an empty one is harmless."""
+    """Raise SourceError if a file is neither program text nor a drawing. Empty files are accepted."""
     data = input_bytes(path, MOST_BYTES[PROGRAMS])
     drawing = path.name.lower().endswith(drawing_endings())
     if data and not (drawing and b"\0" not in data):
@@ -267,7 +270,7 @@ def _check_program(path: Path) -> None:
 
 
 def _check_machine(path: Path) -> None:
-    """Raise CommandError for a machine file, a HAL file or an EtherCAT file that cannot be one."""
+    """Raise CommandError if a machine file, HAL file or EtherCAT file is invalid."""
     if is_machine_file(path):
         read_machine(str(path))
         return

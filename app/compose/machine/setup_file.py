@@ -1,4 +1,4 @@
-"""A machine's setup in one file: store, settings, programs and machine file, for another desk; checked."""
+"""Setup of a machine in one file: store, settings, programs and machine file, for another control."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ from core.store.store_file import FILE_NAME
 
 @dataclass(frozen=True, slots=True)
 class SetupTold:
-    """Contents of a setup file; ``placed`` is where its machine file was put.
+    """Contents of a setup file; ``placed`` is the path at which its machine file was saved.
 
     ``left_out`` are files of the program folder that are neither programs nor drawings.
     """
@@ -52,7 +52,7 @@ class SetupTold:
 
 
 def save_setup(target: Path, machine_file: str | None) -> SetupTold:
-    """Write the setup of this desk. Raises CommandError; then nothing is left under the name."""
+    """Write the setup of this control. Raises CommandError; no file remains after an error."""
     folder, machine = data_folder(), _machine_members(machine_file)
     if target.is_file() and not zipfile.is_zipfile(target):
         raise CommandError(
@@ -78,7 +78,7 @@ def save_setup(target: Path, machine_file: str | None) -> SetupTold:
 
 
 def _copy_of_store(folder: Path, beside: Path) -> Path:
-    """Whole, and without the interrupted job and the people: those are a matter of one machine."""
+    """Copy the store without the interrupted job and the users, which belong to one machine."""
     home = beside / "home"
     home.mkdir()
     with as_command_error(StoreError):
@@ -97,7 +97,7 @@ def _programs(folder: Path) -> list[str]:
 
 
 def _machine_members(named: str | None) -> dict[str, Path]:
-    """The machine file, which has to be good, and what lies beside it under its name."""
+    """Return the valid machine file and the files of the same name next to it."""
     if named is None:
         return {}
     path = Path(named)
@@ -112,7 +112,7 @@ def _machine_members(named: str | None) -> dict[str, Path]:
 
 
 def _write(made: Path, members: dict[str, Path]) -> tuple[str, ...]:
-    """Write the archive; return the programs left out. Raises CommandError if a file cannot be read."""
+    """Write the archive; return the omitted programs. Raises CommandError if a file cannot be read."""
     try:
         left_out = [
             each for each in members if each.startswith(f"{PROGRAMS}/") and problem(each, members[each])
@@ -120,7 +120,7 @@ def _write(made: Path, members: dict[str, Path]) -> tuple[str, ...]:
         members = {name: path for name, path in members.items() if name not in left_out}
         hashes = {name: hashlib.sha256(path.read_bytes()).hexdigest() for name, path in members.items()}
         told = {"format": FORMAT, "made": datetime.now(UTC).isoformat(timespec="seconds"), "sha256": hashes}
-        # A computer without a clock of its own dates its files before 1980, which ZIP cannot say.
+        # A computer without a battery-backed clock may date files before 1980, which ZIP does not support.
         with zipfile.ZipFile(made, "w", zipfile.ZIP_DEFLATED, strict_timestamps=False) as file:
             file.writestr(MANIFEST, json.dumps(told, indent=1))
             for name, path in members.items():
@@ -142,7 +142,7 @@ def _write(made: Path, members: dict[str, Path]) -> tuple[str, ...]:
 
 
 def _check_loadable(made: Path, target: Path) -> None:
-    """Raise CommandError if the archive is beyond what ``load_setup`` accepts."""
+    """Raise CommandError if the archive exceeds the limits of ``load_setup``."""
     try:
         with tempfile.TemporaryDirectory(prefix="turndesk-") as name:
             unpack(made, Path(name))
@@ -156,20 +156,20 @@ def _told(names: list[str], placed: Path | None = None) -> SetupTold:
     return SetupTold(sum(name.startswith(f"{PROGRAMS}/") for name in names), machine, placed)
 
 
-# --- taken by another desk ----------------------------------------------------------------------------
+# --- Loading on another control -----------------------------------------------------------------------
 
 
 def check_setup(source: Path) -> SetupTold:
-    """Look through a setup file; changes nothing. Raises CommandError naming what is wrong with it."""
+    """Check a setup file without changing anything. Raises CommandError with the first error."""
     with tempfile.TemporaryDirectory(prefix="turndesk-") as name:
         return _told(unpack(source, Path(name)))
 
 
 def load_setup(source: Path) -> tuple[SetupTold, Path | None]:
-    """Take it, whole or not at all; and where the store is kept that was here, None: there was none.
+    """Load a setup completely or not at all; also return the path of the saved old store, or None.
 
-    All files lie beside their places before the store is touched: what cannot be written changes nothing.
-    Raises CommandError for a file that is not whole, and while a desk runs here.
+    All files are written next to their final places before the store is changed, so a write error changes
+    nothing. Raises CommandError if the file is damaged, and while TurnDesk is running here.
     """
     folder, stamp = data_folder(), datetime.now(UTC).strftime("%Y%m%dT%H%M%SZ")
     with tempfile.TemporaryDirectory(prefix="turndesk-") as name, _Beside(stamp) as beside:
@@ -183,13 +183,13 @@ def load_setup(source: Path) -> tuple[SetupTold, Path | None]:
         except StoreError as error:
             raise CommandError(str(error), error_code(error)) from error
         except OSError as error:
-            where = error.filename or folder  # a full disk does not say which file it was
+            where = error.filename or folder  # the error of a full disk does not name the file
             raise cannot_write(where, error) from error
     return _told(names, beside.machine), kept
 
 
 class _Beside:
-    """Files that lie beside their places until all of them do; what has not taken its place then is gone."""
+    """Files written next to their final places until all are complete; unfinished files are deleted."""
 
     def __init__(self, stamp: str) -> None:
         self._stamp = stamp
@@ -206,13 +206,13 @@ class _Beside:
 
     @property
     def machine(self) -> Path | None:
-        """Where the machine file is put."""
+        """Final path of the machine file, or None."""
         return next(
             (at for at in self._places.values() if at.parent.name == "machines" and is_machine_file(at)), None
         )
 
     def put(self, source: Path, target: Path) -> None:
-        """Beside its place; another text that stands there is kept under a name of its own."""
+        """Write a file next to its final place; save a different existing file under another name."""
         data = source.read_bytes()
         make_folder(target.parent)
         if target.exists() and (old := target.read_bytes()) != data:
@@ -226,6 +226,6 @@ class _Beside:
             os.fsync(file.fileno())
 
     def take_places(self) -> None:
-        """All of them, one after the other."""
+        """Move all files to their final places."""
         for draft, target in self._places.items():
             put_in_place(draft, target)

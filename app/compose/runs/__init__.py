@@ -1,1 +1,1 @@
-"""What a run needs beside the machine, and what it leaves behind."""
+"""Services and records of a run: journal, event log and error log."""

@@ -1,4 +1,4 @@
-"""The log of TurnDesk's own failures: a file in the product's folder, written by a queue."""
+"""Log of TurnDesk's internal errors: a file in the data folder, written through a queue."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from app.desk.data_folder import data_folder
 from core.file_placing import NEW_FILE
 from core.message import Message
 
-_SIZE = 1_000_000  # bytes, three files of it
-_AGAIN = 2.0  # s between two tries to write again
+_SIZE = 1_000_000  # bytes of each of three files
+_AGAIN = 2.0  # s between two attempts to write again
 _MISSING = {
     "levelno": logging.WARNING,
     "levelname": "WARNING",
@@ -27,12 +27,10 @@ _FORM = "%(asctime)s %(levelname)s %(threadName)s %(name)s: %(message)s"
 
 
 class Log:
-    """Every logger writes to this file in the folder ``logs`` until this is closed.
+    """Log file in the folder ``logs`` to which all loggers write until it is closed.
 
-    Nothing is written where no file can be made.
-
-    No thread of the machine may wait for a disk, so records go through a queue. ``trouble`` says why nothing
-    is written; empty while all is well.
+    Nothing is written if the file cannot be created. Records go through a queue, because no thread of the
+    machine may wait for the disk.
     """
 
     def __init__(self, name: str = "turndesk.log") -> None:
@@ -46,7 +44,7 @@ class Log:
 
     @property
     def trouble(self) -> str:
-        """Why the log is not written. While it is not, a line that says so is tried again and again."""
+        """Reason why the log cannot be written, or empty. Reading it tries to write again after a delay."""
         found = self._file.trouble if self._file else ""
         if found and time.monotonic() >= self._next:
             self._next = time.monotonic() + _AGAIN
@@ -54,11 +52,11 @@ class Log:
         return self._unmade or found
 
     def close(self) -> None:
-        """Write what is queued."""
+        """Write the queued records and close the file."""
         logging.getLogger().removeHandler(self._handler)
         self._listener.stop()
         for handler in self._listener.handlers:
-            with contextlib.suppress(OSError):  # of a full disk: told already
+            with contextlib.suppress(OSError):  # a full disk has already been reported
                 handler.close()
 
     def _opened(self, name: str) -> _File | None:
@@ -78,7 +76,7 @@ class Log:
 
 
 class _File(logging.handlers.RotatingFileHandler):
-    """A file whose disk may fail: that is told, and no traceback goes to the console."""
+    """A log file that records write errors instead of printing a traceback."""
 
     trouble = ""
 
@@ -87,14 +85,14 @@ class _File(logging.handlers.RotatingFileHandler):
         return super()._open()
 
     def emit(self, record: logging.LogRecord) -> None:
-        """Write it; one that can be written again ends the trouble."""
+        """Write a record; a success clears the recorded error."""
         self.failed = False
         super().emit(record)
         if not self.failed:
             self.trouble = ""
 
     def handleError(self, _record: logging.LogRecord) -> None:  # noqa: N802  logging's own name
-        """Keep why."""
+        """Record the reason of a write error."""
         error = sys.exc_info()[1]
         what = error.strerror if isinstance(error, OSError) else error
         self.failed, self.trouble = (

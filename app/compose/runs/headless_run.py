@@ -1,6 +1,6 @@
-"""A run without a screen: the executor on the simulated lathe, on a clock that moves as fast as it can.
+"""A run without a screen: the executor, by default on the simulated lathe with the fastest possible clock.
 
-Tool life is counted and told as on the desk, and no part begins with a spent insert.
+Tool life is counted and reported as on the screen, and no part starts with a worn insert.
 """
 
 from __future__ import annotations
@@ -38,7 +38,10 @@ from drivers.waiting import RealClock, StepClock
 
 
 class HeadlessLives:
-    """``see`` is called at every step of a run. Without a store nothing is counted, and that is said."""
+    """Tool life during a run without a screen. ``see`` is called at every step of the run.
+
+    Without a store nothing is counted, and a message is printed.
+    """
 
     def __init__(
         self,
@@ -63,7 +66,7 @@ class HeadlessLives:
         book.loads = 1
 
     def see(self, snapshot: Snapshot, proof: Proof) -> None:
-        """Count what was cut, tell what is due, and bar the next part."""
+        """Count the use of tools, report tools that are due, and lock the next part."""
         if not self._book.loads:
             return
         self._watch.see(snapshot, self._say)
@@ -73,7 +76,7 @@ class HeadlessLives:
         self._barred = wanted
 
     def close(self) -> None:
-        """Hand the store what was counted since it was kept last."""
+        """Save the use counted since the last save."""
         self._watch.keep_all()
         self._book.close()
 
@@ -90,13 +93,13 @@ def headless(
     progress: Callable[[float], None],
     lasts: float = LASTS,
 ) -> Iterator[HeadlessRun]:
-    """An executor on the machine with these inputs, and somebody to press its buttons.
+    """Yield a run without a screen on the machine, with these inputs and with automatic button presses.
 
-    A machine that is not simulated runs at its own pace. Raises CommandError for one that does not answer,
-    for inputs that it does not have or that are wires and not to be set, and for one on which a job was
-    interrupted, unless the program is to begin ``anew`` all the same. The scope's record of the run is in the
-    folder of records, ``lasts`` s at least of what the driver samples. What keeps the machine's pace counts
-    for tool life, parts and cycles as on the desk; a run that is faster than its time has made nothing.
+    A machine that is not simulated runs in real time. A start after an interrupted job must be permitted
+    explicitly. The scope's record is saved in the folder of records and has at least the last ``lasts`` s of
+    samples. A run in real time counts for tool life, parts and cycles as on the screen; a faster run counts
+    nothing. Raises CommandError if the machine does not respond, if inputs do not exist or are wired, or if a
+    job was interrupted.
     """
     paced = _paced(machine, realtime)
     with (
@@ -130,7 +133,7 @@ def headless(
             palms, see = _palms(machine, connected, say), lives.see if lives is not None else None
             yield HeadlessRun(executor, clock, say, progress, palms, see)
         finally:
-            executor.shut()  # also on Ctrl-C: the slides brake at once
+            executor.shut()  # also on Ctrl-C, so that the axes brake immediately
             if lives is not None:
                 lives.close()
             recorder.close()
@@ -140,14 +143,14 @@ def headless(
 
 
 def _paced(machine: Machine, realtime: bool) -> bool:
-    """Whether the run takes the time that the machine takes."""
+    """Return whether the run takes as long as on the machine."""
     sim = machine.hardware.table(SimulatedTable)
     return realtime or (sim is not None and sim.realtime) or real_time(machine)
 
 
 @contextmanager
 def _connected(machine: Machine, paced: bool) -> Iterator[tuple[RealClock | StepClock, Connected]]:
-    """The machine and the clock that it goes by."""
+    """Yield the connected machine and its clock."""
     clock = RealClock() if paced else StepClock()
     with as_command_error(DriverError):
         connected = connect(machine, clock)
@@ -161,9 +164,9 @@ def _connected(machine: Machine, paced: bool) -> Iterator[tuple[RealClock | Step
 def _remembered(
     machine: Machine, *, anew: bool, paced: bool, say: Callable[[str], None]
 ) -> Iterator[tuple[Journal | None, Note]]:
-    """Where the run is kept, with the screen's store, and what a power cut would leave interrupted.
+    """Yield the journal of the run, or None, and the function that notes the interrupted job.
 
-    Simulated slides cut nothing, and leave nothing interrupted.
+    A simulated machine leaves no interrupted job.
     """
     if played(machine) and anew:
         raise CommandError(
@@ -212,7 +215,10 @@ def _demand_anew(left: InterruptedJob, *, anew: bool) -> None:
 
 
 def _palms(machine: Machine, connected: Connected, say: Callable[[str], None]) -> Callable[[], None] | None:
-    """How a cycle is started where no command may: by the station on the screen, or by a person."""
+    """Return the function that starts a cycle if no command may start it, or None.
+
+    It presses the palm buttons of the screen's station, or asks the user to press them.
+    """
     panel = connected.panel
     if machine.backend == "sim" or not machine.interlocks.two_hand_start:
         return None

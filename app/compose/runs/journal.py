@@ -1,4 +1,4 @@
-"""What the run leaves behind: events, part counts and the program versions that ran, in the store."""
+"""Journal of the operator screen: events, part counts and executed program versions, saved in the store."""
 
 from __future__ import annotations
 
@@ -31,44 +31,45 @@ from core.store.store_file import FILE_NAME, has_store
 from core.store.store_rows import EventRow, Kind, ToolRow, VersionRow
 
 _log = logging.getLogger(__name__)
-HELD = 10_000  # events that are kept back while there is no store
-UNDER_WAY = "under_way"  # setting: what a power cut would leave interrupted
+HELD = 10_000  # events buffered while no store is open
+UNDER_WAY = "under_way"  # key of the setting with the job that a power failure would interrupt
 CLOSED = "the data store is closed"
-AGAIN = 5.0  # s between two tries to open a store
+AGAIN = 5.0  # s between two attempts to open a store
 
 
 def _nobody() -> None:
-    """Nobody waits for a store that comes late."""
+    """Do nothing, because no function waits for a store that opens late."""
 
 
 class Journal(Persistence):
-    """Writes by the store's own thread, so that neither executor nor screen ever waits for the disk.
+    """Access of the operator screen to the store; writes use the store's thread, so no caller waits.
 
-    Without a store (``trouble`` says why) the machine runs all the same. What happens is held in memory, and
-    where the reason is one that passes, as a full disk is, the store is opened as soon as it does.
+    The machine also works if the store cannot be opened. Events are then buffered in memory. If the reason is
+    temporary, such as a full disk, the store is opened as soon as possible.
     """
 
     def __init__(self, folder: Path, *, goes_on: bool = False) -> None:
-        """``goes_on``: the control of the journal before is still running, so nothing was interrupted."""
+        """Open the store. ``goes_on`` means that the control is still running, so no job was interrupted."""
         self._folder, self._goes_on = folder, goes_on
-        self.who: Callable[[], str] = str  # has signed in, as the desk knows
-        self._lock = threading.Lock()  # held for the blink in which stores or events change hands
-        self._held: deque[Event] | None = None  # while a restore is under way
+        self.who: Callable[[], str] = str  # returns the name of the user who is logged in
+        self._lock = threading.Lock()  # locked briefly while the store or events are exchanged
+        self._held: deque[Event] | None = None  # events buffered during a restore or without a store
         self._books: list[OffsetBook | PartsBook] = []
         self._store: Store | None = None
         self._program = ""
         self._trouble = ""
         self._recorder = CycleRecorder()
-        self._noted: InterruptedJob | None = None  # what a power cut would leave interrupted
-        self._has_noted = False  # whether this control has begun or ended anything since
-        self._unread = True  # whether what the last one has left is still to be read
+        self._noted: InterruptedJob | None = None  # job that a power failure would interrupt
+        self._has_noted = False  # whether this control has noted a job since
+        self._unread = True  # whether the data of the last control has still to be read
         self._closing = threading.Event()
-        self._opener: threading.Thread | None = None  # where there was no store at the start
-        self.left: InterruptedJob | None = None  # what the last one has left
-        self.left_is_logged = True  # as a rule: the control before had a screen to the end
-        self.damage: tuple[str, ...] = ()  # what was not as it was saved, in sentences
+        # thread that opens a store that was unavailable at the start
+        self._opener: threading.Thread | None = None
+        self.left: InterruptedJob | None = None  # job that the last control has left interrupted
+        self.left_is_logged = True  # true unless the last control ran without a screen
+        self.damage: tuple[str, ...] = ()  # messages about damaged data
         self._tell_late: Callable[[], None] = _nobody
-        self._late = False  # whether the store came after the start
+        self._late = False  # whether the store was opened after the start
         try:
             self._store = self._open()
         except StoreError as error:
@@ -79,10 +80,9 @@ class Journal(Persistence):
                 self._opener.start()
 
     def _open(self) -> Store:
-        """The store, and once what the last control has left in it.
+        """Open the store and read, once, the data that the last control has left.
 
-        Raises StoreError, and holds nothing then: the lock of a store that was opened and could not be read
-        would refuse every later try.
+        Raises StoreError and then releases the store, because its lock would prevent later attempts.
         """
         store = Store.open(self._folder)
         try:
@@ -94,7 +94,7 @@ class Journal(Persistence):
         return store
 
     def _read_what_was_left(self, store: Store) -> None:
-        """Damage, runs that were cut off, the interrupted job. Raises StoreError."""
+        """Read damage, runs without an end and the interrupted job. Raises StoreError."""
         self.damage = (*store.repaired, *store.find_damaged_rows())
         left = None
         if not self._goes_on:
@@ -106,7 +106,7 @@ class Journal(Persistence):
                 self.left = self._noted = left
 
     def _what_was_left(self, store: Store) -> InterruptedJob | None:
-        """Keep what a control has told without a screen; returns the job that is interrupted."""
+        """Store the events of a control without a screen; return its interrupted job."""
         program, rows = take_events(self._folder)
         if rows:
             store.events.log_events(rows)
@@ -121,17 +121,17 @@ class Journal(Persistence):
 
     @classmethod
     def at_home(cls, *, goes_on: bool = False) -> Journal:
-        """The journal of the product's folder."""
+        """Return the journal of the data folder."""
         return cls(data_folder(), goes_on=goes_on)
 
     @property
     def trouble(self) -> str:
-        """Why nothing is kept, or why the last write failed; empty while all is well."""
+        """Reason why nothing is saved or why the last write failed; empty if the last write succeeded."""
         return self._trouble or (self._store.trouble if self._store else "")
 
     @property
     def held(self) -> str:
-        """What is still to be written and waits in memory, in words; empty while nothing has to."""
+        """Description of the entries that wait in memory; empty if there are none."""
         store, held = self._store, self._held
         if store is not None:
             return store.backlog.words if store.backlog is not None else ""
@@ -141,7 +141,7 @@ class Journal(Persistence):
         return Backlog("", events=len(held), parts=parts).words
 
     def note(self, what: InterruptedJob | None) -> None:
-        """Keep what a power cut would leave interrupted now; None: nothing."""
+        """Save the job that a power failure would interrupt now, or None."""
         with self._lock:
             self._noted, self._has_noted = what, True
         self._post_noted()
@@ -151,7 +151,7 @@ class Journal(Persistence):
         self._post(lambda store: store.settings.save_setting(UNDER_WAY, value))
 
     def book(self) -> OffsetBook:
-        """The offsets of the store, for the screen to show and to change."""
+        """Return the offsets of the store for the screen to show and change."""
         store = self._store
         book = OffsetBook(
             store, "" if store else Message("OFFSETS CANNOT BE SAVED: {problem}", problem=self.trouble)
@@ -174,20 +174,20 @@ class Journal(Persistence):
             return None
 
     def parts_book(self, tools: Kind = Kind.TOOL) -> PartsBook:
-        """Measured parts and tool lives of the store; ``tools``: the table of this machine."""
+        """Return measured parts and tool lives of the store; ``tools`` is the tool table of this machine."""
         store = self._store
         book = PartsBook(store, "" if store else self.trouble, tools)
         self._know(book, store)
         return book
 
     def _know(self, book: OffsetBook | PartsBook, store: Store | None) -> None:
-        """It is told of another store; also of one that came while the book was made."""
+        """Register a book that must follow changes of the store, including one during its creation."""
         self._books.append(book)
         if self._store is not store:
             book.reopen(self._store, self._trouble)
 
     def hear(self, event: Event) -> None:
-        """Keep an event; a finished part counts for the program that made it."""
+        """Save an event; a finished part is counted for its program."""
         with self._lock:
             if event.kind == "load":
                 self._program = event.text
@@ -197,7 +197,7 @@ class Journal(Persistence):
                 self._write(self._store, event)
 
     def go_on(self, snapshot: Snapshot) -> None:
-        """Take up a control that has gone on without this process, before its events are heard."""
+        """Continue with a control that ran without this process, before its events are received."""
         with self._lock:
             self._program = snapshot.program
             if snapshot.state in CYCLE and self._store is not None:
@@ -210,7 +210,7 @@ class Journal(Persistence):
         self._recorder.hear(event, store.cycles)
 
     def keep(self, source: Source) -> None:
-        """The text that is about to be proved and run becomes a version of its program."""
+        """Save the text that is about to be proved and run as a version of its program."""
         if self._store is not None:
             name = Path(source.name).name
             self._store.programs.keep_loaded_version(
@@ -218,52 +218,61 @@ class Journal(Persistence):
             )
 
     def versions(self, name: str) -> tuple[VersionRow, ...]:
-        """Every version of a program, newest first. Raises StoreError; not for the screen's thread."""
+        """Return every version of a program, newest first.
+
+        Raises StoreError. Do not call in the screen's thread.
+        """
         return self.opened().programs.list_versions(name)
 
     def text_of(self, name: str, version: int) -> bytes:
-        """A version as it was kept. Raises StoreError; not for the screen's thread."""
+        """Return the text of a saved version. Raises StoreError. Do not call it in the screen's thread."""
         return self.opened().programs.load_version(name, version)
 
     def save_version(self, name: str, text: bytes, why: str) -> int:
-        """Another version; its number once it is kept. Raises StoreError; not for the screen's thread."""
+        """Save a version and return its number when it is on the disk.
+
+        Raises StoreError. Do not call it in the screen's thread.
+        """
         return self.opened().programs.save_version(name, text, why, who=self.who()).result()
 
     def read_setting(self, key: str) -> object:
-        """A setting; None: not set, or nothing is kept."""
+        """Return a setting; None if it is not set or no store is open."""
         store = self._store
         return store.settings.read_setting(key) if store else None
 
     def save_setting(self, key: str, value: object) -> None:
-        """Post a setting."""
+        """Save a setting without waiting."""
         self._post(lambda store: store.settings.save_setting(key, value))
 
     def keep_settings(self, values: Mapping[str, object]) -> None:
-        """Settings that are on the disk when this is back. Raises StoreError; not for the screen's thread."""
+        """Save settings and wait until they are on the disk.
+
+        Raises StoreError. Do not call it in the screen's thread.
+        """
         store = self.opened()
         for written in [store.settings.save_setting(key, value) for key, value in values.items()]:
             written.result()
 
     def note_change(self, text: str, who: str = "") -> None:
-        """Post a line of the log, where people say who they are."""
+        """Log a change, if users log in."""
         now = self.who()
         if now:
             self._post(lambda store: store.events.log_event("change", text, who=who or now))
 
     def note_access(self, text: str, who: str) -> None:
-        """Post a line of the log; without a store it goes to the log of failures."""
+        """Log an access event; without a store it goes to the error log."""
         if self._store is None:
             _log.warning("access: %s (%s)", text, who)
         self._post(lambda store: store.events.log_event("access", text, who=who))
 
     @property
     def runs(self) -> RunRecords | NoRunRecords:
-        """Return the run records of the store that is open now."""
+        """Run records of the open store."""
         store = self._store
         return store.runs if store is not None else NoRunRecords(self._trouble or CLOSED)
 
     def people(self) -> People:
-        """Who works at the machine, also by a store that another process writes. Raises StoreError."""
+        """Return the users, also from a store that another process writes. Raises StoreError."""
         store = self._store
         if store is not None:
             return store.people.read_people()
@@ -271,36 +280,39 @@ class Journal(Persistence):
             return other.people.read_people()
 
     def events(self, search: str, kinds: Collection[str], limit: int) -> tuple[EventRow, ...]:
-        """The log, newest first."""
+        """Return the latest events, newest first. Raises StoreError without a store."""
         return self.opened().events.read_events(search, limit, kinds)
 
     def tools_of_last_run(self, program: str) -> tuple[str, dict[int, ToolRow]]:
-        """When it was started last (UTC), and its tools as they were then; on a worker. Raises StoreError."""
+        """Return the start time of the program's last run (UTC), and its tools at that time.
+
+        Raises StoreError. Call it in a worker thread.
+        """
         store = self.opened()
         started = next((row.started for row in store.runs.read_records() if row.program == program), None)
         return (started, store.offsets.tools.read_rows_at(started)) if started is not None else ("", {})
 
     def renamed(self, old: str, new: str) -> None:
-        """Versions, count and record go with the program; back when that is on the disk."""
+        """Rename a program with its versions, counts and records; return when this is on the disk."""
         store = self._store
         if store is not None:
             store.programs.rename_program(old, new).result()
 
     def backup(self, target: Path) -> None:
-        """A copy of the store, also while it is written. Raises StoreError."""
+        """Copy the store to ``target``, even while it is being written. Raises StoreError."""
         self.opened()
         backup.backup(self._folder, target)
 
     def judge(self, source: Path) -> Verdict:
-        """Look through a backup and hold it against the store. Raises StoreError."""
+        """Check a backup and compare it with the store. Raises StoreError."""
         self.opened()
         with closing(store_connection.connect(self._folder / FILE_NAME, read_only=True)) as now:
             return verdict(now, source)
 
     def restore(self, source: Path) -> Path | None:
-        """Put a backup in the store's place; events of the meantime are written to it. Raises StoreError.
+        """Replace the store by a backup; write the events of the meantime to it. Raises StoreError.
 
-        Whatever happens a store is open again afterwards: the restored one, or the one before.
+        Afterwards a store is open in any case: the restored store, or the old one.
         """
         with self._lock:
             store, self._store = self.opened(), None
@@ -312,7 +324,10 @@ class Journal(Persistence):
             self._open_again()
 
     def _open_again(self) -> None:
-        """What happened meanwhile is written; what is interrupted is this machine's, not that of a backup."""
+        """Reopen the store and write the buffered events.
+
+        The interrupted job remains that of this machine and not that of a backup.
+        """
         late = self._unread
         try:
             store = self._open()
@@ -338,9 +353,10 @@ class Journal(Persistence):
             self._tell_late()
 
     def when_late(self, tell: Callable[[], None]) -> None:
-        """``tell`` is called, by another thread, once a store that was away at the start has been read.
+        """Set the function that is called when a store that was unavailable at the start has been read.
 
-        ``left`` and ``damage`` are known then. A store that is there already: at once.
+        The function runs in another thread, or immediately if the store has already been read late. ``left``
+        and ``damage`` are then known.
         """
         self._tell_late = tell
         if self._late:
@@ -348,11 +364,11 @@ class Journal(Persistence):
 
     @property
     def waiting(self) -> bool:
-        """Whether there is no store, for a reason that may pass, and it is tried again."""
+        """Whether the store could not be opened for a temporary reason, so that opening is tried again."""
         return self._store is None and self._opener is not None
 
     def _try_again(self) -> None:
-        """A disk that was full at the start, or a file that was locked: some time it is not."""
+        """Try to open the store again until it is open, for example when the disk has space again."""
         while not self._closing.wait(AGAIN):
             self._open_again()
             if self._store is not None:
@@ -364,14 +380,17 @@ class Journal(Persistence):
             write(store)
 
     def opened(self) -> Store:
-        """The store of this moment: another after a restore. Raises StoreError while there is none."""
+        """Return the store that is open now, which changes after a restore.
+
+        Raises StoreError if no store is open.
+        """
         store = self._store
         if store is None:
             raise StoreError(self._trouble or CLOSED)
         return store
 
     def close(self) -> str:
-        """Write what is queued and give the store free; in words what could not be kept and is lost."""
+        """Write the queued entries and close the store; return a description of the lost entries."""
         self._closing.set()
         if self._store is None:
             return self.held

@@ -1,4 +1,4 @@
-"""The events of one run in a file of the log folder, and how many such files are kept there."""
+"""Event log file of one run, and limits for the files in the log folder."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from core.executor.snapshot import Event
 from core.file_placing import NEW_FILE
 from core.message import Message
 
-MOST = 500  # files of runs and failures
-MOST_BYTES = 64_000_000  # of them together
+MOST = 500  # largest number of run and crash files
+MOST_BYTES = 64_000_000  # total bytes of these files
 OLDEST = 366 * 86_400.0  # s
 
 
 class _Kept(NamedTuple):
-    """A file of the log folder: its age in seconds, its size in bytes."""
+    """A file in the log folder, with its age in seconds and its size in bytes."""
 
     path: Path
     age: float
@@ -30,17 +30,17 @@ class _Kept(NamedTuple):
 
 
 class EventLog:
-    """The events of one run, a JSON object a line. A disk that takes none of them stops no machine."""
+    """Events of one run as JSON objects, one per line. A disk error never stops the machine."""
 
     def __init__(self, path: Path, file: TextIO) -> None:
         self.path = path
-        self.trouble = ""  # why it is not whole; empty while all is well
+        self.trouble = ""  # reason why the log is incomplete; empty if it is complete
         self._file = file
 
     @classmethod
     @contextmanager
     def new(cls, program: str) -> Iterator[EventLog]:
-        """A log in the product's folder, named after the time and the program."""
+        """Yield a log in the data folder, named after the time and the program. Raises CommandError."""
         folder = data_folder() / "logs"
         stamp = datetime.now(UTC).strftime("%Y%m%dT%H%M%S%f")
         path = folder / f"{stamp}-{Path(program).stem}.jsonl"
@@ -61,7 +61,7 @@ class EventLog:
             log._kept(file.close)
 
     def add(self, event: Event) -> None:
-        """One more line."""
+        """Write an event."""
         line = {"t": round(event.t, 4), "kind": event.kind, "text": event.text, "line": event.line}
         if event.record:
             line["record"] = event.record
@@ -77,9 +77,9 @@ class EventLog:
 
 
 def forget_oldest(folder: Path, newest: Path) -> None:
-    """Delete the files of runs and failures beyond ``MOST``, ``MOST_BYTES`` and ``OLDEST``, the oldest first.
+    """Delete the oldest run and crash files beyond ``MOST``, ``MOST_BYTES`` and ``OLDEST``.
 
-    ``newest`` is being written. What cannot be deleted stays: nobody's run waits for that.
+    ``newest`` is being written and remains. Files that cannot be deleted are ignored.
     """
     with suppress(OSError):
         kept = [_kept(path) for what in ("*.jsonl", "crash-*.txt") for path in folder.glob(what)]
@@ -94,7 +94,7 @@ def _kept(path: Path) -> _Kept:
 
 
 def _superfluous(files: Sequence[_Kept]) -> list[_Kept]:
-    """Those that go, of files beside the one that is being written."""
+    """Return the files to delete, from the files other than the one being written."""
     gone, size = [], 0
     for place, each in enumerate(sorted(files, key=lambda one: (one.age, one.path.name)), start=1):
         size += each.size

@@ -1,1 +1,1 @@
-"""What the pages share: their tables and keys, help with codes, and why one cannot be opened now."""
+"""Code that the pages share: tables, keys, help with codes and the conditions for opening a page."""

@@ -1,4 +1,4 @@
-"""What a panel of an optional feature says to the editor, in which it writes lines by forms."""
+"""Interface between the editor and a panel of an optional feature that writes program lines by forms."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from app.desk.pages.sheet import Key
 
 
 class PanelModel:
-    """Nothing, as the editor has it without such a feature; a feature overrides all of it.
+    """A panel that does nothing, for an editor without such a feature. A feature overrides all members.
 
-    ``text`` is the program with what the panel writes. ``number`` counts the texts that are worth proving.
-    ``written`` counts those that are to stand in the field; the cursor then goes to line ``at``.
+    ``text`` is the program with the lines that the panel writes. ``number`` counts the texts to prove.
+    ``written`` counts the texts that replace the editor's text; the cursor then moves to line ``at``.
     """
 
     text: str = ""
@@ -21,36 +21,36 @@ class PanelModel:
 
     @property
     def line(self) -> int:
-        """The line, from 1, up to which the path is shown."""
+        """The line, counted from 1, up to which the path is drawn."""
         return 0
 
     @property
     def listing(self) -> bool:
-        """Whether nothing is lost when the page is left."""
+        """Whether the page can be left without losing input."""
         return True
 
     def open_file(self, file: Path) -> None:
-        """Open the form that makes a program of this file."""
+        """Open the form that makes a program from this file."""
 
     def look(self) -> None:
-        """Take up what the workers have found; called once a frame."""
+        """Accept the results of the workers; called once a frame."""
 
     def keys(self) -> dict[int, Key]:
         """Return the function keys."""
         return {}
 
     def prompt(self) -> str:
-        """Return what the prompt line says."""
+        """Return the text for the prompt line."""
         return ""
 
     def typed(self, key: str) -> bool:  # noqa: ARG002
-        """Take a key; False when it means nothing here."""
+        """Handle a key. Return False if the key has no meaning here."""
         return False
 
     def takes(self, key: str) -> bool:  # noqa: ARG002
-        """Return whether a character is text here."""
+        """Return whether this character is text input for the panel."""
         return False
 
     def escape(self) -> bool:
-        """Take something back; False when nothing is left to take back."""
+        """Cancel the last step. Return False if there is nothing left to cancel."""
         return False

@@ -1,4 +1,4 @@
-"""The first job, step by step: a card that follows what is done, from choosing a program to a part."""
+"""A card that guides the operator through the first job, from choosing a program to the first part."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from app.desk.translation import tr
 from core.executor.snapshot import CYCLE, Snapshot, State
 from core.message import Message
 
-STEP = "first_job_step"  # setting
-CLOSE = "×"  # what the card's key presses, and shows
-_COUNTED = (("P", "NO COUNT"),)  # no lamp shows it while it is off, so a finger has it here
+STEP = "first_job_step"  # Name of the setting.
+CLOSE = "×"  # Key name and label of the card's close button.
+_COUNTED = (("P", "NO COUNT"),)  # A touch target, because no lamp shows NO COUNT while it is off.
 
 
-_NO_END = CYCLE | {State.ESTOP, State.FAULT}  # a dry run that stands here did not come to its end
+_NO_END = CYCLE | {State.ESTOP, State.FAULT}  # A dry run that stops in one of these states is not complete.
 
 
 class Step(NamedTuple):
-    """What is to be done, and where."""
+    """One step of the first job: its title, instructions and keys."""
 
     title: str
     how: str
@@ -46,12 +46,12 @@ STEPS = (
 
 @dataclass(slots=True)
 class FirstJob:
-    """Which step is the next one; a step that is done stays done until the card is asked for anew."""
+    """The progress of the first job. A completed step remains completed until the card is shown again."""
 
     at: int = 0
-    _dry: bool = False  # a cycle runs that counts no part
+    _dry: bool = False  # A cycle that counts no part is running.
     _parts: int | None = None
-    _saved: int = -1  # the step that is stored
+    _saved: int = -1  # The step that is saved in the store.
 
     @classmethod
     def stored(cls, persistence: Persistence) -> FirstJob:
@@ -60,13 +60,13 @@ class FirstJob:
         return cls(at, _saved=at) if isinstance(at, int) and 0 <= at <= len(STEPS) else cls()
 
     def save(self, persistence: Persistence) -> None:
-        """Store the step if it has changed. Raises StoreError."""
+        """Save the step if it has changed. Raises StoreError."""
         if self.at != self._saved:
             self._saved = self.at
             persistence.save_setting(STEP, self.at)
 
     def see(self, snapshot: Snapshot, loaded: Loaded, parts: int) -> None:
-        """Once a frame: go on as far as has been done. ``parts`` that were made."""
+        """Advance past all completed steps; called once a frame. ``parts`` is the number of parts made."""
         while self.at < len(STEPS) and self._done(snapshot, loaded, parts):
             self.at += 1
 
@@ -86,7 +86,7 @@ class FirstJob:
 
     @property
     def row(self) -> NoticeRow:
-        """The card of now."""
+        """The card's text and keys for the present step."""
         keys = ((CLOSE, tr("CLOSE")),)
         if self.at >= len(STEPS):
             return NoticeRow(

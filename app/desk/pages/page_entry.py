@@ -1,9 +1,10 @@
-"""Why a page or a program cannot be opened now: asked by the keys that offer it, and by the page itself.
+"""Conditions for opening a page or a program, checked by the keys and by the page itself.
 
-The control cancels the spindle-on command when its editor is entered, so that nobody writes beside a
-turning chuck. No command of the executor does just that (Reset gives the program up as well), so entering is
-refused until the spindle has stopped. While a cycle runs the machine has its program as it was loaded:
-another one may be written and proved meanwhile, and Pause, Scroll Lock and Esc stop as everywhere.
+The original control cancels the spindle-on command when its editor is opened, so that the operator does not
+type next to a turning chuck. No command of the executor does only that, because Reset also cancels the
+program. TurnDesk therefore refuses to open the editor until the spindle has stopped. While a cycle runs, the
+machine uses the program as it was loaded. Another program can be edited and proved during that time, and
+Pause, Scroll Lock and Esc stop the machine as on other pages.
 """
 
 from __future__ import annotations
@@ -26,14 +27,17 @@ MOVED = "AXES ARE MOVING. STOP THEM (H) BEFORE CHOOSING A PROGRAM"
 
 
 def program_barred(snapshot: Snapshot) -> str:
-    """Return why no other program can be chosen; empty when one can."""
+    """Return why another program cannot be chosen. Empty if a program can be chosen."""
     if snapshot.state in BY_HAND:
         return MOVED
     return CHOOSING if snapshot.state in UNDER_WAY else ""
 
 
 def editor_barred(snapshot: Snapshot, *, named: bool = True) -> str:
-    """Return why the editor cannot be entered; ``named``: there is a program to edit."""
+    """Return why the editor cannot be opened. Empty if the editor can be opened.
+
+    ``named`` is False if no program is selected.
+    """
     if snapshot.state in BY_HAND:
         return SLIDES
     if snapshot.state not in UNDER_WAY:
@@ -47,14 +51,14 @@ def editor_barred(snapshot: Snapshot, *, named: bool = True) -> str:
 
 
 def mdi_barred(snapshot: Snapshot) -> str:
-    """Return why MDI cannot be opened; empty when it can."""
+    """Return why MDI cannot be opened. Empty if MDI can be opened."""
     if snapshot.state in CYCLE:
         return tr("TO OPEN MDI, LET THE PROGRAM END, OR STOP IT AND PRESS R")
     return ""
 
 
 def searchto_barred(snapshot: Snapshot, loaded: Loaded) -> str:
-    """Return why SEARCHTO cannot be opened, or does not go on; empty when it can."""
+    """Return why SEARCHTO cannot be opened or cannot continue. Empty if SEARCHTO is possible."""
     if snapshot.state in CYCLE:
         return tr("TO USE SEARCHTO, LET THE PROGRAM END, OR STOP IT AND PRESS R")
     if loaded.source is None or loaded.job is None:

@@ -1,4 +1,4 @@
-"""The pages and watchers of a desk."""
+"""The pages and watchers that are attached to TurnDesk."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ A = TypeVar("A", bound=Attached)
 
 @dataclass(slots=True)
 class PageRegistry:
-    """Models of pages by class, and what they add to starts, frames, notices and the list of programs."""
+    """Models of pages by class, with their start handlers, watchers, notices and program keys."""
 
     _attached: dict[type[Attached], Attached] = field(default_factory=dict)
-    _made_later: dict[str, Callable[[], Attached]] = field(default_factory=dict)  # by names of classes
+    _made_later: dict[str, Callable[[], Attached]] = field(default_factory=dict)  # By class name.
     _starts: list[OwnStart] = field(default_factory=list)
     _run_watchers: list[Watcher] = field(default_factory=list)
     _frame_watchers: list[Callable[[Snapshot], None]] = field(default_factory=list)
@@ -32,18 +32,18 @@ class PageRegistry:
     # --- models --------------------------------------------------------------------------------------
 
     def attach(self, part: Attached) -> None:
-        """Register the model of a page. It is found by its class, and closed with the desk."""
+        """Register the model of a page by its class. The model is closed with TurnDesk."""
         self._attached[type(part)] = part
 
     def attach_later(self, kind: str, make: Callable[[], Attached]) -> None:
-        """Register a model that is made, and whose class is loaded, at the first ``find``.
+        """Register a model that is created at the first ``find``.
 
-        ``kind`` is its class with the module, as ``app.editor.editor.Editor``.
+        ``kind`` is the class name with its module, for example ``app.editor.editor.Editor``.
         """
         self._made_later[kind] = make
 
     def find(self, kind: type[A]) -> A | None:
-        """Return the model of this class; None if the desk has none."""
+        """Return the model of this class, or None if no such model is attached."""
         make = self._made_later.pop(f"{kind.__module__}.{kind.__qualname__}", None)
         if make is not None:
             self.attach(make())
@@ -61,7 +61,7 @@ class PageRegistry:
         self._starts.append(page)
 
     def add_run_watcher(self, watcher: Watcher) -> None:
-        """Register a watcher that sees each frame except those of an MDI line."""
+        """Register a watcher that sees each frame except the frames of an MDI line."""
         self._run_watchers.append(watcher)
 
     def add_frame_watcher(self, see: Callable[[Snapshot], None]) -> None:
@@ -69,27 +69,27 @@ class PageRegistry:
         self._frame_watchers.append(see)
 
     def add_program_key(self, name: str, key: ProgramKey) -> None:
-        """Add a key to the list of programs."""
+        """Add a function key to the program list."""
         self._program_keys[name] = key
 
     def set_notice(self, notice: Callable[[Snapshot], NoticeRow | None]) -> None:
-        """Offer a notice between cycles, for example the next job."""
+        """Set the function that returns a notice between cycles, for example for the next job."""
         self._notice = notice
 
     def set_record_opener(self, open_record: Callable[[str], None]) -> None:
-        """Use this function to open the recording of an alarm, by its name."""
+        """Set the function that opens the recording of an alarm by its name."""
         self._open_record = open_record
 
     # --- uses ----------------------------------------------------------------------------------------
 
     @property
     def open_start(self) -> OwnStart | None:
-        """The page that uses the start buttons now; None: they start the program."""
+        """The page that uses the start buttons now. None: they start the program."""
         return next((page for page in self._starts if page.open), None)
 
     @property
     def program_keys(self) -> Mapping[str, ProgramKey]:
-        """The keys that features add to the list of programs."""
+        """The function keys that features add to the program list, by name."""
         return self._program_keys
 
     @property
@@ -98,17 +98,17 @@ class PageRegistry:
         return self._run_watchers
 
     def see_run(self, snapshot: Snapshot, loaded: Loaded) -> None:
-        """Show a frame to the watchers of runs."""
+        """Pass a frame of a program run to the run watchers."""
         for watcher in self._run_watchers:
             watcher.see(snapshot, loaded)
 
     def see_frame(self, snapshot: Snapshot) -> None:
-        """Show a frame to the watchers of all frames."""
+        """Pass a frame to the frame watchers."""
         for see in self._frame_watchers:
             see(snapshot)
 
     def offered_notice(self, snapshot: Snapshot) -> NoticeRow | None:
-        """Return the notice that a feature offers between cycles; None if there is none."""
+        """Return the notice that a feature offers between cycles, or None."""
         return self._notice(snapshot)
 
     def open_record(self, name: str) -> None:

@@ -1,4 +1,4 @@
-"""What the lists of the desk are made of: a table with a question under it, a typed line, and keys."""
+"""Tables with an entry line and function keys, as the list pages of TurnDesk use them."""
 
 from __future__ import annotations
 
@@ -13,28 +13,28 @@ if TYPE_CHECKING:
     from core.part.tool_outline import ToolOutline
 
 T = TypeVar("T")
-STEPS = {"Up": -1, "Down": 1, "Page up": -10, "Page down": 10}  # of the mark, by keys
+STEPS = {"Up": -1, "Down": 1, "Page up": -10, "Page down": 10}  # Rows that the selection moves, by key.
 
 
 def following(choices: Iterable[T], now: T) -> T:
-    """The next choice; the first after the last, and after one that is none of them."""
+    """Return the choice after ``now``, in a cycle. An unknown ``now`` gives the first choice."""
     order = list(choices)
     return order[(order.index(now) + 1) % len(order) if now in order else 0]
 
 
 class RefusedText(str):
-    """A typed value that was refused: the next character replaces it, Back corrects it."""
+    """A rejected value: the next character replaces it, and Back edits it."""
 
     __slots__ = ()
 
 
 def refused(text: str) -> str:
-    """Return a typed text marked as refused; a name is not marked, as it is corrected and not retyped."""
+    """Return a rejected text as RefusedText, unless it is a name, which is edited and not retyped."""
     return text if set(text) - CHARACTERS else RefusedText(text)
 
 
 def edited(text: str, key: str, longest: int = LONGEST) -> str:
-    """A text that is typed, after one more key: a character, ``Back`` or ``Delete``."""
+    """Return an input text after one more key: a character, ``Back`` or ``Delete``."""
     if key == "Back":
         return text[:-1]
     if key == "Delete":
@@ -44,24 +44,26 @@ def edited(text: str, key: str, longest: int = LONGEST) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One line of a table. ``lit`` draws its lamp, filled or hollow; None: it has none.
+    """One row of a table.
 
-    A cell may have two lines where the sheet is ``tall``. ``outline`` is drawn in the last cell.
+    ``lit`` draws a lamp, filled if True and hollow if False; None draws no lamp. A cell may have two lines if
+    the table is ``tall``. ``outline`` is drawn in the last cell.
     """
 
     cells: tuple[str, ...]
     lit: bool | None = None
     tone: Tone = Tone.READY
-    bar: float | None = None  # 0…1: how much of its last cell is filled
+    bar: float | None = None  # Filled part of the last cell, 0…1.
     outline: ToolOutline | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Sheet:
-    """A table with a head line; ``shares`` divide its width, ``marked`` is the row keys act on, -1: none.
+    """A table with a title, column heads and an entry line.
 
-    ``question`` and ``text`` are the entry below it; cells of the columns ``raw`` are names and texts of
-    others, which nobody translates.
+    ``shares`` divide the table's width. ``marked`` is the index of the selected row, -1 for none.
+    ``question`` and ``text`` are the entry line. Cells of the columns ``raw`` contain names and user texts,
+    which are not translated.
     """
 
     title: str
@@ -73,40 +75,40 @@ class Sheet:
     text: str = ""
     notes: tuple[str, ...] = ()
     raw: frozenset[int] = frozenset()
-    figures: frozenset[int] = frozenset()  # columns that stand at the right, as figures do
-    tall: bool = False  # rows high enough for two lines and a picture
-    refused: bool = field(init=False)  # the next character replaces the text
+    figures: frozenset[int] = frozenset()  # Columns that are right-aligned, for numbers.
+    tall: bool = False  # Rows are high enough for two lines and a drawing.
+    refused: bool = field(init=False)  # The next character replaces the text.
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "refused", isinstance(self.text, RefusedText))
 
 
 class Key(NamedTuple):
-    """A function key of a section: its label of up to eight characters, and what it does."""
+    """A function key of a page: its label of up to eight characters, and its action."""
 
     label: str
     action: Callable[[], None]
-    barred: bool = False  # it would be refused now
+    barred: bool = False  # The action would be rejected now.
 
 
 @dataclass(slots=True)
 class Entry:
-    """``words``: any letter is taken; else figures and signs only."""
+    """An input field. With ``words``, it accepts any character, otherwise only characters of numbers."""
 
     words: bool = False
     text: str = ""
-    offered: str = ""  # a text that the first character replaces, and Back edits
+    offered: str = ""  # A proposed text that the first character replaces and Back edits.
 
     def offer(self, text: str) -> None:
-        """Start with a text that was not typed."""
+        """Set a proposed text, which the first character replaces."""
         self.text = self.offered = text
 
     def takes(self, key: str) -> bool:
-        """Whether a character belongs to it."""
+        """Return whether this character can be entered in the field."""
         return len(key) == 1 and (self.words or key in CHARACTERS)
 
     def type(self, key: str) -> bool:
-        """A key; False when it means nothing here. Return is the caller's."""
+        """Handle a key. Return False if the key has no meaning here. The caller handles Return."""
         taken = self.takes(key) or key in {"Back", "Delete"}
         if taken:
             replaced = self.takes(key) and self.text == self.offered

@@ -1,1 +1,1 @@
-"""Programs on the desk: loaded, proved, made ready for Cycle Start, and their first move watched."""
+"""Loading, proving and starting of programs, and the check of their first move."""

@@ -1,4 +1,4 @@
-"""The program that is on the desk when the screen opens."""
+"""Choice of the program that is loaded when the screen opens."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def begin_with(desk: Desk, named: str | None) -> None:
-    """At the start: the program that runs, or was interrupted, or else the one that is ``named``."""
+    """Load the first program: the running or interrupted program, or else the program ``named``."""
     if desk.snapshot().state in CYCLE:
         _show_program_under_way(desk, named)
         return
@@ -42,7 +42,7 @@ def begin_with(desk: Desk, named: str | None) -> None:
 
 
 def _show_program_under_way(desk: Desk, named: str | None) -> None:
-    """Load the program that the control runs already: it has gone on while there was no screen."""
+    """Load the program that the control is already running, because the screen was restarted."""
     now = desk.snapshot()
     last = desk.settings.persistence.read_setting(LAST_PROGRAM)
     known = (Path(each) for each in (named, last) if isinstance(each, str))

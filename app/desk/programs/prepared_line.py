@@ -1,4 +1,4 @@
-"""A line of MDI, typed or chosen on the Jog page: proved on a worker and made ready for Cycle Start."""
+"""An MDI line, typed or chosen on the Jog page, that is proved on a worker and prepared for Cycle Start."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ ProveLine = Callable[[str, Snapshot, Watch], tuple[Job, Proved]]
 
 
 def never_set(job: Job, proved: Proved) -> tuple[Diagnostic, ...]:
-    """An error for each tool that the line calls and nobody has set."""
+    """Return an error for each tool that the line calls and that has no measured offset."""
     missing = proved.proof.unset(job)
     text = "Tool {number} has not been set."
     return tuple(
@@ -32,51 +32,56 @@ def never_set(job: Job, proved: Proved) -> tuple[Diagnostic, ...]:
 
 @dataclass(slots=True)
 class PreparedLine:
-    """One line between the key that asks for it and the palms that run it; it runs once.
+    """One MDI line between the key that requests it and the start buttons that run it. A line runs once.
 
-    Nothing starts but by Cycle Start, and as long as no line is ready that begins nothing at all.
+    Only Cycle Start starts the line. While no line is ready, Cycle Start has no effect.
     """
 
     prove: ProveLine
     post: Callable[[Command], None]
-    found: tuple[Diagnostic, ...] = ()  # what proving had to say of it
-    ready: Job | None = None  # proved and prepared
+    found: tuple[Diagnostic, ...] = ()  # Diagnostics of the proof.
+    ready: Job | None = None  # The job that is proved and prepared.
     worker: Latest = field(default_factory=lambda: Latest("loading-mdi"))
-    refused: Callable[[Diagnostic], None] = field(default=lambda _error: None)  # it does not run
-    _proof: Proved | None = None  # of what is ready
-    _begun: int = 0  # lines that the executor has begun, as far as they were seen
+    # Called with the first error if the line cannot run.
+    refused: Callable[[Diagnostic], None] = field(default=lambda _error: None)
+    _proof: Proved | None = None  # Proof of the ready line.
+    _begun: int = 0  # Number of lines that the executor had started at the last update.
 
     def ask(self, text: str, snapshot: Snapshot, failed: Callable[[str], None]) -> None:
-        """Have this line proved from the state and the place of now; what was ready before is so no more."""
+        """Prove this line from the present machine state. A line that was ready is canceled.
+
+        ``failed`` is called with an error text if the proof fails unexpectedly.
+        """
         self.take_back()
         self.worker.ask(partial(self.prove, text, snapshot), self._proved, failed)
 
     def take_back(self) -> None:
-        """No line is ready, and Cycle Start begins nothing."""
+        """Cancel the line, so that Cycle Start has no effect."""
         self.forget()
         self.post(Prepare(Starts.LINE))
 
     def leave(self) -> None:
-        """No line is ready, and Cycle Start begins programs again."""
+        """Cancel the line, so that Cycle Start starts programs again."""
         self.forget()
         self.post(Prepare(Starts.PROGRAM))
 
     def forget(self) -> None:
-        """What is being proved, or was found, counts no more."""
+        """Cancel the proof in progress, and discard the ready line and its diagnostics."""
         self.worker.give_up()
         self.ready, self.found = None, ()
 
     def keep(self, snapshot: Snapshot) -> None:
-        """Once a frame while Cycle Start is to begin lines alone: told again where that was not heard.
+        """Make Cycle Start run lines only; called once a frame while the MDI page is open.
 
-        It is refused under a program, which may have begun behind the snapshot that was looked at.
+        The command is repeated until the snapshot shows it. The executor rejects it during a program, which
+        may have started after the snapshot was made.
         """
         if snapshot.state in CYCLE or snapshot.starts is Starts.LINE:
             return
         self._prepare()
 
     def look(self, snapshot: Snapshot) -> bool:
-        """Once a frame: take up what the worker has found. True when the line has just been started."""
+        """Accept the results of the worker; called once a frame. Return True if the line has just started."""
         begun, self._begun = snapshot.lines > self._begun, snapshot.lines
         started = self.ready is not None and begun
         if started:
@@ -86,21 +91,21 @@ class PreparedLine:
 
     @property
     def busy(self) -> bool:
-        """Whether the proof of a line is still to come."""
+        """Whether a line is being proved."""
         return self.worker.busy
 
     @property
     def first_move(self) -> FirstMoveSeen | None:
-        """The first move of the line that is ready; None: none is, or it was not checked."""
+        """The first move of the ready line. None if no line is ready or the move was not checked."""
         return self._proof.first_move if self.ready is not None and self._proof is not None else None
 
     @property
     def errors(self) -> tuple[Diagnostic, ...]:
-        """What keeps the line from running."""
+        """The diagnostics that prevent the line from running."""
         return tuple(each for each in self.found if each.severity is Severity.ERROR)
 
     def close(self) -> None:
-        """End the thread that proves."""
+        """End the worker that proves lines."""
         self.worker.close()
 
     def _proved(self, answer: tuple[Job, Proved]) -> None:

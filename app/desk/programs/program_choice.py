@@ -14,12 +14,15 @@ from app.desk.status import interrupted_notice
 from app.desk.status.prompt_line import UNDER_WAY, PromptAnswers
 from core.executor.snapshot import Snapshot
 
-LAST_PROGRAM = "last_program"  # setting: the path of the program that was loaded last
+LAST_PROGRAM = "last_program"  # Setting with the path of the program that was loaded last.
 
 
 @dataclass(frozen=True, slots=True)
 class ProgramChoice:
-    """Loads programs of ``folders`` by ``session``; ``save_path`` stores the path for the next start."""
+    """Finds programs in ``folders`` and loads them with ``session``.
+
+    ``save_path`` stores the path for the next start of TurnDesk.
+    """
 
     folders: ProgramFolders
     session: ProgramLoader
@@ -28,13 +31,13 @@ class ProgramChoice:
     save_path: Callable[[str], None]
 
     def can_choose(self) -> bool:
-        """Return whether a program can be chosen now; the prompt line says why not."""
+        """Return whether a program can be chosen now. The prompt line shows why not."""
         if why := program_barred(self.snapshot()):
             self.answers.say(why)
         return not why
 
     def choose(self, typed: str) -> bool:
-        """Load the program that was typed or picked; return False if no program has that name."""
+        """Load the program that was typed or selected. Return False if no program has that name."""
         path = self.folders.find(typed)
         if path is None:
             return False
@@ -42,7 +45,7 @@ class ProgramChoice:
         return True
 
     def load(self, path: Path) -> None:
-        """Load a program; ask first if it would replace an interrupted job."""
+        """Load a program. Ask first if the program would replace an interrupted job."""
         found = self.snapshot().interrupted
         self.answers.take_back()
         if found is not None and found.program != path.name:
@@ -56,7 +59,7 @@ class ProgramChoice:
             self.save_path(str(path))
 
     def switch_block_delete(self) -> None:
-        """Switch Block Delete. It is part of the job that was proved, so the program is loaded again."""
+        """Toggle Block Delete, and load the program again because Block Delete is part of the proved job."""
         loaded = self.session.now
         if loaded.path is None:
             self.answers.say("F2: CHOOSE A PROGRAM BEFORE CHANGING BLOCK DELETE")

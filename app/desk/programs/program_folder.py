@@ -1,8 +1,7 @@
-"""Program files: the folders that ``FILE TO BE PROCESSED`` picks from, and whether the disk still holds what
-was read.
+"""Program folders, and a watch for changes of the loaded program's file.
 
-What runs is the text on the desk. Who has changed the file since, at another computer of the shop, must not
-believe that the new one will run.
+``FILE TO BE PROCESSED`` lists the programs of these folders. Cycle Start runs the loaded text. An operator
+who changes the file on another computer must see that the new text is not loaded.
 """
 
 from __future__ import annotations
@@ -20,7 +19,7 @@ from core.executor.raised_alarm import Attempt
 from core.language.source import Source, SourceError, load_source
 from core.message import Message
 
-LISTED = 2000  # a folder with more programs than this is typed into, not looked through
+LISTED = 2000  # Maximum number of listed programs in a folder.
 ENDINGS = frozenset({"", ".nc", ".txt", ".tap", ".cnc", ".prg", ".h", ".mpf", ".spf"})
 
 
@@ -29,22 +28,22 @@ Takes = Callable[[str], bool]
 
 
 def is_program(name: str) -> bool:
-    """Whether a file is a program, by its ending."""
+    """Return whether a file name has the extension of a program."""
     return Path(name).suffix.lower() in ENDINGS
 
 
 @dataclass(frozen=True, slots=True)
 class ListedProgram:
-    """One program: how the list names it, and where it is."""
+    """One program of the list, with its displayed name and its path."""
 
     name: str
     path: Path
 
 
 class ProgramFolders:
-    """Program folders in the order of preference; a name in an earlier one hides the same in a later.
+    """Program folders in order of preference. A program in an earlier folder hides programs of the same name.
 
-    ``drawing_endings``: of the drawings from which a program can be made.
+    ``drawing_endings`` are the file extensions of drawings from which a program can be made.
     """
 
     def __init__(self, folders: Sequence[Path], drawing_endings: tuple[str, ...] = ()) -> None:
@@ -52,24 +51,24 @@ class ProgramFolders:
         self._drawing_endings = drawing_endings
 
     def is_drawing(self, name: str) -> bool:
-        """Whether a file is a drawing, by its ending."""
+        """Return whether a file name has the extension of a drawing."""
         return name.lower().endswith(self._drawing_endings)
 
     def takes(self, name: str) -> bool:
-        """Whether a file is a program or a drawing, by its ending."""
+        """Return whether a file name has the extension of a program or a drawing."""
         return is_program(name) or self.is_drawing(name)
 
     def entries(self) -> tuple[ListedProgram, ...]:
-        """What can be picked, by name; folders that are not there are empty."""
+        """Return the programs of all folders, sorted by name. A missing folder counts as empty."""
         return self._listed(is_program)
 
     def matching(self, typed: str) -> tuple[ListedProgram, ...]:
-        """The entries whose name holds what was typed."""
+        """Return the programs whose names contain the typed text."""
         part = typed.strip().lower()
         return tuple(entry for entry in self.entries() if part in entry.name.lower())
 
     def drawings(self) -> tuple[ListedProgram, ...]:
-        """The drawings beside the programs, by name: what a program can be made of."""
+        """Return the drawings in the program folders, sorted by name."""
         return self._listed(self.is_drawing)
 
     def _listed(self, taken: Takes) -> tuple[ListedProgram, ...]:
@@ -80,9 +79,9 @@ class ProgramFolders:
         return tuple(sorted(seen.values(), key=lambda entry: entry.name.lower()))
 
     def find(self, typed: str) -> Path | None:
-        """The program that a typed name means: any case, with or without its ending; or a path.
+        """Return the path of the program that a typed name refers to, or None if there is no such file.
 
-        None when there is no such file.
+        The name may be in upper or lower case, with or without its extension. It may also be a path.
         """
         name = typed.strip()
         if not name:
@@ -114,31 +113,35 @@ def _files(folder: Path, taken: Takes) -> Iterator[Path]:
 
 
 _log = logging.getLogger(__name__)
-LOOK = 2.0  # seconds between two looks at the disk
-HANGS = 5.0  # seconds after which a look that has not returned counts as a file that cannot be read
+LOOK = 2.0  # Seconds between two checks of the file.
+HANGS = 5.0  # Seconds after which an unfinished check counts as an unreadable file.
 GONE = "{name} IS NOT ON THE DISK. CYCLE START RUNS THE LOADED PROGRAM"
 CHANGED = "{name} HAS CHANGED. F2: RELOAD. CYCLE START RUNS THE OLD VERSION"
 UNREADABLE = "CANNOT READ {name}: CHECK FOLDER. CYCLE START RUNS LOADED VERSION"
-_Said = tuple[str, str]  # the text, and the name of the file in it
+_Said = tuple[str, str]  # Message text and file name.
 _SAME = ("", "")
-_Stamp = tuple[int, int]  # time of the last change in nanoseconds, bytes; an error number and -1
+_Stamp = tuple[int, int]  # Modification time in ns and size in bytes, or an error number and -1.
 
 
 class ProgramFile:
-    """Looks at the file now and then, on a thread of its own: a share that hangs keeps nobody waiting."""
+    """Compares the file with the loaded program on its own thread, because a network drive may hang."""
 
     def __init__(self, loaded: Callable[[], Loaded], clock: Callable[[], float] = time.monotonic) -> None:
         self._loaded, self._clock = loaded, clock
-        self._since: float | None = None  # when the look that is under way began
+        self._since: float | None = None  # Start time of the check in progress.
         self._wanted = threading.Event()
-        self._seen: tuple[Source, tuple[_Stamp, ...]] | None = None  # whose files were compared last
+        # Source and files of the last comparison.
+        self._seen: tuple[Source, tuple[_Stamp, ...]] | None = None
         self._closing = threading.Event()
         self._thread = threading.Thread(target=self._watch, name="program-file", daemon=True)
-        self._found: tuple[Source | None, _Said] = (None, _SAME)  # of which text, and what is to be said
+        self._found: tuple[Source | None, _Said] = (None, _SAME)  # Compared source and message.
 
     @property
     def differs(self) -> str:
-        """How the files differ from the loaded text, or that they cannot be read; empty while they agree."""
+        """The message about the difference between the files and the loaded text. Empty if they are equal.
+
+        A file that cannot be read also gives a message.
+        """
         loaded, since = self._loaded(), self._since
         if loaded.source is None:
             return ""
@@ -148,20 +151,20 @@ class ProgramFile:
         return tr(Message(said[0], name=said[1])) if said[0] and source is loaded.source else ""
 
     def start(self) -> None:
-        """Begin to look at the file, on a thread of its own."""
+        """Start the thread that checks the file."""
         self._thread.start()
 
     def close(self) -> None:
-        """Look no more; a look that hangs in the system is left behind."""
+        """Stop checking. A check that hangs in the operating system remains on the daemon thread."""
         self._closing.set()
         self._wanted.set()
 
     def hurry(self) -> None:
-        """Look at once: the file has just been written here."""
+        """Check the file immediately, because TurnDesk has just written it."""
         self._wanted.set()
 
     def look(self) -> None:
-        """Compare the files with what was read, where one has been touched since the last look."""
+        """Compare the files with the loaded text if a file has been modified since the last check."""
         loaded = self._loaded()
         source, path = loaded.source, loaded.path
         if source is None or path is None:
@@ -179,7 +182,8 @@ class ProgramFile:
         if self._seen is None or self._seen[0] is not source or self._seen[1] != stamps:
             found = ((_difference(file, text), file.name) for file, text in texts.items())
             said = next((each for each in found if each[0]), _SAME)
-            unread = said[0] == UNREADABLE  # its stamp may not change: read it at every look
+            # The file's time and size may not change, so read the file at every check.
+            unread = said[0] == UNREADABLE
             self._seen = None if unread else (source, stamps)
             self._found = (source, said)
 
@@ -191,7 +195,7 @@ class ProgramFile:
                 self.watch_once()
 
     def watch_once(self) -> None:
-        """Look; the watch survives whatever the look raises, and shows that the file cannot be read."""
+        """Check the file once. If the check raises an exception, the file counts as unreadable."""
         with Attempt() as trial:
             self.look()
         if trial.error is not None:
@@ -209,7 +213,7 @@ def _stamp(file: Path) -> _Stamp:
 
 
 def _difference(file: Path, read: Source) -> str:
-    """Return what is to be said of this file; empty if it contains what was read."""
+    """Return the message about this file. Empty if the file contains the loaded text."""
     try:
         now = load_source(file)
     except SourceError as error:
@@ -218,8 +222,8 @@ def _difference(file: Path, read: Source) -> str:
 
 
 def _no_text(error: SourceError) -> str:
-    """What is to be said of a file from which no program text could be read."""
+    """Return the message about a file from which no program text could be read."""
     cause = error.__cause__
     if not isinstance(cause, OSError):
-        return CHANGED  # it was read, and is no program
+        return CHANGED  # The file could be read, but is not a program.
     return GONE if isinstance(cause, (FileNotFoundError, NotADirectoryError)) else UNREADABLE

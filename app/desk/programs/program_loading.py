@@ -1,4 +1,4 @@
-"""Loading a program: read, proved and drawn on a worker thread; the screen only looks at ``now``."""
+"""Loading, proving and drawing of a program on a worker thread. The screen reads the result from ``now``."""
 
 from __future__ import annotations
 
@@ -26,9 +26,10 @@ Legs = tuple[tuple[float, float, bool], ...]
 
 
 class FirstMoveSeen(NamedTuple):
-    """The answer to one question: the verdict here and that of Cycle Repeat, and the legs that are drawn.
+    """The result of checking the first move, with a verdict for the start here and one for Cycle Repeat.
 
-    ``zero`` is machine X and Z, mm, with the tip for which they are drawn on part zero.
+    ``legs`` is the path that is drawn. ``zero`` is the machine X and Z in mm at which the tip is on part
+    zero.
     """
 
     verdicts: tuple[Clearance, ...]
@@ -37,29 +38,29 @@ class FirstMoveSeen(NamedTuple):
 
     @property
     def clearance(self) -> Clearance:
-        """The verdict on a start from where the axes are."""
+        """The verdict on a start from the present position of the axes."""
         return self.verdicts[0]
 
 
 class Phase(StrEnum):
-    """How far loading has come."""
+    """The progress of loading a program."""
 
     EMPTY = "EMPTY"
     READING = "READING"
     PROVING = "PROVING"
     DRAWING = "DRAWING"
-    PART = "PROVING PART:"  # before it is known, the program will not start
+    PART = "PROVING PART:"  # The program does not start before this proof is finished.
     READY = "READY"
-    REFUSED = "REJECTED"  # the proof found errors: it is shown, but it will not run
+    REFUSED = "REJECTED"  # The proof found errors. The program is shown but cannot run.
     UNREADABLE = "UNREADABLE"
 
 
 @dataclass(frozen=True, slots=True)
 class Proved:
-    """A proof and everything that proving had to say.
+    """A proof with its diagnostics.
 
-    ``waits``: so much is said of its part that an error of it may refuse the start, so it waits for that.
-    ``first_move``: what was found of the first move, of a line and of a restart.
+    ``waits``: the start must wait for the proof of the part, because a part error may refuse the start.
+    ``first_move`` is the result of the first-move check of an MDI line or a restart.
     """
 
     proof: Proof
@@ -69,16 +70,17 @@ class Proved:
 
     @property
     def clearance(self) -> Clearance | None:
-        """The verdict on the first move; None: it was not checked."""
+        """The verdict on the first move. None if the move was not checked."""
         return self.first_move.clearance if self.first_move is not None else None
 
 
 @dataclass(frozen=True, slots=True)
 class PartProved:
-    """What proving the part had to say, each finding with the weight that it has here.
+    """The result of proving the part.
 
-    ``warned``: in a few words each, what is announced before a start because it rests on something assumed.
-    ``report`` is None where the part could not be made; ``trouble`` then says why.
+    ``diagnostics`` are the findings with their severity for this machine. ``warned`` contains short warnings
+    that are shown before a start because they rest on assumptions. ``report`` is None if the part could not
+    be calculated; ``trouble`` then gives the reason.
     """
 
     diagnostics: tuple[Diagnostic, ...] = ()
@@ -87,12 +89,12 @@ class PartProved:
     trouble: str = ""
 
     def completes(self, proof: Proof, name: str) -> Proof:
-        """The proof of the program with that of its part."""
+        """Return the proof of the program with the errors and warnings of its part added."""
         errors = tuple(d.in_one_line(name) for d in self.diagnostics if d.severity is Severity.ERROR)
         return replace(proof, errors=(*proof.errors, *errors), warned=self.warned)
 
     def among(self, diagnostics: tuple[Diagnostic, ...]) -> tuple[Diagnostic, ...]:
-        """All findings, in the order of lines and columns; one that reading has told already is told once."""
+        """Return these and the given diagnostics without duplicates, sorted by line and column."""
         known = {(each.line, each.code) for each in diagnostics}
         own = (each for each in self.diagnostics if (each.line, each.code) not in known)
         return tuple(sorted((*diagnostics, *own), key=lambda each: (each.line, each.column)))
@@ -104,22 +106,24 @@ def _no_part(_picture: Picture, _watch: Watch) -> PartProved | None:
 
 @dataclass(frozen=True, slots=True)
 class LoadingSteps:
-    """What loading needs from the rest of the house. Called on the worker thread only.
+    """Functions that loading needs from other rooms. They are called on the worker thread only.
 
-    ``watch`` is told how far the work has come and may raise to abandon it; it must be let through.
+    ``watch`` gets the progress. It may raise AbandonedError, which the functions must not catch.
     """
 
-    read: Callable[[Path], Source]  # raises OSError or ValueError with a sentence
-    make_job: Callable[[Source, bool], Job]  # text, block delete
+    read: Callable[[Path], Source]  # Raises OSError or ValueError with an error message.
+    make_job: Callable[[Source, bool], Job]  # Arguments: text, and state of Block Delete.
     prove: Callable[[Job, Watch], Proved]
     draw: Callable[[Job, Watch], Picture]
-    renew_job: Callable[[Job], Job] = field(default=lambda job: job)  # the same with the offsets of now
-    part: Callable[[Picture, Watch], PartProved | None] = field(default=_no_part)  # None: it has none
+    # Returns the same job with the present offsets.
+    renew_job: Callable[[Job], Job] = field(default=lambda job: job)
+    # Returns None if the program has no part.
+    part: Callable[[Picture, Watch], PartProved | None] = field(default=_no_part)
 
 
 @dataclass(frozen=True, slots=True)
 class Loaded:
-    """The program on the desk, as far as it has come; replaced whole, never changed."""
+    """The loaded program and the progress of loading. Objects are replaced and never changed."""
 
     phase: Phase = Phase.EMPTY
     path: Path | None = None
@@ -130,59 +134,59 @@ class Loaded:
     diagnostics: tuple[Diagnostic, ...] = ()
     picture: Picture | None = None
     part: PartProved | None = None
-    reached: int = 0  # blocks that proving or drawing has come to
-    trouble: str = ""  # why it could not be read
+    reached: int = 0  # Number of blocks that are proved or drawn.
+    trouble: str = ""  # Reason why the program could not be read.
 
     @property
     def name(self) -> str:
-        """What the screen calls it."""
+        """The file name of the program. Empty if no program is loaded."""
         return self.path.name if self.path else ""
 
     @property
     def errors(self) -> tuple[Diagnostic, ...]:
-        """What keeps it from running."""
+        """The diagnostics that prevent the program from running."""
         return tuple(d for d in self.diagnostics if d.severity is Severity.ERROR)
 
     @property
     def busy(self) -> bool:
-        """Whether the worker is still at it."""
+        """Whether the worker is still loading the program."""
         return self.phase in {Phase.READING, Phase.PROVING, Phase.DRAWING, Phase.PART}
 
 
 @dataclass(slots=True)
 class ProgramLoader:
-    """One program at a time. ``post`` hands commands to the executor; it may be called from the worker."""
+    """Loads one program at a time. ``post`` sends commands to the executor, also from the worker thread."""
 
     workshop: LoadingSteps
     post: Callable[[Command], None]
     worker: Latest = field(default_factory=lambda: Latest("loading"))
-    loads: int = 0  # how often loading has begun, or was ended
+    loads: int = 0  # Number of times loading began or was stopped.
     _now: Loaded = field(default_factory=Loaded)
 
     @property
     def now(self) -> Loaded:
-        """The program on the desk. Work that has failed shows as trouble, not as endless waiting."""
+        """The loaded program. If loading fails, the phase is UNREADABLE and ``trouble`` gives the reason."""
         self.worker.poll()
         return self._now
 
     def load(self, path: Path, block_delete: bool = False) -> None:
-        """Start loading; what was being loaded before is given up."""
+        """Start loading a program. Loading in progress is canceled."""
         with self.worker.lock:
             self.loads += 1
             self._now = Loaded(Phase.READING, path, block_delete)
             self.worker.ask(partial(self._load, path, block_delete), lambda _: None, self._failed)
 
     def adopt(self, loaded: Loaded) -> None:
-        """The same program under other circumstances is the one on the desk now."""
+        """Replace the loaded program by the same program with another proof or progress."""
         self._now = loaded
 
     def settled(self, timeout: float) -> Loaded:
-        """Wait until loading is over and look; for scripts and tests, never for the screen."""
+        """Wait until loading is finished, and return the program. For scripts and tests only."""
         self.worker.settle(timeout)
         return self.now
 
     def close(self) -> None:
-        """Give up whatever is being loaded and end the worker."""
+        """Cancel loading and end the worker."""
         self.loads += 1
         self.worker.close()
 
@@ -190,7 +194,7 @@ class ProgramLoader:
         steps = self.workshop
         source = steps.read(path)
         job = steps.make_job(source, block_delete)
-        _ = source.lines  # split here once, so that the screen never does
+        _ = source.lines  # Split the text here, so that the screen does not have to.
         self._publish(request, lambda now: replace(now, phase=Phase.PROVING, source=source, job=job))
         self.post(LoadJob(job))
         proved = steps.prove(job, partial(self._reached, request))
@@ -208,7 +212,7 @@ class ProgramLoader:
         _keep_out_of_collections()
 
     def _prove_part(self, job: Job, proved: Proved, picture: Picture, request: Request) -> None:
-        """What it makes of the stock; a program that did not have to wait for it may be running by now."""
+        """Prove the part. A program that did not wait for this proof may already be running."""
         watch = partial(self._reached, request) if proved.waits else request
         part = self.workshop.part(picture, watch)
         found, whole = proved.diagnostics, proved.proof
@@ -233,12 +237,15 @@ class ProgramLoader:
 
 
 def settled(proof: Proof) -> Phase:
-    """How far a program has come when its proof is known whole."""
+    """Return the phase of a program whose proof is complete."""
     return Phase.REFUSED if proof.errors else Phase.READY
 
 
 def _keep_out_of_collections() -> None:
-    """What a program is made of stays until it goes by itself. To look through it for cycles would stop every
-    thread, the executor too, for 40 ms with 200 000 blocks, again and again."""
+    """Exclude the loaded program from garbage collection.
+
+    A scan of 200,000 blocks would stop every thread for 40 ms, including the executor, again and again. The
+    objects are freed by reference counting.
+    """
     gc.collect(1)
     gc.freeze()

@@ -1,7 +1,7 @@
-"""The program on the desk proved anew when offsets, or a unit that it was proved with, have changed.
+"""Renewal of the loaded program's proof after a change of offsets or units.
 
-Between two programs it is loaded again; under a running one it is proved with the new offsets meanwhile, and
-the executor takes it up at the end of the part.
+Between two programs, the program is loaded again. During a run, the program is proved with the new offsets,
+and the executor applies them at the end of the part.
 """
 
 from __future__ import annotations
@@ -26,18 +26,18 @@ from core.message import Message
 
 @dataclass(slots=True)
 class RunningRenewal:
-    """One renewal at a time; a later one takes its place, and so does a program that is loaded.
+    """One renewal of the proof during a run. A newer renewal or a newly loaded program replaces it.
 
-    The text is that of the program under way, not what stands on the disk by now. On the screen the old
-    program stays until the executor has taken the new one up.
+    The renewal uses the text of the running program and not the file on the disk. The screen shows the old
+    program until the executor uses the new one.
     """
 
     session: ProgramLoader
-    worker: Latest = field(init=False)  # on the thread that loads, after what that has in hand
-    _loads: int = 0  # of the session when it was begun
+    worker: Latest = field(init=False)  # Shares the thread of the loader and runs after its current work.
+    _loads: int = 0  # Load count of the loader when the renewal began.
     _next: Loaded | None = None
     _shown: Loaded | None = None
-    _given: Proof | None = None  # the last that the executor has
+    _given: Proof | None = None  # Proof that was sent to the executor last.
     _told: bool = True
     _trouble: str = ""
 
@@ -45,7 +45,10 @@ class RunningRenewal:
         self.worker = Latest("renewing", beside=self.session.worker)
 
     def begin(self) -> bool:
-        """Announce it, so that nothing is begun with the old offsets, and prove; False without a program."""
+        """Announce the renewal to the executor and begin proving. Return False if no program is loaded.
+
+        After the announcement, the executor does not start a part with the old offsets.
+        """
         now = self.session.now
         if now.job is None:
             return False
@@ -56,7 +59,7 @@ class RunningRenewal:
         return True
 
     def taken(self, snapshot: Snapshot) -> bool:
-        """Whether the executor goes by it; what the screen shows follows."""
+        """Return whether the executor uses the renewed program. The screen then shows it, too."""
         ready = self._next
         if ready is None or ready.job is None or self.session.loads != self._loads:
             return False
@@ -65,13 +68,17 @@ class RunningRenewal:
         if ready is not self._shown:
             self._shown = ready
             self.session.adopt(ready)
-            if ready.proof is not None and ready.proof != self._given:  # with what its part was found to be
+            # The proof includes the findings of the part.
+            if ready.proof is not None and ready.proof != self._given:
                 self._given = ready.proof
                 self.session.post(GiveProof(ready.proof))
         return True
 
     def trouble(self) -> str:
-        """Told once: why no next part will be begun; the executor hears what could not be proved at all."""
+        """Return once why the next part will not start. Empty if there is no new reason.
+
+        If the renewed proof could not be made, the executor is informed.
+        """
         self.worker.poll()
         if self._trouble:
             why, self._trouble = self._trouble, ""
@@ -137,23 +144,24 @@ class RunningRenewal:
 
 @dataclass(slots=True)
 class ProgramRenewal:
-    """Offsets of both kinds, and the unit that the job before has left.
+    """Renews the proof after a change of tool offsets, secondary offsets or the modal unit.
 
-    Between two programs it is read, proved and drawn again; under a running one it is proved with the new
-    offsets meanwhile, and the executor takes it up at the end of the part.
+    Between two programs, the program is read, proved and drawn again. During a run, the program is proved
+    with the new offsets, and the executor applies them at the end of the part.
     """
 
     session: ProgramLoader
-    warn: Callable[[str], None]  # a worker ends at any moment: the next key must not remove what it says
+    # A worker may finish at any moment, so the next key must not remove its message.
+    warn: Callable[[str], None]
     wanted: bool = False
     renewing: RunningRenewal = field(init=False)
-    _changes: int = 0  # of the book, as far as they were seen
+    _changes: int = 0  # Change count of the offset book at the last update.
 
     def __post_init__(self) -> None:
         self.renewing = RunningRenewal(self.session)
 
     def look(self, snapshot: Snapshot, book: OffsetBook, post: Callable[[Command], None]) -> None:
-        """Once a frame: note what has changed, and begin as soon as that may be."""
+        """Detect changes of the offsets and begin a renewal when possible; called once a frame."""
         trouble, before = book.poll(), self._changes
         self._changes = book.changes
         if trouble:
@@ -168,20 +176,23 @@ class ProgramRenewal:
         self._tell_trouble(snapshot)
         if self.wanted and not under_way and not book.busy:
             self.wanted = False
-            # Active at once, for the loaded tool too.
+            # The new offsets take effect immediately, also for the tool in use.
             post(UseOffsets(tool_offsets(book.tools), secondary_offsets(book.secondary)))
             now = self.session.now
             if now.path is not None:
                 self.session.load(now.path, now.block_delete)
 
     def _tell_trouble(self, snapshot: Snapshot) -> None:
-        """While there is still time to take a change back."""
+        """Warn that the next part will not start, while the operator can still undo the change."""
         why = self.renewing.trouble()
         if why and snapshot.state in UNDER_WAY:
             self.warn(tr(Message("AFTER THIS OFFSET CHANGE, THE NEXT PART WILL NOT START: {why}", why=why)))
 
     def _outdated(self, snapshot: Snapshot) -> bool:
-        """The job before has left another unit than this program was proved with, and it names none."""
+        """Return whether the machine's modal unit differs from the unit of the proof.
+
+        This matters only if the program does not specify the unit.
+        """
         now = self.session.now
         at_rest = snapshot.state is State.IDLE and not now.busy and now.phase is not Phase.UNREADABLE
         return at_rest and now.job is not None and bool(outdated(now.job, snapshot.modal))

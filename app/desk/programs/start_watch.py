@@ -1,9 +1,9 @@
-"""The watch over the next start: its first move is checked against the part, refused or drawn.
+"""Check of the first move of the next start against the part. A collision refuses the start.
 
-A program that Cycle Start would begin is checked on a worker whenever the axes rest at another position. A
-line of MDI and a restart are checked by the worker that proves them. The executor gets the verdict and
-refuses a start without one. The geometry is that of ``core/proving/start_check.py``. ``StartJudge`` reads no
-clock and does not wait for the machine: any worker may ask it.
+A program is checked on a worker whenever the axes rest at another position. An MDI line and a restart are
+checked by the worker that proves them. The executor gets the verdict and refuses a start without one. The
+geometry is in ``core/proving/start_check.py``. Any worker may use ``StartJudge``, because it reads no clock
+and does not wait for the machine.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 
 class KnownPart(NamedTuple):
-    """The program that has the part in the chuck, and where it was interrupted; None: it was not."""
+    """The program that made the part in the chuck, and the interrupted job if it was interrupted."""
 
     job: Job
     picture: Picture
@@ -43,26 +43,26 @@ class KnownPart(NamedTuple):
 
 
 class StartQuestion(NamedTuple):
-    """What is checked: what Cycle Start begins, from where, with which tool in work."""
+    """The data of one first-move check: job, kind of start, axis position and tool in use."""
 
     job: Job
     starts: Starts
     at: tuple[float, ...]
     begun: int
     tool: int
-    part: KnownPart | None  # None: no program has a part in the chuck, or which one is not known
-    unknown: bool = False  # a part is in the chuck that TurnDesk does not know
+    part: KnownPart | None  # None: no part is in the chuck, or the program of the part is unknown.
+    unknown: bool = False  # The chuck holds a part that TurnDesk does not know.
 
     @property
     def key(self) -> tuple[object, ...]:
-        """What the verdict depends on."""
+        """The values on which the verdict depends."""
         part = self.part
         known = None if part is None else (id(part.picture), part.job.digest, part.broken)
         return self.job.digest, self.starts, self.at, self.begun, self.tool, known, self.unknown
 
 
 def with_verdict(proved: Proved, seen: FirstMoveSeen) -> Proved:
-    """Return the proof of a line or of a restart with this verdict: what is refused does not run."""
+    """Return the proof of a line or a restart with this verdict added. A refused first move is an error."""
     found = seen.clearance
     if not found.code:
         return replace(proved, first_move=seen)
@@ -73,13 +73,13 @@ def with_verdict(proved: Proved, seen: FirstMoveSeen) -> Proved:
 
 @dataclass(slots=True)
 class StartJudge:
-    """Gives verdicts; the part that was last made is stored for the next question."""
+    """Checks first moves. The last part history is cached for the next check."""
 
     _lock: Lock = field(default_factory=Lock)
     _history: tuple[Picture, PartHistory] | None = None
 
     def judge(self, asked: StartQuestion, watch: Watch) -> FirstMoveSeen:
-        """Return the verdict on this start. Raises AbandonedError when ``watch`` does."""
+        """Return the verdict on this start. Raises AbandonedError if ``watch`` does."""
         with self._lock:
             return self._judge(asked, watch)
 
@@ -121,7 +121,7 @@ class StartJudge:
 
 
 def _passes(job: Job) -> Callable[[tuple[float, ...]], Iterable[Block]]:
-    """The blocks of a job from a position of the axes on; inputs are taken to be off."""
+    """Return a function that interprets a job from a given axis position. All inputs count as off."""
 
     def passes(at: tuple[float, ...]) -> Iterable[Block]:
         return interpret(job, replace(job.setup, start=at, inputs=lambda _terminal: False)).blocks
@@ -139,11 +139,14 @@ def _now(asked: StartQuestion, part: KnownPart) -> StartNow:
     return StartNow(asked.at, asked.tool, where, strict=asked.starts is Starts.PROGRAM)
 
 
-# --- in words -----------------------------------------------------------------------------------------------
+# --- messages -----------------------------------------------------------------------------------------------
 
 
 def _verdict(plain: Clearance, found: FirstMove, part: KnownPart) -> Clearance:
-    """In words: a refusal where the finding rests on nothing assumed, else an announcement."""
+    """Return the verdict with its text.
+
+    A finding that rests on an assumption is a warning. Any other finding refuses the start.
+    """
     if found.met is None:
         warned = _not_known() if not found.known and found.path else ""
         return replace(plain, warned=warned)
@@ -184,18 +187,18 @@ _AT_REST = frozenset({State.IDLE, State.DISABLED})
 
 @dataclass(slots=True)
 class StartWatch:
-    """``see`` is called once a frame; ``post`` hands commands to the executor."""
+    """Checks the first move of the next program start. ``post`` sends commands to the executor."""
 
     post: Callable[[Command], None]
     worker: Latest = field(default_factory=lambda: Latest("start-check"))
     seen: FirstMoveSeen | None = None
     _judge: StartJudge = field(default_factory=StartJudge)
     _asked: tuple[object, ...] | None = None
-    _part: KnownPart | None = None  # that was interrupted
-    _loaded: KnownPart | None = None  # of the loaded program
+    _part: KnownPart | None = None  # Part of the interrupted job.
+    _loaded: KnownPart | None = None  # Part of the loaded program.
 
     def see(self, snapshot: Snapshot, loaded: Loaded) -> None:
-        """Have the next start checked whenever job, position or part are no longer those of the verdict."""
+        """Request a new check when the job, position or part has changed; called once a frame."""
         self.worker.poll()
         self._see_part(snapshot, loaded)
         question = self._question(snapshot, loaded)
@@ -212,23 +215,23 @@ class StartWatch:
         self.worker.close()
 
     def legs(self, snapshot: Snapshot) -> tuple[DrawnLeg, ...]:
-        """The first move of the next start of the program; empty while a cycle runs."""
+        """Return the first move of the next program start for drawing. Empty while a cycle runs."""
         return drawn(self.seen) if snapshot.state in _AT_REST else ()
 
     @property
     def refusal(self) -> str:
-        """Why a start of the program is refused for its first move; empty when it is not."""
+        """The reason why the first move prevents a start of the program. Empty if it does not."""
         return self.seen.clearance.why if self.seen is not None else ""
 
     @property
     def checking(self) -> bool:
-        """Whether the verdict is still to come, so that the program does not start yet."""
+        """Whether the verdict is pending, so that the program cannot start yet."""
         return self._asked is not None and self.seen is None
 
-    # --- lines and restarts, on the worker that proves them ---------------------------------------------
+    # =
 
     def with_lines(self, prove: ProveLine) -> ProveLine:
-        """Return what proves a line of MDI, and checks its first move too."""
+        """Return a function that proves an MDI line and also checks its first move."""
 
         def prove_line(text: str, snapshot: Snapshot, watch: Watch) -> tuple[Job, Proved]:
             job, proved = prove(text, snapshot, watch)
@@ -237,15 +240,15 @@ class StartWatch:
         return prove_line
 
     def checked(self, job: Job, proved: Proved, snapshot: Snapshot, watch: Watch) -> Proved:
-        """Return the proof of a line or of a restart with the verdict on its first move."""
+        """Return the proof of a line or a restart with the verdict on its first move added."""
         if proved.proof.errors:
             return proved
         return with_verdict(proved, self._judge.judge(self._of(job, Starts.LINE, snapshot), watch))
 
-    # --- what is asked ------------------------------------------------------------------------------------
+    # --- requests -----------------------------------------------------------------------------------------
 
     def _see_part(self, snapshot: Snapshot, loaded: Loaded) -> None:
-        """An interrupted part stays in the chuck, whatever is loaded, until a program begins."""
+        """Update the known part. An interrupted part remains in the chuck until a program starts."""
         found, job, picture = snapshot.interrupted, loaded.job, loaded.picture
         self._loaded = KnownPart(job, picture) if job is not None and picture is not None else None
         if snapshot.state in CYCLE and snapshot.starts not in LINES:
@@ -276,20 +279,20 @@ class StartWatch:
             unknown=interrupted and part is None,
         )
 
-    # --- what was found -----------------------------------------------------------------------------------
+    # --- results ------------------------------------------------------------------------------------------
 
     def _found(self, seen: FirstMoveSeen) -> None:
         self.seen = seen
         self.post(GiveClearance(seen.verdicts))
 
     def _failed(self, asked: StartQuestion, why: str) -> None:
-        """A check that fails makes no start safe: that is announced."""
+        """Announce that the first move could not be checked."""
         warned = tr(Message("THE FIRST MOVE COULD NOT BE CHECKED: {why}", why=why))
         self._found(FirstMoveSeen((Clearance(asked.job.digest, asked.at, asked.begun, warned=warned),)))
 
 
 def drawn(seen: FirstMoveSeen | None) -> tuple[DrawnLeg, ...]:
-    """The first move as the path view draws it over the part; its end is labelled."""
+    """Return the first move as drawn legs for the path view. The end of the move has a label."""
     if seen is None:
         return ()
     (zero_x, zero_z), last = seen.zero, len(seen.legs) - 1

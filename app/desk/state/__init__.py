@@ -1,1 +1,1 @@
-"""What the desk shares with its pages, the window and the composition: one class for each subject. No Qt."""
+"""State that TurnDesk shares with its pages, the window and the composition, without Qt."""

@@ -1,4 +1,4 @@
-"""The clocks of the desk."""
+"""The clocks of the operator screen."""
 
 from __future__ import annotations
 

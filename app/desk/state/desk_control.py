@@ -1,4 +1,4 @@
-"""The control as the desk uses it, in this process or in a process of its own."""
+"""The control as the screen uses it, in the same process or in another process."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ if TYPE_CHECKING:
 
 @dataclass(slots=True)
 class DeskControl:
-    """Commands to the control, its snapshots, and its station where that is on the screen.
+    """Access to the control: its commands, its snapshots and its simulated station.
 
-    ``panel`` is None where the machine has its own operator station. ``set_input`` switches an input of a
-    simulated machine. ``recordings`` are the last minutes of samples, None without a recorder.
-    ``open_stop_line`` opens the connection that sends stop keys to the control, past the screen.
+    ``panel`` is None if the machine has its own operator station. ``set_input`` switches an input of a
+    simulated machine. ``recordings`` contains the last minutes of samples, or is None without a recorder.
+    ``open_stop_line`` opens a connection that sends stop keys to the control without the screen.
     """
 
     post: Callable[[Command], None]

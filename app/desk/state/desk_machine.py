@@ -13,8 +13,8 @@ if TYPE_CHECKING:
 class DeskMachine:
     """Name, axes and start buttons of the machine.
 
-    ``model`` is the machine as its file describes it, None without a file. ``one_hand``: no real axis or
-    spindle moves, so the palm buttons may be pressed one after the other.
+    ``model`` is the machine as its machine file describes it, or None without a file. ``one_hand`` is True if
+    no real axis or spindle moves, so that the palm buttons may be pressed one after the other.
     """
 
     name: str = ""
@@ -25,7 +25,7 @@ class DeskMachine:
 
     @property
     def language(self) -> str:
-        """The machine's own programming language, in which MDI is typed."""
+        """The programming language of the machine, which MDI also uses."""
         return self.model.language if self.model is not None else "omniturn"
 
     @property
@@ -35,5 +35,5 @@ class DeskMachine:
 
     @property
     def table_turns(self) -> bool:
-        """Whether the rotary axes turn the table."""
+        """Whether the rotary axes turn the table and not the head."""
         return self.model is None or self.model.table_turns

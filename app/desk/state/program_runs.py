@@ -1,4 +1,4 @@
-"""What the desk records while programs run: parts, proofs and runs, and the steps of a first job."""
+"""Records of program runs: parts, proofs and runs, and the steps of the first job."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class ProgramRuns:
         self.history = RunHistory(persistence)
         self._persistence = persistence
         self._first_job = FirstJob()
-        with suppress(StoreError):  # a store that cannot be read is reported elsewhere
+        with suppress(StoreError):  # A store that cannot be read is reported elsewhere.
             self._first_job = FirstJob.stored(persistence)
         self._part_seen: PartProved | None = None
 
@@ -33,7 +33,7 @@ class ProgramRuns:
         return self._first_job
 
     def restart_first_job(self) -> None:
-        """Begin the first job again at its first step."""
+        """Start the first job again at its first step."""
         self._first_job = FirstJob()
 
     def see(
@@ -43,7 +43,7 @@ class ProgramRuns:
         post: Callable[[Command], None],
         say: Callable[[str], None],
     ) -> None:
-        """Record one frame of a program; a line of MDI is no run of the program."""
+        """Record one frame of a program. Do not call this for MDI lines, which are not program runs."""
         text = loaded.job.text_digest if loaded.job is not None else self.counter.text
         self.counter.see(snapshot, post, say, text)
         self.history.see(snapshot, loaded)
@@ -54,7 +54,10 @@ class ProgramRuns:
         self._first_job.save(self._persistence)
 
     def new_caution(self, snapshot: Snapshot, loaded: Loaded) -> str:
-        """Return the first warning of a part that was proved during its program, once; empty otherwise."""
+        """Return the first warning about a part that was proved while its program runs.
+
+        Each warning is returned once; otherwise the text is empty.
+        """
         part, seen = loaded.part, self._part_seen
         self._part_seen = part
         if part is None or part is seen or not part.warned or snapshot.state not in UNDER_WAY:

@@ -16,10 +16,10 @@ from core.executor.commands import CycleStart, FeedOverride
 
 @dataclass(frozen=True, slots=True)
 class StationKeys:
-    """E-stop, start button, spindle switch and feed override, at the screen.
+    """E-stop, start button, spindle switch and feed override on the screen.
 
-    Where the machine has its own station, ``hold`` starts feed hold in place of an E-stop. ``barred``
-    returns why the start button starts nothing; ``two_hand``: the machine has palm buttons in its place.
+    If the machine has its own station, ``hold`` starts feed hold in place of an E-stop. ``barred`` returns
+    why the start button has no effect. ``two_hand`` is True if the machine has palm buttons.
     """
 
     control: DeskControl
@@ -31,9 +31,10 @@ class StationKeys:
     posted: PostedValues
 
     def press_estop(self, press: int = 0) -> None:
-        """Press the E-stop of the simulated station. A real one is no key: hold the feed, and say so.
+        """Press the E-stop of the simulated station.
 
-        ``press`` is the number of the press of a key.
+        At a machine with a real station, start feed hold and show that the key is not an E-stop. ``press`` is
+        the number of the key press.
         """
         if self.control.panel is None:
             self.hold(press)
@@ -42,7 +43,7 @@ class StationKeys:
             self.hands.estop(pressed=True)
 
     def release_estop(self) -> None:
-        """Release the E-stop of the simulated station, after asking."""
+        """Release the E-stop of the simulated station after the operator confirms."""
         if self.control.panel is None:
             self.answers.say(prompt_line.NO_MUSHROOM)
         elif not self.hands.estop_pressed:
@@ -51,7 +52,7 @@ class StationKeys:
             self.answers.ask(prompt_line.TWIST_OUT, partial(self.hands.estop, pressed=False))
 
     def press_start(self) -> None:
-        """Press Cycle Start of a machine with one button."""
+        """Press Cycle Start of a machine with one start button."""
         if why := self.barred():
             self.answers.say(why)
         elif not self.two_hand:
@@ -63,9 +64,9 @@ class StationKeys:
         self.hands.set_spindle_auto(not self.control.snapshot().spindle_auto)
 
     def step_override(self, steps: int) -> None:
-        """Change the feed override by so many steps of ten percent.
+        """Change the feed override by a number of steps of ten percent.
 
-        Where there is a station its pot is turned, so that knob and value never differ.
+        With a simulated station, this turns its pot, so that knob and value never differ.
         """
         if self.control.panel is not None:
             self.hands.turn_feed_pot(steps)

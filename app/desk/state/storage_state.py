@@ -1,4 +1,4 @@
-"""Whether the desk's data and the loaded program are as they are on the disk."""
+"""State of the stored data and of the loaded program's file."""
 
 from __future__ import annotations
 
@@ -17,27 +17,27 @@ class StorageState:
     _restoring: bool = False
 
     def follow_store(self, problem: Callable[[], str] = str, waiting: Callable[[], str] = str) -> None:
-        """Use the reports of a store; see ``problem`` and ``waiting``."""
+        """Set the functions that report the state of a store. See ``problem`` and ``waiting``."""
         self._problem, self._waiting = problem, waiting
 
     def follow_program(self, difference: Callable[[], str], recheck: Callable[[], None]) -> None:
-        """Use the reports of a monitor of the program file; see ``difference`` and ``recheck_file``."""
+        """Set the functions of the program file monitor. See ``difference`` and ``recheck_file``."""
         self._difference, self._recheck_file = difference, recheck
 
     def problem(self) -> str:
-        """Return why events, parts and versions are not saved; empty if they are."""
+        """Return why events, parts and versions are not saved. Empty if they are saved."""
         return self._problem()
 
     def waiting(self) -> str:
-        """Return what waits in memory to be saved, in words; empty if nothing waits."""
+        """Return a text that lists the data waiting in memory to be saved. Empty if no data waits."""
         return self._waiting()
 
     def difference(self) -> str:
-        """Return how the program file differs from the loaded program; empty if it does not."""
+        """Return how the program file differs from the loaded program. Empty if they are equal."""
         return self._difference()
 
     def recheck_file(self) -> None:
-        """Compare the program file again soon: the editor has written it."""
+        """Compare the program file again soon, because the editor has written it."""
         self._recheck_file()
 
     @property
@@ -46,7 +46,7 @@ class StorageState:
         return self._restoring
 
     def begin_restore(self) -> None:
-        """Bar starts while a backup replaces the data."""
+        """Prevent starts while a backup replaces the data."""
         self._restoring = True
 
     def end_restore(self) -> None:

@@ -10,9 +10,9 @@ from app.desk.late_presses import LatePresses
 
 @dataclass(slots=True)
 class WindowState:
-    """State of the window in front of the desk. Without a window, cycles can be started from anywhere.
+    """State of the main window. Without a window, cycles can be started from anywhere.
 
-    ``late`` drops presses that would start something after a stall of the screen.
+    ``late`` drops key presses that would start something after a stall of the screen.
     """
 
     late: LatePresses
@@ -28,22 +28,26 @@ class WindowState:
     def connect(
         self, wake: Callable[[], None], is_stop_held: Callable[[], bool], press_age: Callable[[], float]
     ) -> None:
-        """Use this window; it replaces an earlier one."""
+        """Use the functions of this window. They replace those of an earlier window."""
         self._wake, self._is_stop_held, self._press_age = wake, is_stop_held, press_age
 
     def show_page(self, *, starts: bool, has_field: Callable[[], bool] = bool) -> None:
-        """Note which page is in front: whether cycles start there, and whether a field takes the letters."""
+        """Set the properties of the current page.
+
+        ``starts`` is whether cycles can be started there. ``has_field`` returns whether a text field accepts
+        letters.
+        """
         self._starts_here, self._has_field = starts, has_field
 
     def set_keyboard_away(self, away: bool) -> None:
-        """Note whether another window has the keyboard, so that no key reaches this one."""
+        """Set whether another window has the keyboard, so that no key reaches this one."""
         self._keyboard_away = away
 
-    # --- read by the desk ----------------------------------------------------------------------------
+    # --- read by the model ---------------------------------------------------------------------------
 
     @property
     def starts_here(self) -> bool:
-        """Whether cycles are started from the page in front."""
+        """Whether cycles can be started from the current page."""
         return self._starts_here
 
     @property
@@ -52,7 +56,7 @@ class WindowState:
         return self._keyboard_away
 
     def has_field(self) -> bool:
-        """Return whether a field of the page in front takes the letters."""
+        """Return whether a text field of the current page accepts letters."""
         return self._has_field()
 
     def is_stop_held(self) -> bool:
@@ -60,9 +64,9 @@ class WindowState:
         return self._is_stop_held()
 
     def press_age(self) -> float:
-        """Return the time in seconds since the press that is handled now."""
+        """Return the time in seconds since the key press that is being handled."""
         return self._press_age()
 
     def wake(self) -> None:
-        """Have the window poll a machine at rest that has changed. Any thread may call this."""
+        """Make the window poll the machine, which has changed while at rest. Any thread may call this."""
         self._wake()

@@ -1,1 +1,1 @@
-"""What the desk shows of the machine: readouts, states, prompts, notices and sounds."""
+"""Display of the machine state: readouts, states, prompts, notices and sounds."""

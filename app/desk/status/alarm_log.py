@@ -1,6 +1,6 @@
-"""The alarm log, which F7 lists: alarms, E-stops and stops, newest first, with time, cause and remedy.
+"""The alarm log, which F7 shows: alarms, E-stops and stops, newest first, with cause and remedy.
 
-Those of today come from the executor's events, those of before from the store's log of events.
+Entries of this session come from the executor's events. Older entries come from the store's event log.
 """
 
 from __future__ import annotations
@@ -18,22 +18,25 @@ from core.message import Message
 from core.store.store_rows import EventRow
 
 KEPT = 500
-KINDS = frozenset({"alarm", "estop", "stop"})  # of events
+KINDS = frozenset({"alarm", "estop", "stop"})  # Kinds of events that the log shows.
 _WRITTEN = re.compile(r"(\d{3}) (.*?): (.*)", re.DOTALL)
 _BY_NUMBER: dict[int, Code] = {entry.number: code for code, entry in CATALOGUE.items()}
 
 
 @dataclass(frozen=True, slots=True)
 class LoggedStop:
-    """One alarm or stop and when it came, as a wall clock shows it."""
+    """One alarm or stop, with its local time of day."""
 
     at: str
     alarm: Alarm
-    record: str = ""  # of the seconds before it, for ``Recorder.alarm_record``; empty: there is none
+    record: str = ""  # Name of the recording for ``Recorder.alarm_record``, empty without a recording.
 
 
 class AlarmLog:
-    """``hear`` may be called from the executor's thread, all else belongs to the screen's."""
+    """The list of logged alarms and stops.
+
+    ``hear`` may be called from the executor's thread. All other methods belong to the screen's thread.
+    """
 
     def __init__(self, clock: Callable[[], str]) -> None:
         self._clock = clock
@@ -41,12 +44,12 @@ class AlarmLog:
         self._entries: tuple[LoggedStop, ...] = ()
 
     def hear(self, event: Event) -> None:
-        """Remember what stopped the machine; other events are none of this log."""
+        """Add the alarm of an event. Events without an alarm are ignored."""
         if event.alarm is not None:
             self._heard.append(LoggedStop(self._clock(), event.alarm, event.record))
 
     def recall(self, rows: Iterable[EventRow]) -> None:
-        """What the store has kept, newest first: it comes behind what was heard since."""
+        """Add older entries from the store, newest first, after the entries of this session."""
         kept = tuple(
             LoggedStop(wall_time(row.at, "%H:%M:%S"), alarm, row.record)
             for row in rows
@@ -56,7 +59,7 @@ class AlarmLog:
 
     @property
     def entries(self) -> tuple[LoggedStop, ...]:
-        """All of them, newest first."""
+        """All entries, newest first."""
         new: list[LoggedStop] = []
         while self._heard:
             new.append(self._heard.popleft())
@@ -66,7 +69,7 @@ class AlarmLog:
 
 
 def read_back(row: EventRow) -> Alarm | None:
-    """An alarm as it was written into the log; None for what is none, or has no number."""
+    """Return the alarm of a log row, or None if the row contains no alarm with a known number."""
     found = _WRITTEN.fullmatch(row.text) if row.kind in KINDS else None
     code = _BY_NUMBER.get(int(found[1])) if found is not None else None
     if found is None or code is None:

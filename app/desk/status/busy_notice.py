@@ -1,4 +1,4 @@
-"""Tells the operator once that the computer is so busy that a feed hold reacts later."""
+"""A message to the operator if a busy computer delays feed hold."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from core.message import Message
 
 
 class BusyNotice:
-    """Looks at every snapshot; ``say`` shows a text on the prompt line.
+    """Shows a message when feed hold reacts late. ``say`` shows a text on the prompt line.
 
-    It tells once for each busy time, and again if the delay has doubled.
+    The message appears once in each busy period, and again if the delay has doubled.
     """
 
     def __init__(self, say: Callable[[str], None]) -> None:
@@ -20,7 +20,7 @@ class BusyNotice:
         self._told = 0.0  # s
 
     def see(self, snapshot: Snapshot) -> None:
-        """Look at a snapshot; called once a frame."""
+        """Check a snapshot and show the message if necessary; called once a frame."""
         later = snapshot.hold_later
         if later == 0.0:
             self._told = 0.0

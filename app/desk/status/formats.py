@@ -1,4 +1,4 @@
-"""Formats of figures for the operator: inch with 5 places, metric with 4, never a negative zero."""
+"""Number formats for the operator: inches with 5 decimals, mm with 4, and never a negative zero."""
 
 from __future__ import annotations
 
@@ -9,13 +9,16 @@ from core.message import Message
 
 MM_PER_INCH = 25.4
 MM_PER_FOOT = 304.8
-MINUS = "−"  # the true minus: a hyphen is too short to be read from two metres
+MINUS = "−"  # The minus sign. A hyphen is too short to be read from a distance of 2 m.
 NOTHING = "—"
 ANGLE_PLACES = 2
 
 
 def fixed(value: float, places: int) -> str:
-    """``value`` with ``places`` decimals; what rounds to zero has no sign; a value that is none is a dash."""
+    """Return a value with a fixed number of decimals.
+
+    A value that rounds to zero has no sign. A value that is not finite gives a dash.
+    """
     if not math.isfinite(value):
         return NOTHING
     digits = f"{abs(value):.{places}f}"
@@ -24,49 +27,52 @@ def fixed(value: float, places: int) -> str:
 
 
 def length(mm: float, metric: bool) -> str:
-    """A length or coordinate: 5 places in inch, 4 in metric, as the control shows them."""
+    """Return a length or coordinate in mm as text, with 5 decimals in inches or 4 in mm."""
     return fixed(mm, 4) if metric else fixed(mm / MM_PER_INCH, 5)
 
 
 def angle(degrees: float) -> str:
-    """The spindle angle; its step is .02 degree."""
+    """Return the spindle angle in degrees as text. The resolution is 0.02 degrees."""
     return fixed(degrees, ANGLE_PLACES)
 
 
 def turn_unit(per_rev: bool) -> str:
-    """The unit of a feed of C alone."""
+    """Return the unit of a feed of the C axis alone."""
     return f"°/{'rev' if per_rev else 'min'}"
 
 
 def feed_unit(metric: bool, per_rev: bool) -> str:
-    """The unit of a feed."""
+    """Return the unit of a feed."""
     return f"{'mm' if metric else 'in'}/{'rev' if per_rev else 'min'}"
 
 
 def feed(value: float, metric: bool, per_rev: bool) -> str:
-    """A feed given in mm/s, or in mm/rev when ``per_rev``, without its unit (``feed_unit``)."""
+    """Return a feed as text without its unit. ``value`` is in mm/s, or in mm/rev if ``per_rev``."""
     if metric:
         return fixed(value, 4) if per_rev else fixed(value * 60, 1)
     return fixed(value / MM_PER_INCH, 5) if per_rev else fixed(value * 60 / MM_PER_INCH, 2)
 
 
 def surface_speed(mm_s: float, metric: bool) -> str:
-    """Surface speed: ft/min, or m/min; a speed over ground has no sign."""
+    """Return an unsigned surface speed as text, in m/min or ft/min."""
     return fixed(abs(mm_s) * 60 / (1000.0 if metric else MM_PER_FOOT), 0)
 
 
 def rpm(value: float) -> str:
-    """Spindle speed without the sign: the direction stands beside it in words."""
+    """Return a spindle speed as text without a sign."""
     return fixed(abs(value), 0)
 
 
 def percent(fraction: float) -> str:
-    """An override, given as a fraction of 1, in per cent."""
+    """Return an override fraction as a percentage."""
     return f"{fixed(fraction * 100, 0)} %"
 
 
 def duration(seconds: float) -> str:
-    """``m:ss``, from an hour on ``h:mm:ss``; rounded down as a clock does. No time known: a dash."""
+    """Return a time as ``m:ss``, or ``h:mm:ss`` from one hour on, rounded down.
+
+    An unknown or negative time gives a dash.
+    """
     if not math.isfinite(seconds) or seconds < 0:
         return NOTHING
     whole = int(seconds)
@@ -76,7 +82,7 @@ def duration(seconds: float) -> str:
 
 
 def file_size(size: int) -> str:
-    """Bytes, in the unit that gives one to three digits before the point."""
+    """Return a size in bytes as text, in a unit that gives one to three digits before the point."""
     for unit, most in (("B", 1e3), ("KB", 1e6), ("MB", 1e9)):
         if size < most:
             return f"{size / (most / 1e3):.{0 if unit == 'B' else 1}f} {unit}"
@@ -84,7 +90,10 @@ def file_size(size: int) -> str:
 
 
 def wall_time(at: str, today: str = "%H:%M") -> str:
-    """A UTC time of the store as a wall clock shows it: one of ``today`` so, any other with its day."""
+    """Return a UTC time of the store as local time. A time of another day includes the date.
+
+    ``today`` is the format for times of today. An invalid time is returned unchanged.
+    """
     try:
         then = datetime.fromisoformat(at).astimezone()
     except ValueError:
@@ -94,5 +103,5 @@ def wall_time(at: str, today: str = "%H:%M") -> str:
 
 
 def local_time(at: str, *, seconds: bool = True) -> str:
-    """A UTC time of the store (ISO 8601) as a clock on the wall shows it, with its day."""
+    """Return a UTC time of the store (ISO 8601) as local date and time."""
     return datetime.fromisoformat(at).astimezone().strftime(f"%Y-%m-%d %H:%M{':%S' if seconds else ''}")

@@ -1,6 +1,7 @@
-"""The interrupted job in words and figures for every page: which it is, where its tool stood and stands.
+"""Notices about an interrupted job and about parts of the machine that do not respond.
 
-And the row that says of what nothing is heard any more: its wire is lost, the machine may go on without it.
+The notice of an interrupted job contains the program, the line, and the tool's position then and now. The
+other notice appears if the connection is lost, because the machine may continue to move.
 """
 
 from __future__ import annotations
@@ -17,14 +18,14 @@ from core.language.source import Dialect
 from core.message import Message
 from core.ports import Unknown
 
-_SAME = 0.05  # mm, degrees: nearer than this the tool still stands where it stood
+_SAME = 0.05  # Tolerance in mm or degrees within which the position counts as unchanged.
 
 
 @dataclass(frozen=True, slots=True)
 class NoticeRow:
-    """What stands until somebody acts: a text, figures under it, and keys beside it: name and label.
+    """A notice that remains until the operator acts: a text, values below it, and keys with labels.
 
-    ``tone`` is the colour that it is filled with.
+    ``tone`` is the name of its background color.
     """
 
     text: str
@@ -34,7 +35,7 @@ class NoticeRow:
 
 
 def notice_of(snapshot: Snapshot, loaded: Loaded, units: Units) -> NoticeRow | None:
-    """Of the interrupted job; None when there is none."""
+    """Return the notice about the interrupted job, or None if there is no interrupted job."""
     found = snapshot.interrupted
     if found is None:
         return None
@@ -55,7 +56,11 @@ def notice_of(snapshot: Snapshot, loaded: Loaded, units: Units) -> NoticeRow | N
 
 
 def interrupted_prompt(snapshot: Snapshot, loaded: Loaded, start: str) -> str:
-    """What can be done about it on the Automatic page; empty when the loaded program is none such."""
+    """Return the prompt for an interrupted job on the Automatic page.
+
+    The prompt is empty if the loaded program was not interrupted. ``start`` is the instruction for starting a
+    cycle.
+    """
     line = snapshot.interrupted_line
     if not line or snapshot.state is not State.IDLE or snapshot.starts is not Starts.PROGRAM:
         return ""
@@ -69,12 +74,12 @@ def interrupted_prompt(snapshot: Snapshot, loaded: Loaded, start: str) -> str:
 
 
 def may_go_on(loaded: Loaded) -> bool:
-    """Whether SEARCHTO reads the language of this program."""
+    """Return whether SEARCHTO supports the language of this program."""
     return loaded.source is None or loaded.source.dialect is Dialect.OMNITURN
 
 
 def instead(found: InterruptedJob, name: str) -> str:
-    """The question before another program takes the place of an interrupted one."""
+    """Return the question that is asked before a program replaces an interrupted job."""
     words = tr(
         "T{tool} MAY BE IN THE PART ({program}, LINE {line}). PRESS Y TO CANCEL THE "
         "INTERRUPTED JOB AND LOAD {name}, N TO KEEP THE INTERRUPTED JOB"
@@ -93,7 +98,7 @@ def _changed(found: InterruptedJob, loaded: Loaded) -> bool:
 
 
 def _pass(found: InterruptedJob, loaded: Loaded) -> str:
-    """Which time the line was gone through, where it is more than once in a part."""
+    """Return which execution of the line was interrupted, for a line that runs more than once per part."""
     picture, job = loaded.picture, loaded.job
     if picture is None or job is None or job.text_digest != found.text:
         return ""
@@ -105,7 +110,7 @@ def _pass(found: InterruptedJob, loaded: Loaded) -> str:
 
 
 def _places(found: InterruptedJob, snapshot: Snapshot, units: Units) -> str:
-    """From home, as the readout FROM HOME counts: where the tool stood, and where it stands by now."""
+    """Return the tool's position at the stop and now, from home, as the readout FROM HOME shows it."""
     stood = _figures(found.axes, found.where, snapshot, units)
     if not all(snapshot.homed):
         return tr(Message("POSITION WAS {position} FROM HOME, NOW UNKNOWN UNTIL HOMED", position=stood))
@@ -118,7 +123,10 @@ def _places(found: InterruptedJob, snapshot: Snapshot, units: Units) -> str:
 
 
 def _uncertain(found: InterruptedJob) -> str:
-    """What nobody knows of a job whose control was gone at once: its note was written once a second."""
+    """Return a warning about the last second before the control was lost. Empty for other causes.
+
+    The job's state is written once a second.
+    """
     if found.why != CONTROL_LOST:
         return ""
     return tr(
@@ -127,7 +135,7 @@ def _uncertain(found: InterruptedJob) -> str:
 
 
 def _figures(axes: Sequence[str], where: Sequence[float], snapshot: Snapshot, units: Units) -> str:
-    """Slides only: where C stands is nothing that a hand can be in the way of."""
+    """Return the positions of the linear axes as text. The position of C is omitted."""
     metric, twice = units.metric(snapshot.modal.metric), snapshot.reads_diameter
     found = [
         Message(
@@ -145,7 +153,7 @@ def _figures(axes: Sequence[str], where: Sequence[float], snapshot: Snapshot, un
 
 
 def unheard_notice(snapshot: Snapshot) -> NoticeRow | None:
-    """Of what the snapshot does not know; None when it knows all."""
+    """Return the notice about unknown values of a snapshot, or None if all values are known."""
     unknown = snapshot.unknown
     if not unknown:
         return None

@@ -1,4 +1,4 @@
-"""Changes of the machine file since it was accepted: what differs, and that no drive goes on before."""
+"""Changes of the machine file since the operator accepted it. They prevent the drives from being enabled."""
 
 from __future__ import annotations
 
@@ -12,7 +12,10 @@ from core.message import Message
 
 @dataclass(slots=True)
 class FileChanges:
-    """``source`` is the file; ``keep`` remembers it as it is now. No changes: it is as it was accepted."""
+    """The changes of the machine file, empty if the file is as accepted.
+
+    ``source`` is the file's path. ``keep`` stores the present file as accepted.
+    """
 
     source: str = ""
     changes: Sequence[Change] = field(default_factory=tuple)
@@ -20,13 +23,13 @@ class FileChanges:
 
     @property
     def barred(self) -> str:
-        """Why the drives stay off; empty when they need not."""
+        """The reason why the drives cannot be enabled. Empty if they can be."""
         if not self.changes:
             return ""
         text = tr("MACHINE FILE CHANGED ({count}). F10: REVIEW AND ACCEPT")
         return tr(Message(text, count=len(self.changes)))
 
     def accept(self) -> None:
-        """Somebody has read the changes and takes them."""
+        """Accept the changes after the operator has read them."""
         self.keep()
         self.changes = ()

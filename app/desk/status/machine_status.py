@@ -1,6 +1,7 @@
-"""One snapshot, put into the words and figures that the operator reads; and whether it is still of now.
+"""The texts and values of one snapshot for the operator, and the detection of a silent control.
 
-Also what a program waits for (WAITING), and how the wait ends. No Qt and no machine logic.
+The module also describes for what a program waits (WAITING), and how the wait ends. It contains no Qt and no
+machine logic.
 """
 
 from __future__ import annotations
@@ -45,7 +46,7 @@ GIVES_UP = "PAUSE (FEED HOLD), THEN R: CANCEL THE PROGRAM"
 
 
 def waits_for(snapshot: Snapshot) -> str:
-    """For the title: what it is, and of an input the state that is waited for."""
+    """Return the text of the title for a wait: its cause, and for an input the expected state."""
     name = snapshot.waiting_for
     if not name or name in _ENDS:
         return name
@@ -56,7 +57,10 @@ def waits_for(snapshot: Snapshot) -> str:
 
 
 def how_it_ends(snapshot: Snapshot, simulated: bool = False) -> str:
-    """For the prompt line; empty where nothing is known of it. ``simulated``: inputs are switched here."""
+    """Return the prompt for a wait, or an empty text if the wait is unknown.
+
+    ``simulated`` is True if the inputs can be switched on the screen.
+    """
     name = snapshot.waiting_for
     if not name:
         return ""
@@ -71,12 +75,16 @@ def how_it_ends(snapshot: Snapshot, simulated: bool = False) -> str:
 
 
 def _is_input(snapshot: Snapshot) -> bool:
-    """A wait of M91 to M95 names the input's terminal; all other waits are words of the control's own."""
+    """Return whether the program waits for an input.
+
+    A wait of M91 to M95 has the name of the input, which has no space. All other waits have names with a
+    space.
+    """
     return " " not in snapshot.waiting_for
 
 
 class Tone(StrEnum):
-    """How a state is drawn: colour and shape together, so that colour alone never says it."""
+    """The appearance of a state. A tone has its own color and shape, so that color is not the only sign."""
 
     OFF = "off"
     READY = "ready"
@@ -105,7 +113,7 @@ TONES = {
 
 @dataclass(frozen=True, slots=True)
 class MachineStatus:
-    """Everything on the page that comes from the machine."""
+    """All values on the page that come from the machine, as text."""
 
     program: str
     state: str
@@ -124,18 +132,18 @@ class MachineStatus:
     next_text: str
     comment: str
     message: str
-    alarms: tuple[Alarm, ...]  # that stand, the first one first: what came behind may only follow from it
-    stop: Alarm | None  # why it stands where no alarm says it, unless somebody asked for it
+    alarms: tuple[Alarm, ...]  # Active alarms, oldest first, because later ones may follow from the first.
+    stop: Alarm | None  # Cause of a stop without an alarm, unless the operator requested the stop.
 
 
 def _in_work(modal: Modal) -> str:
-    """The tool; of a mill its preset."""
+    """Return the name of the tool in use, or the preset on a mill with presets."""
     preset = modal.settable and modal.edge is None
     return f"G{modal.settable}" if preset else edge_name(tool_of(modal.tool))
 
 
 def _second(modal: Modal) -> str:
-    """What stands behind T: the secondary offset, or the cutting edge and the settable offset."""
+    """Return the text that follows T: the secondary offset, or the cutting edge and zero offset."""
     if modal.edge is not None:
         return f"D{modal.edge} G{modal.settable}" if modal.settable else f"D{modal.edge}"
     return "" if modal.settable else f"D{modal.secondary}"
@@ -150,10 +158,11 @@ def status_of(
     third_axis: str = "C",
     table: bool = True,
 ) -> MachineStatus:
-    """What the page shows of ``snapshot``; ``with_c`` when the machine has a C axis, ``language`` is its own.
-    ``third_axis`` is what it calls C, ``table``: whether a table turns on a mill, and not its head alone.
+    """Return the texts and values of a snapshot for the operator.
 
-    Every figure is in the one unit that ``units`` and this very snapshot come to.
+    ``with_c`` is True if the machine has a C axis. ``language`` is the machine's programming language.
+    ``third_axis`` is the name of the C axis. ``table`` is True if a rotary table, and not only the head,
+    turns on a mill. All values are in one unit, which follows from ``units`` and the snapshot.
     """
     modal = snapshot.modal
     metric = units.metric(modal.metric)
@@ -183,7 +192,7 @@ def status_of(
 
 
 def unasked(snapshot: Snapshot) -> Alarm | None:
-    """A hold that nobody pressed, or the E-stop: told with cause and remedy as an alarm is."""
+    """Return the cause of an E-stop or of a feed hold that the operator did not request, or None."""
     stop = snapshot.stop
     if stop is None or (stop.code != "estop" and CATALOGUE[stop.code].reaction is not Reaction.HOLD):
         return None
@@ -191,7 +200,7 @@ def unasked(snapshot: Snapshot) -> Alarm | None:
 
 
 def _state(snapshot: Snapshot, stop: Alarm | None) -> str:
-    """In words, with the number of what is in the way."""
+    """Return the state as text. An alarm or a feed hold includes its number."""
     if snapshot.state is State.WAIT and snapshot.waiting_for:
         return tr(Message("WAITING: {what}", what=waits_for(snapshot)))
     if snapshot.state is State.RUN and snapshot.waiting_for:
@@ -208,7 +217,7 @@ def _state(snapshot: Snapshot, stop: Alarm | None) -> str:
 
 
 def not_homed(snapshot: Snapshot) -> bool:
-    """Whether an axis does not know where it is: no cycle starts then."""
+    """Return whether an axis is not homed, so that no cycle can start."""
     return not all(snapshot.homed)
 
 
@@ -221,19 +230,19 @@ def _message(snapshot: Snapshot) -> str:
 # --- whether the control is silent --------------------------------------------------------------------
 
 
-SILENT_AFTER = 1.0  # seconds without another snapshot; the executor makes one every 10 ms
+SILENT_AFTER = 1.0  # Seconds without a new snapshot. The executor makes a snapshot every 10 ms.
 
 
 @dataclass(slots=True)
 class SilenceWatch:
-    """Watches the time stamps of snapshots against the screen's own clock."""
+    """Detects a silent control by comparing the time stamps of snapshots with the screen's clock."""
 
     is_silent: bool = False
     _stamp: float | None = None
     _since: float = 0.0
 
     def silent(self, stamp: float, now: float) -> bool:
-        """Whether no other snapshot than the one with this stamp has come for too long."""
+        """Return whether the time stamp ``stamp`` has not changed for more than 1 s."""
         if stamp != self._stamp:
             self._stamp, self._since = stamp, now
         self.is_silent = now - self._since > SILENT_AFTER

@@ -1,4 +1,4 @@
-"""The modal state in words: what is in force, one row for each group of codes. MDI and SEARCHTO show it."""
+"""The modal state as rows of text, one row for each group of codes, for MDI and SEARCHTO."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ NONE = formats.NOTHING
 
 @dataclass(frozen=True, slots=True)
 class ModalRow:
-    """One row: what it is about, and what is in force. ``key`` is the same in every language."""
+    """One row of the modal state: its label and the code in force. ``key`` is not translated."""
 
     key: str
     label: str
@@ -24,7 +24,7 @@ class ModalRow:
 
 
 def rows_of(point: Checkpoint, language: str = "omniturn") -> tuple[ModalRow, ...]:
-    """Every group of codes of the machine's language, always in the same order."""
+    """Return the rows of the machine's language, always in the same order."""
     modal = point.modal
     if language != "omniturn":
         return _rows_in(point, language)
@@ -53,8 +53,10 @@ _GROUPS = {
 
 
 def _rows_in(point: Checkpoint, language: str) -> tuple[ModalRow, ...]:
-    """The groups of Klartext or SINUMERIK, as the pass that was kept tells them; without one what a program
-    that has ended leaves."""
+    """Return the rows of Klartext or SINUMERIK from the modal state that the last pass saved.
+
+    Without a saved state, the rows show the state at the end of a program.
+    """
     told = dict(point.kept.lines) if point.kept is not None else {}
     begun = _AT_RESET | {"speed": f"G97 S{point.modal.rpm:g}"} if language == "sinumerik" else {}
     values = _left_by_program(point.modal) | begun | told
@@ -178,7 +180,7 @@ def _d(modal: Modal) -> str:
 
 
 def _pair(modal: Modal, x: float, z: float) -> str:
-    """X and Z; X as a radius and marked so, because offsets are kept so."""
+    """Return X and Z as text. X has the mark R because offsets are stored as a radius."""
     if not x and not z:
         return "0"
     return f"R{formats.length(x, modal.metric)} Z{formats.length(z, modal.metric)}"

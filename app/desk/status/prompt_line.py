@@ -1,7 +1,7 @@
-"""The prompt line: what the operator can do now, and what the desk answers to the last key.
+"""The prompt line: what the operator can do now, and the response to the last key.
 
-State, question and answer have three separate places. An answer remains for 4 s or until the next key; the
-prompt follows from one snapshot and the loaded program.
+State, question and message have separate places. A message remains for 4 s or until the next key. The prompt
+depends on one snapshot and the loaded program.
 """
 
 from __future__ import annotations
@@ -22,7 +22,8 @@ from core.language.diagnostics import Severity
 from core.message import Message
 from core.tool_edges import edge_name
 
-OF_PROGRAM: frozenset[Code] = frozenset({"program-stop", "optional-stop"})  # stops with a message
+# Stops with a message of the program.
+OF_PROGRAM: frozenset[Code] = frozenset({"program-stop", "optional-stop"})
 NOT_FOUND = "FILE NOT FOUND, PRESS ANY KEY TO CONTINUE"
 ASK_FILE = "FILE TO BE PROCESSED"
 CHOOSE_FILE = "TYPE A NAME OR SELECT A PROGRAM   ENTER: LOAD   ESC: CLOSE"
@@ -35,7 +36,7 @@ CONTROL_SILENT = "CONTROL NOT RESPONDING. PRESS E-STOP. SCREEN IS NOT LIVE"
 NOT_HERE = "START CYCLES ON THE AUTOMATIC PAGE: PRESS F1, THEN F2"
 RESTORING = "CANNOT START: A BACKUP IS BEING RESTORED"
 STALE = "CANNOT START: THE PROGRAM IS BEING RELOADED"
-NO_START = "WILL NOT START"  # how the standing prompt begins then
+NO_START = "WILL NOT START"  # Beginning of a prompt for a program that will not start.
 GIVE_UP = "PRESS Y TO CANCEL THE PROGRAM, N TO KEEP IT"
 TWIST_OUT = "PRESS Y TO RELEASE THE E-STOP, N TO LEAVE IT PRESSED"
 NO_MUSHROOM = "PRESS E-STOP ON THE MACHINE. THIS KEY ONLY STARTED FEED HOLD"
@@ -47,9 +48,10 @@ UNDER_WAY = MOVING | INTERRUPTED
 
 
 def prompt(snapshot: Snapshot, loaded: Loaded, start: str, release: str, *, field_open: bool = False) -> str:
-    """The standing prompt; ``start`` and ``release`` name what starts a cycle and frees the E-stop here.
+    """Return the prompt for the present state.
 
-    ``field_open``: letters are text.
+    ``start`` and ``release`` are the instructions for starting a cycle and for releasing the E-stop.
+    ``field_open`` is True if letters are text input.
     """
     go_on = Message("TO CONTINUE: {start}. R: CANCEL THE PROGRAM", start=start)
     standing = {
@@ -69,15 +71,15 @@ def prompt(snapshot: Snapshot, loaded: Loaded, start: str, release: str, *, fiel
 
 
 def announced(snapshot: Snapshot, *, starts_here: bool = True) -> tuple[str, ...]:
-    """What goes before everything else: what will start with the next start; empty when nothing will.
+    """Return the texts about the next start, which precede all other prompts.
 
-    What the proof has warned of is told where a cycle can be started.
+    Warnings of the proof are included only where a cycle can be started.
     """
     return tuple(text for text in snapshot.announced if starts_here or not text.startswith(WARNING))
 
 
 def alarm_of(snapshot: Snapshot, release: str, *, field_open: bool = False) -> str:
-    """What goes before anything a page has to say: an alarm, an E-stop; empty when there is none."""
+    """Return the prompt for an alarm or an E-stop, which replaces a page's prompt. Empty without either."""
     if snapshot.state is State.FAULT:
         if not snapshot.alarms:
             return "ALARM: CORRECT THE CAUSE, THEN PRESS R TO ACKNOWLEDGE"
@@ -97,7 +99,7 @@ def _estop(release: str) -> str:
 
 
 def reason(view: MachineStatus) -> str:
-    """Below the prompt, on every page: why the machine stands; of a hold also what to do."""
+    """Return the text below the prompt: the cause of a stop, and for a feed hold also the remedy."""
     if view.alarms:
         return Message("CAUSE: {stop}", stop=exactly(view.alarms[0]))
     if view.stop is None:
@@ -111,7 +113,7 @@ def reason(view: MachineStatus) -> str:
 
 
 def exactly(alarm: Alarm) -> str:
-    """What is known of this one, and the likeliest cause."""
+    """Return the cause of an alarm, followed by the most likely cause in the catalog if it differs."""
     likely = alarm.causes[0] if alarm.causes else ""
     cause = cause_of(alarm)
     return (
@@ -120,7 +122,7 @@ def exactly(alarm: Alarm) -> str:
 
 
 def cause_of(alarm: Alarm) -> str:
-    """What is known of this one; of M00 and M01 that is the program's own message."""
+    """Return the translated cause of an alarm. A program's own message at M00 or M01 is not translated."""
     of_program = alarm.code in OF_PROGRAM and alarm.cause not in CATALOGUE[alarm.code].causes
     return data(alarm.cause) if of_program else tr(alarm.cause)
 
@@ -133,7 +135,7 @@ def _idle(snapshot: Snapshot, loaded: Loaded, start: str) -> str:
 
 
 def lacking(snapshot: Snapshot, loaded: Loaded) -> str:
-    """Return why the program that was read does not start now; empty when nothing is missing."""
+    """Return why the loaded program cannot start now. Empty if nothing is missing."""
     if loaded.phase in {Phase.UNREADABLE, Phase.REFUSED}:
         return refusal(loaded)
     if not snapshot.program:
@@ -155,14 +157,14 @@ def lacking(snapshot: Snapshot, loaded: Loaded) -> str:
 
 
 def missing_tools(loaded: Loaded) -> list[str]:
-    """The tools that the program on the desk asks for and nobody has set."""
+    """Return the tools that the loaded program uses and that have no measured offset."""
     if loaded.proof is None or loaded.job is None:
         return []
     return [edge_name(key) for key in loaded.proof.unset(loaded.job)]
 
 
 def refusal(loaded: Loaded) -> str:
-    """Why the program on the desk will not run: the first error, and how many there are."""
+    """Return why the loaded program will not run: the first error and the number of further errors."""
     if loaded.phase is Phase.UNREADABLE:
         return Message(
             "{loaded} CANNOT BE LOADED: {problem}. F2: CHOOSE ANOTHER PROGRAM",
@@ -190,8 +192,10 @@ def refusal(loaded: Loaded) -> str:
 
 
 def remedy(loaded: Loaded, prompt: str) -> str:
-    """What to do about a program that will not run, where the prompt line says why; of one that may be
-    started, what a check has warned of."""
+    """Return the remedy for a program that will not run, if ``prompt`` shows its error.
+
+    For a program that can start, return the first warning of a check.
+    """
     errors = loaded.errors
     if errors:
         return errors[0].hint if prompt == refusal(loaded) else ""
@@ -215,43 +219,44 @@ def _progress(loaded: Loaded) -> str:
 # --- answers and questions ----------------------------------------------------------------------------
 
 
-HEARD = 100  # events that wait for the next frame; older ones are in the log
+HEARD = 100  # Events that wait for the next frame. Older events are in the log.
 
 
 class Sort(StrEnum):
-    """What an answer is: each has its colour and its sign."""
+    """The kind of message. Each kind has its own color and sign."""
 
-    ANSWER = "answer"  # a refusal, or what to do before it can be done
+    ANSWER = "answer"  # A refusal, or an instruction for what to do first.
     DONE = "done"
     ASKED = "asked"
 
 
 YES = "Y"
-READ = 0.5  # s: sooner nobody has read a question, and what is pressed is meant for something else
+READ = 0.5  # Seconds for reading a question. An earlier key press is not an answer.
 
 
-SHOWN = 4.0  # s that an answer remains where no key is pressed
+SHOWN = 4.0  # Seconds for which a message remains without a key press.
 
 
 @dataclass(slots=True)
 class PromptAnswers:
-    """One answer and one question, each in its own place next to the state.
+    """One message and one question of the prompt line.
 
-    An answer remains for ``SHOWN`` seconds or until the next key. No change of the machine's state
-    removes it. A question belongs to the state in which it was asked: Y does what it asks,
-    N and Esc never do anything. What is lost for good is done by a key of its own, and never by the key that
-    asked. ``clock`` is monotonic.
+    A message remains for ``SHOWN`` seconds or until the next key. A change of the machine's state does not
+    remove it. A question is valid in the machine state in which it was asked. Y executes the action, and N
+    and Esc only remove the question. An action that loses data has its own key, which differs from the key
+    that asked. ``clock`` returns monotonic time in seconds.
     """
 
     snapshot: Callable[[], Snapshot]
-    not_kept: Callable[[], str]  # why events, parts and versions are not being kept; empty while they are
+    # Returns why events, parts and versions are not being saved; empty if they are.
+    not_kept: Callable[[], str]
     clock: Callable[[], float]
     answer: str = ""
     question: str = ""
-    asked: Callable[[], None] | None = None  # what yes does now
-    key: str = YES  # that means yes
-    done: bool = False  # the answer reports a success
-    lasting: bool = False  # no key removes the answer before its time is over
+    asked: Callable[[], None] | None = None  # Action of the answer yes.
+    key: str = YES  # Key that means yes.
+    done: bool = False  # The message reports a success.
+    lasting: bool = False  # No key removes the message before its time is over.
     _said_at: float = 0.0
     _since: float = 0.0
     _in: State | None = None
@@ -261,27 +266,27 @@ class PromptAnswers:
 
     @property
     def notice(self) -> str:
-        """The answer, or without one the question."""
+        """The message, or else the question."""
         return self.answer or self.question
 
     @property
     def sort(self) -> Sort:
-        """What the notice is."""
+        """The kind of the notice."""
         if not self.answer and self.asked is not None:
             return Sort.ASKED
         return Sort.DONE if self.done else Sort.ANSWER
 
     def say(self, text: str, *, done: bool = False, lasting: bool = False) -> None:
-        """Show an answer; ``done``: it reports a success. A ``lasting`` one outlives keys, too.
+        """Show a message. ``done`` marks a success. No key removes a ``lasting`` message.
 
-        A lasting answer is replaced by nothing but another lasting one until its time is over.
+        Until the time of a lasting message is over, only another lasting message replaces it.
         """
         if self.lasting and self.answer and not lasting and self.clock() - self._said_at < SHOWN:
             return
         self.answer, self.done, self.lasting, self._said_at = text, done, lasting, self.clock()
 
     def ask(self, question: str, yes: Callable[[], None], key: str = YES) -> None:
-        """Ask a question; asked again it is the same question, and no answer."""
+        """Ask a question. Asking the same question again does not count as an answer."""
         if self.asked is not None and self.question == question:
             return
         self.take_back()
@@ -289,44 +294,47 @@ class PromptAnswers:
         self._in = self.snapshot().state
 
     def read(self, at: float) -> bool:
-        """Whether a question stands, and has stood long enough at this time to have been read."""
+        """Return whether a question is open and was shown long enough before ``at`` to have been read."""
         return self.asked is not None and at - self._since >= READ
 
     def yes(self, at: float) -> None:
-        """Yes was pressed ``at`` this time: do what is asked, or take a question back that was not read."""
+        """Execute the action of the question if the question was shown long enough. Remove the question.
+
+        ``at`` is the time of the key press.
+        """
         asked, read = self.asked, self.read(at)
         self.take_back()
         if asked is not None and read:
             asked()
 
     def take_back(self) -> None:
-        """Remove the question, and the answer unless it is a lasting one."""
+        """Remove the question, and also the message unless it is lasting."""
         self.question, self.asked = "", None
         if not self.lasting:
             self.answer = ""
 
     def next_key(self) -> None:
-        """Remove the answer to the key before; a question remains."""
+        """Remove the message for the previous key. A question remains."""
         if not self.lasting:
             self.answer = ""
 
     def expire(self, snapshot: Snapshot) -> None:
-        """Remove an answer whose time is over, and a question of another state of the machine."""
+        """Remove a message whose time is over, and a question if the machine's state has changed."""
         if self.answer and self.clock() - self._said_at >= SHOWN:
             self.answer, self.lasting = "", False
         if self.asked is not None and snapshot.state is not self._in:
             self.question, self.asked = "", None
 
     def hear(self, event: Event) -> None:
-        """What the executor has to say; it may be called from its thread."""
+        """Queue an event of the executor. This method may be called from the executor's thread."""
         self._heard.append(event)
 
     def starting(self) -> None:
-        """A start is tried: the same refusal again is worth saying again."""
+        """Note that a start is attempted, so that the same refusal is shown again."""
         self._refused = ""
 
     def look(self, snapshot: Snapshot) -> None:
-        """Once a frame: nothing is refused in silence, a start or whatever else the executor would not do."""
+        """Show refusals and other events of the executor; called once a frame."""
         while self._heard:
             event = self._heard.popleft()
             if event.kind == "refused" and event.text != snapshot.start_refused:
@@ -342,7 +350,7 @@ class PromptAnswers:
         self._tell_not_kept()
 
     def _tell_not_kept(self) -> None:
-        """A disk that fails in the middle of a run is told once, not found out the day after."""
+        """Show a new storage error once, so that the operator does not find it a day later."""
         trouble = self.not_kept()
         if trouble != self._not_kept:
             self._not_kept = trouble

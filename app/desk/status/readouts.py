@@ -1,4 +1,4 @@
-"""Position, feed, spindle and lit words of one snapshot: which figures there are, and in which unit."""
+"""Texts and units for position, feed, spindle and lamps of one snapshot."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from core.interpreter.shared.working_plane import Swivel
 from core.message import Message, join_messages
 from core.ports import Unknown
 
-# --- lit words ----------------------------------------------------------------------------------------
+# --- lamps --------------------------------------------------------------------------------------------
 
 
-TURNING = 1.0  # rpm above which a spindle is said to turn
-AT_ZERO = 0.01  # degrees from 0 at which a table still stands there
-UNKNOWN = "?"  # in the place of a figure that nobody knows, or behind the last that was known
+TURNING = 1.0  # Speed in rpm above which a spindle counts as turning.
+AT_ZERO = 0.01  # Tolerance in degrees within which a table counts as being at 0.
+UNKNOWN = "?"  # Replaces an unknown value, or follows the last known value.
 LATHE = ("X", "Z", "C")
 
 
 @dataclass(frozen=True, slots=True)
 class Lamp:
-    """A lit word, and the key that switches it, if one does."""
+    """A word on the screen that lights, with the key that switches it, if any."""
 
     word: str
     lit: bool
@@ -34,7 +34,7 @@ class Lamp:
 
 
 def modes_of(snapshot: Snapshot) -> tuple[Lamp, ...]:
-    """The four switches of a run, with their keys; NO COUNT only while it is on, because few runs are dry."""
+    """Return the lamps of the four run switches. NO COUNT is included only while it is on."""
     return (
         Lamp("SINGLE BLOCK", snapshot.single_block, "S"),
         Lamp("OPTIONAL STOP", snapshot.optional_stop, "O"),
@@ -45,9 +45,10 @@ def modes_of(snapshot: Snapshot) -> tuple[Lamp, ...]:
 
 
 def lamps_of(snapshot: Snapshot, *, table: bool = True) -> tuple[Lamp, ...]:
-    """From the outputs that are on; their names are those of the machine files (coolant, collet, live1 …).
+    """Return the lamps of the spindle, coolant, collet and live tool, or of a mill's rotary axes.
 
-    ``table``: whether a table turns on this mill, and not its head alone.
+    The outputs are identified by their names in the machine file (coolant, collet, live1 …). ``table`` is
+    True if a rotary table turns on this mill.
     """
     if snapshot.axes != LATHE:
         return (
@@ -65,21 +66,24 @@ def lamps_of(snapshot: Snapshot, *, table: bool = True) -> tuple[Lamp, ...]:
 
 
 def drives_lamp(snapshot: Snapshot, key: str = "") -> Lamp:
-    """As the drives tell it: an alarm takes their power too, and of those unheard nothing is known."""
+    """Return the lamp of the drives, which lights while the drives have power.
+
+    An alarm also removes the power. Without a response of the drives, the lamp shows a question mark.
+    """
     if Unknown.SLIDES in snapshot.unknown:
         return Lamp("DRIVES ?", lit=True, key=key, warn=True)
     return Lamp("DRIVES ON", snapshot.powered, key)
 
 
 def _output_lamp(snapshot: Snapshot, lamp: Lamp) -> Lamp:
-    """The lamp; of an output that nobody hears neither on nor off can be said."""
+    """Return the lamp, or a lamp with a question mark if the outputs are unknown."""
     if Unknown.OUTPUTS not in snapshot.unknown:
         return lamp
     return Lamp(Message("{word} {unknown}", word=lamp.word, unknown=UNKNOWN), lit=True, warn=True)
 
 
 def _rotary_lamps(snapshot: Snapshot, *, table: bool) -> tuple[Lamp, ...]:
-    """Of a mill: whether moves count in a tilted plane, and whether table or head stand anywhere but at 0."""
+    """Return the lamps of a mill for the tilted plane and for a table or head that is not at 0."""
     tilted = snapshot.swivel is not None and snapshot.swivel.system.tilted
     rotary = zip(snapshot.axes, snapshot.actual, strict=True)
     turned = any(abs(math.remainder(at, 360.0)) > AT_ZERO for name, at in rotary if name in "ABC")
@@ -87,7 +91,7 @@ def _rotary_lamps(snapshot: Snapshot, *, table: bool) -> tuple[Lamp, ...]:
 
 
 def _spindle_lamp(snapshot: Snapshot) -> Lamp:
-    """Turning is told from the measured speed: one that coasts is as dangerous as one that is driven."""
+    """Return the spindle's lamp, which depends on the measured speed, so that it also shows coasting."""
     if Unknown.SPINDLE in snapshot.unknown:
         return Lamp("SPINDLE UNKNOWN", lit=True, warn=True)
     if snapshot.orienting:
@@ -103,7 +107,7 @@ def _spindle_lamp(snapshot: Snapshot) -> Lamp:
 
 
 def _collet_lamp(snapshot: Snapshot) -> Lamp:
-    """The output decides, not the program's word: it is what holds the bar."""
+    """Return the collet's lamp. It depends on the output and not on the program's modal state."""
     if "collet" in snapshot.absent:
         return Lamp("MANUAL COLLET", lit=False)
     if "collet" in snapshot.outputs:
@@ -111,26 +115,26 @@ def _collet_lamp(snapshot: Snapshot) -> Lamp:
     return Lamp("COLLET OPEN", lit=True, warn=True)
 
 
-# --- figures of a mill --------------------------------------------------------------------------------
+# --- positions of a mill ------------------------------------------------------------------------------
 
 
-ANGLE_PLACES = 3  # the display step of a rotary table
+ANGLE_PLACES = 3  # Decimals of a rotary axis on the screen.
 _SLIDES = 3
 
 
 def plane_figures(snapshot: Snapshot, swivel: Swivel) -> tuple[float, ...]:
-    """Where the tip stands in the working plane, mm, and the rotary axes as they are shown."""
+    """Return the tip's position in the working plane in mm, and the angles of the rotary axes in degrees."""
     zero = swivel.system.kinematics.zero
     return (*swivel.system.place.point(_slides(snapshot.actual)), *_shown(snapshot, swivel, zero))
 
 
 def home_figures(snapshot: Snapshot, swivel: Swivel) -> tuple[float, ...]:
-    """Where the slides stand from home, and the rotary axes as they are shown."""
+    """Return the positions of the linear axes from home in mm, and the rotary axes in degrees."""
     return (*_slides(snapshot.actual), *_shown(snapshot, swivel, {}))
 
 
 def figures_to_go(snapshot: Snapshot, swivel: Swivel) -> tuple[float, ...]:
-    """What is left of the block: along the axes of the working plane, and of the rotary axes."""
+    """Return the distance to go of the block, along the axes of the working plane and the rotary axes."""
     end = snapshot.block_end if snapshot.block else snapshot.actual
     here, there = (swivel.system.place.point(_slides(at)) for at in (snapshot.actual, end))
     slides = (goal - at for goal, at in zip(there, here, strict=True))
@@ -138,7 +142,7 @@ def figures_to_go(snapshot: Snapshot, swivel: Swivel) -> tuple[float, ...]:
 
 
 def system_words(swivel: Swivel | None) -> str:
-    """Which system the figures count in."""
+    """Return the name of the coordinate system of the displayed positions."""
     if swivel is None:
         return tr("MACHINE")
     if not swivel.system.tilted:
@@ -147,7 +151,7 @@ def system_words(swivel: Swivel | None) -> str:
 
 
 def rotary_angle(degrees: float) -> str:
-    """The angle of a rotary axis, in degrees."""
+    """Return the angle of a rotary axis in degrees as text."""
     return formats.fixed(degrees, ANGLE_PLACES)
 
 
@@ -157,7 +161,7 @@ def _slides(at: tuple[float, ...]) -> tuple[float, float, float]:
 
 
 def _shown(snapshot: Snapshot, swivel: Swivel, zero: Mapping[str, float]) -> list[float]:
-    """Rotary axes from their zeros; of a modulo axis 0 to under 360, what is written as 360 is 0."""
+    """Return the rotary axes from their zeros. A modulo axis is between 0 and 360 degrees."""
     found = []
     for name, at in zip(snapshot.axes[_SLIDES:], snapshot.actual[_SLIDES:], strict=True):
         axis, angle = swivel.system.kinematics.rotary(name), at - zero.get(name, 0.0)
@@ -166,11 +170,11 @@ def _shown(snapshot: Snapshot, swivel: Swivel, zero: Mapping[str, float]) -> lis
     return found
 
 
-ROTARY = frozenset("ABC")  # axes that are read in degrees
+ROTARY = frozenset("ABC")  # Axes in degrees.
 
 
 class Readout(StrEnum):
-    """What the large figures show."""
+    """The kind of value that the large position display shows."""
 
     POSITION = "POSITION"
     TO_GO = "DISTANCE TO GO"
@@ -178,16 +182,17 @@ class Readout(StrEnum):
 
     @property
     def following(self) -> Readout:
-        """The one that the key goes on to."""
+        """The next kind of value, in a cycle."""
         order = list(Readout)
         return order[(order.index(self) + 1) % len(order)]
 
 
 @dataclass(frozen=True, slots=True)
 class AxisFigures:
-    """One row of the readout; ``mark`` says Ø or R on X, ``beside`` is the second figure.
+    """One row of the position display.
 
-    Not ``known``: nothing is heard of the slide any more, the figures are the last that were.
+    ``mark`` is Ø or R for X. ``beside`` is the second value. If ``known`` is False, the axis does not
+    respond, and the values are the last known ones.
     """
 
     name: str
@@ -200,7 +205,7 @@ class AxisFigures:
 
 @dataclass(frozen=True, slots=True)
 class PositionFigures:
-    """The readout: all of it in one unit, from one instant."""
+    """The position display. All values have one unit and come from one snapshot."""
 
     readout: Readout
     beside: Readout
@@ -210,7 +215,7 @@ class PositionFigures:
 
 
 def coordinates(snapshot: Snapshot, readout: Readout) -> tuple[float, ...]:
-    """The figures of a readout in the order of ``snapshot.axes``: mm with X a radius, and degrees."""
+    """Return the values of a readout in the order of ``snapshot.axes``, in mm or degrees. X is a radius."""
     actual, swivel = snapshot.actual, snapshot.swivel
     if swivel is not None:
         return _OF_MILL[readout](snapshot, swivel)
@@ -233,7 +238,7 @@ _OF_MILL = {
 
 
 def _wrapped(at: tuple[float, ...], snapshot: Snapshot) -> tuple[float, ...]:
-    """C from 0 to under 360 where the program counts it so; what would be shown as 360 is 0."""
+    """Return the position with C between 0 and 360 degrees, if the modal state wraps C."""
     if not snapshot.modal.wraps_c:
         return at
     return (*at[:-1], round(at[-1], formats.ANGLE_PLACES) % 360.0)
@@ -242,9 +247,10 @@ def _wrapped(at: tuple[float, ...], snapshot: Snapshot) -> tuple[float, ...]:
 def position_figures(
     snapshot: Snapshot, readout: Readout, with_c: bool, metric: bool, third_axis: str = "C"
 ) -> PositionFigures:
-    """Both figures of every axis; the second is the distance to go, or the position beside that.
+    """Return both values of every axis. The second value is the distance to go, or the position.
 
-    ``metric``: mm, else inches. C is a row of a lathe only ``with_c``, under the name of ``third_axis``.
+    ``metric`` selects mm, otherwise inches. ``with_c`` includes the C axis of a lathe, under the name
+    ``third_axis``.
     """
     diameter = snapshot.reads_diameter
     beside = Readout.POSITION if readout is Readout.TO_GO else Readout.TO_GO
@@ -266,7 +272,7 @@ def position_figures(
 
 
 def _words(snapshot: Snapshot, readout: Readout) -> str:
-    """What X is on a lathe; on a mill the system that the figures count in."""
+    """Return whether X is a diameter or radius on a lathe, or the coordinate system on a mill."""
     if snapshot.axes != LATHE:
         return system_words(None if readout is Readout.HOME else snapshot.swivel)
     words = tr("X IS A DIAMETER") if snapshot.reads_diameter else tr("X IS A RADIUS")
@@ -278,7 +284,7 @@ def _words(snapshot: Snapshot, readout: Readout) -> str:
 
 
 def _unit(metric: bool, control: bool) -> str:
-    """The unit of the figures; where the control is in the other one, that is said beside it."""
+    """Return the unit of the values, with a note if the control uses the other unit."""
     names = ("INCH", "MM")
     return (
         names[metric]
@@ -305,19 +311,19 @@ def _doubled(name: str, value: float, diameter: bool) -> float:
 
 @dataclass(frozen=True, slots=True)
 class FeedFigures:
-    """Programmed and actual feed in the unit of the program's mode."""
+    """Programmed and measured feed, in the unit of the program's feed mode."""
 
     value: str
     unit: str
     actual: str
     actual_unit: str
     override: float
-    prefix: str = ""  # MM before a metric feed, as the control shows it
+    prefix: str = ""  # MM before a metric feed, as the original control shows it.
 
 
 @dataclass(frozen=True, slots=True)
 class SpindleFigures:
-    """Commanded and actual rpm, surface speed, override and the AUTO/OFF switch."""
+    """Commanded and measured speed in rpm, surface speed, override and the AUTO/OFF switch."""
 
     direction: str
     rpm: str
@@ -326,12 +332,12 @@ class SpindleFigures:
     surface_label: str
     override: float
     auto: bool
-    known: bool = True  # else nothing is heard of it: it may turn
-    load: str = ""  # per cent, where the machine measures it
+    known: bool = True  # False: the spindle does not respond and may be turning.
+    load: str = ""  # In percent, if the machine measures it.
 
 
 def feed_figures(snapshot: Snapshot, metric: bool) -> FeedFigures:
-    """Feed as it is programmed and as it is measured; ``metric``: mm, else inches."""
+    """Return the programmed and the measured feed. ``metric`` selects mm, otherwise inches."""
     modal = snapshot.modal
     per_rev = modal.per_rev and not snapshot.rapid
     turns = abs(snapshot.rpm_actual) / 60
@@ -365,9 +371,9 @@ def _directions(language: str) -> tuple[str, str, str]:
 
 
 def spindle_figures(snapshot: Snapshot, metric: bool, language: str) -> SpindleFigures:
-    """Speed as it is commanded and measured, and the surface speed in m/min or feet/min.
+    """Return the commanded and measured speed, and the surface speed in m/min or ft/min.
 
-    ``language`` is the machine's own: OmniTurn writes M05 what Klartext and SINUMERIK write M5.
+    ``language`` is the machine's programming language, because OmniTurn writes M05 and other languages M5.
     """
     modal = snapshot.modal
     if Unknown.SPINDLE in snapshot.unknown:
@@ -382,7 +388,8 @@ def spindle_figures(snapshot: Snapshot, metric: bool, language: str) -> SpindleF
             known=False,
         )
     radius = snapshot.actual[0] - snapshot.offset[0]
-    lathe = snapshot.axes == LATHE  # on a mill it would be the tool's, whose radius nobody knows
+    # On a mill, the surface speed depends on the tool's radius, which is not known here.
+    lathe = snapshot.axes == LATHE
     surface = 2 * math.pi * radius * snapshot.rpm_actual / 60 if lathe else math.nan
     command = snapshot.rpm_command
     forward, reverse, off = _directions(language)

@@ -1,6 +1,7 @@
-"""The sounds of the desk: tones for ends, stops and alarms, played by a program of this computer.
+"""Sounds for program ends, stops and alarms, played by an audio program of the computer.
 
-Off until somebody gives them a volume. Nobody waits for a sound: a thread plays, the newest one alone.
+Sounds are off until the operator sets a volume. A thread plays only the newest sound, so that no caller
+waits.
 """
 
 from __future__ import annotations
@@ -22,19 +23,19 @@ from core.message import Message
 
 PLAYERS = (("pw-play",), ("paplay",), ("aplay", "-q"), ("afplay",))
 """Programs that play a file: PipeWire's, PulseAudio's, ALSA's, that of macOS. The first that can does."""
-RATE = 22_050  # samples a second
-TONE, RAMP = 0.2, 0.01  # s: of one tone, and of its beginning and end
-_PATIENCE = 10.0  # s
+RATE = 22_050  # Samples per second.
+TONE, RAMP = 0.2, 0.01  # Seconds of one tone, and of its ramp at the beginning and end.
+_PATIENCE = 10.0  # Seconds.
 Play = Callable[[bytes], None]
 """Plays a WAV file to its end. Raises OSError or ValueError with a sentence."""
 
 
 def tune(tones: Sequence[int], volume: int) -> bytes:
-    """Tones (Hz) one after the other as a WAV file; ``volume`` 0…100."""
+    """Return a sequence of tones in Hz as a WAV file. ``volume`` is 0…100."""
     t = np.arange(round(RATE * TONE)) / RATE
     ramp = np.minimum(1.0, np.minimum(t, TONE - t) / RAMP).clip(0.0)
     waves = [np.sin(2.0 * np.pi * tone * t) * ramp for tone in tones] or [np.zeros(0)]
-    loud = (min(100, max(0, volume)) / 100.0) ** 2  # an ear hears the square root
+    loud = (min(100, max(0, volume)) / 100.0) ** 2  # Loudness is perceived as the square root of power.
     samples = (np.concatenate(waves) * loud * 32_000).astype("<i2")
     made = io.BytesIO()
     with wave.open(made, "wb") as file:
@@ -46,7 +47,10 @@ def tune(tones: Sequence[int], volume: int) -> bytes:
 
 
 def play_aloud(sound: bytes) -> None:
-    """On this computer's loudspeaker. Raises OSError with why there is none."""
+    """Play a WAV file on the computer's loudspeaker.
+
+    Raises OSError or ValueError with the reason if no player works.
+    """
     if sys.platform == "win32":
         import winsound  # noqa: PLC0415 - other systems have none
 
@@ -67,7 +71,7 @@ def play_aloud(sound: bytes) -> None:
 
 
 def _played(command: list[str]) -> str:
-    """Why it was not; empty when it was."""
+    """Run a player. Return why it failed, or an empty text on success."""
     try:
         done = subprocess.run(command, capture_output=True, timeout=_PATIENCE, check=False)
     except subprocess.TimeoutExpired:
@@ -81,7 +85,7 @@ def _played(command: list[str]) -> str:
 
 
 class Sounds:
-    """``play`` never waits. ``trouble`` is why the last one was not heard; empty while all is well."""
+    """Plays sounds without waiting. ``trouble`` is why the last sound failed, or empty."""
 
     def __init__(self, play: Play = play_aloud) -> None:
         self._play = play
@@ -92,7 +96,7 @@ class Sounds:
         self.trouble = ""
 
     def play(self, tones: Sequence[int], volume: int) -> None:
-        """One of them now; what waits is not played any more."""
+        """Play these tones now. A sound that waits is dropped."""
         if volume <= 0 or not tones:
             return
         with self._there:
@@ -103,7 +107,7 @@ class Sounds:
             self._there.notify()
 
     def close(self) -> None:
-        """No sound begins any more; nobody waits for the last."""
+        """Stop playing new sounds. Do not wait for the last one."""
         with self._there:
             self._closing = True
             self._there.notify()

@@ -1,4 +1,4 @@
-"""What the state's place of the screen says: what can be done now, why no cycle starts, how long it takes."""
+"""The prompt for the present state, the reason why no cycle starts, and the remaining cycle time."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 
 
 def prompt(desk: Desk, snapshot: Snapshot, loaded: Loaded, page: str = "") -> str:
-    """The state's place: what can be done now. Question and answer have places of their own.
+    """Return the prompt for the present state. Question and message have their own places.
 
-    ``page`` is what the page in front would say there; an alarm and an E-stop go before it.
+    ``page`` is the prompt of the current page. An alarm or an E-stop replaces it.
     """
     desk.answers.expire(snapshot)
     if desk.control.silence.is_silent:
@@ -47,7 +47,7 @@ def _prompt(desk: Desk, snapshot: Snapshot, loaded: Loaded, page: str) -> str:
 
 
 def _due(desk: Desk, snapshot: Snapshot, standing: str) -> str:
-    """What is to be done some time soon; behind an alarm, an interrupted job or a refusal it can wait."""
+    """Return the reminders of the watchers. Empty during an alarm, an interrupted job or a refusal."""
     waits = snapshot.state in {State.ESTOP, State.FAULT} or snapshot.interrupted_line
     if waits or standing.startswith(prompt_line.NO_START):
         return ""
@@ -55,7 +55,7 @@ def _due(desk: Desk, snapshot: Snapshot, standing: str) -> str:
 
 
 def start_refusal(desk: Desk, snapshot: Snapshot) -> str:
-    """Why the palms start nothing now, as far as the screen knows; empty when they may."""
+    """Return why the start buttons have no effect now. Empty if they can start a cycle."""
     refused = desk.barred() or desk.first_move_refusal(snapshot)
     if refused or snapshot.state is not State.IDLE or snapshot.starts is not Starts.PROGRAM:
         return refused
@@ -63,7 +63,7 @@ def start_refusal(desk: Desk, snapshot: Snapshot) -> str:
 
 
 def time_left(snapshot: Snapshot, loaded: Loaded) -> float:
-    """Seconds to the end of the cycle at the present override; infinite while it stands still."""
+    """Return the time to the end of the cycle at the present override in seconds; inf if unknown."""
     picture = loaded.picture
     if picture is None or loaded.proof is None:
         return float("inf")

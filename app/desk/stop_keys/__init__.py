@@ -1,1 +1,1 @@
-"""The stop keys of the keyboard on a path of their own, past the screen."""
+"""Separate path of the keyboard's stop keys to the control, independent of the screen."""

@@ -1,8 +1,9 @@
-"""The key watcher: ``python -m app.desk.stop_keys.key_watcher LINE SCREEN``, file descriptors of two sockets.
+"""The key watcher: ``python -m app.desk.stop_keys.key_watcher LINE SCREEN``.
 
-A process of its own, because a call of Qt that paints keeps Python's lock in the process of the screen, and
-no thread there runs meanwhile. It sends every press of a stop key over LINE to the control, and over SCREEN
-to the screen. It acts only while a window of TurnDesk has the keyboard, and ends with the screen.
+LINE and SCREEN are file descriptors of two sockets. The watcher is a separate process, because a painting
+call of Qt holds Python's lock, and no thread of the screen's process runs in that time. The watcher sends
+every press of a stop key to the control over LINE and to the screen over SCREEN. It acts only while a window
+of TurnDesk has the keyboard, and ends with the screen.
 """
 
 from __future__ import annotations
@@ -20,14 +21,14 @@ PLACES = {127: StopKind.HOLD, 78: StopKind.ESTOP}
 
 
 class KeyWatcher:
-    """Decides which raw keys stop the machine."""
+    """Decides which key presses stop the machine, and sends them."""
 
     def __init__(self, keys: RawKeys, line: socket.socket, screen: socket.socket) -> None:
         self._keys, self._line, self._screen = keys, line, screen
         self._focus = NOWHERE
 
     def run(self) -> None:
-        """Watch until the screen ends."""
+        """Watch the keys until the screen ends."""
         poll = select.poll()
         for each in (self._keys, self._screen):
             poll.register(each.fileno(), select.POLLIN)
@@ -39,18 +40,18 @@ class KeyWatcher:
                 self.see(key)
 
     def read_focus(self) -> bool:
-        """Take over what the screen says of its windows; return False when the screen has ended."""
+        """Read the windows that the screen has sent. Return False if the screen has ended."""
         try:
             while record := self._screen.recv(LONGEST, socket.MSG_DONTWAIT):
                 self._focus = Focus.unpacked(record)
         except BlockingIOError:
             return True
-        except OSError:  # it has not read all that it was sent
+        except OSError:  # The screen ended before it read all records.
             return False
         return False
 
     def see(self, key: RawKey) -> None:
-        """Send a stop for a key that goes down. The server sends no raw events for repeats."""
+        """Send a stop for a pressed key. The X server sends no raw events for key repeats."""
         kind = self._kind(key.code)
         if kind is not None and self._keys.focus() in self._focus.windows:
             self._send(Stop(kind, press_number(key.code, key.stamp)))
@@ -64,12 +65,12 @@ class KeyWatcher:
 
     def _send(self, stop: Stop) -> None:
         for end in (self._line, self._screen):
-            with suppress(OSError):  # a control that has ended, a screen that hangs for long
+            with suppress(OSError):  # The control may have ended, or the screen may hang.
                 end.send(stop.packed(), socket.MSG_DONTWAIT)
 
 
 def main(arguments: list[str]) -> int:
-    """Watch the keys; return 1 where the X server sends none."""
+    """Watch the keys. Return 1 if the X server sends no raw events."""
     line, screen = (socket.socket(fileno=int(each)) for each in arguments)
     try:
         keys = RawKeys()

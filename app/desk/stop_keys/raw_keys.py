@@ -1,7 +1,8 @@
-"""Key presses as the X server gets them, whatever the program that has the focus does meanwhile.
+"""Key presses directly from the X server, even if the program that has the focus hangs.
 
-XInput 2.0 sends such raw events to every client that asks for them, and takes them from nobody. While another
-client has grabbed the keyboard, as a screen lock does, a client of version 2.0 gets none.
+XInput 2.0 sends raw events to every client that selects them, and other clients still get their events. While
+another client has grabbed the keyboard, for example a screen lock, a client of version 2.0 gets no raw
+events.
 """
 
 from __future__ import annotations
@@ -12,9 +13,9 @@ from typing import NamedTuple
 
 _GENERIC_EVENT = 35
 _RAW_PRESS = 13
-_POINTER_ROOT = 1  # as the window that has the keyboard
+_POINTER_ROOT = 1  # Focus value: the window under the pointer has the keyboard.
 _ALL_MASTERS = 1
-_ESCAPE = 0xFF1B  # its symbol
+_ESCAPE = 0xFF1B  # Key symbol.
 
 
 class _Cookie(ctypes.Structure):
@@ -56,16 +57,16 @@ class _Mask(ctypes.Structure):
 
 
 class RawKey(NamedTuple):
-    """A key that went down; ``stamp`` is the time of the server in ms."""
+    """A key that was pressed. ``code`` is its X key code, and ``stamp`` is the server's time in ms."""
 
     code: int
     stamp: int
 
 
 class RawKeys:
-    """A connection to the X server of ``DISPLAY`` that gets raw key events. For one thread.
+    """A connection to the X server of ``DISPLAY`` that gets raw key events. Use it on one thread only.
 
-    Raises OSError without libX11, libXi, a server or the extension.
+    Raises OSError without libX11, libXi, an X server or the extension.
     """
 
     def __init__(self) -> None:
@@ -89,7 +90,8 @@ class RawKeys:
         found = [ctypes.byref(each) for each in (opcode, event, error)]
         if not self._x.XQueryExtension(self._display, b"XInputExtension", *found):
             raise OSError
-        major, minor = ctypes.c_int(2), ctypes.c_int(0)  # from 2.1 on raw events come during a grab, too
+        # From version 2.1 on, raw events also arrive during a grab.
+        major, minor = ctypes.c_int(2), ctypes.c_int(0)
         if (
             self._xi.XIQueryVersion(self._display, ctypes.byref(major), ctypes.byref(minor))
             or major.value < 2
@@ -105,7 +107,7 @@ class RawKeys:
         self._x.XSync(self._display, 0)
 
     def pressed(self) -> Iterator[RawKey]:
-        """Yield the presses that have come; never waits."""
+        """Yield the key presses that have arrived, without waiting."""
         event = _Event()
         while self._x.XPending(self._display):
             self._x.XNextEvent(self._display, ctypes.byref(event))
@@ -125,11 +127,11 @@ class RawKeys:
         return key
 
     def escape_code(self) -> int:
-        """Return the code of the Esc key in the layout of now; 0: the layout has none."""
+        """Return the key code of Esc in the present keyboard layout, or 0 if the layout has no Esc."""
         return int(self._x.XKeysymToKeycode(self._display, ctypes.c_ulong(_ESCAPE)))
 
     def focus(self) -> int:
-        """Return the window that has the keyboard, by its number.
+        """Return the number of the window that has the keyboard.
 
         Without a window manager, keys may go to the window under the pointer.
         """

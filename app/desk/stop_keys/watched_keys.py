@@ -1,4 +1,4 @@
-"""The screen's end of the key watcher: starts it, shows it the windows, and learns which presses it sent."""
+"""The screen's side of the key watcher: start the watcher, and exchange windows and stops with it."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from app.desk.stop_keys.stop_records import LONGEST, NOWHERE, Focus, Stop
 
 OpenLine = Callable[[], socket.socket | None]
 """Open a line to the control for stops; None where the control has none."""
-_ENDS = 2.0  # s
-_KEPT = 64  # presses
+_ENDS = 2.0  # Seconds.
+_KEPT = 64  # Number of presses.
 
 
 class WatchedKeys:
-    """The key watcher as the screen sees it. Every method returns at once."""
+    """Connection of the screen to the key watcher. Only ``close`` waits."""
 
     def __init__(self, line: socket.socket) -> None:
         self._screen, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
@@ -30,14 +30,14 @@ class WatchedKeys:
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.DEVNULL,
                 pass_fds=files,
-                start_new_session=True,  # Ctrl-C is for the screen
+                start_new_session=True,  # Ctrl+C must reach the screen only.
             )
         self._shown = NOWHERE
         self._sent: deque[Stop] = deque(maxlen=_KEPT)
         self._news: list[Stop] = []
 
     def show(self, focus: Focus) -> None:
-        """Tell the watcher the windows, and whether Esc holds, when either has changed."""
+        """Send the windows, and whether Esc starts feed hold, to the watcher if either has changed."""
         if focus != self._shown:
             with suppress(OSError):
                 self._screen.send(focus.packed())
@@ -50,7 +50,7 @@ class WatchedKeys:
         return found
 
     def was_sent(self, press: int) -> bool:
-        """Return whether the watcher has sent this press to the control."""
+        """Return whether the watcher has sent this key press to the control."""
         self._read()
         return press != 0 and any(stop.press == press for stop in self._sent)
 
@@ -62,7 +62,7 @@ class WatchedKeys:
                 self._news.append(stop)
 
     def close(self) -> None:
-        """End the watcher."""
+        """End the watcher process, and wait for its end for 2 s at most before killing it."""
         self._screen.close()
         try:
             self._process.wait(_ENDS)

@@ -1,4 +1,4 @@
-"""``turndesk access``: people, levels, PINs, the service reset; the PIN that other commands ask for."""
+"""Command ``turndesk access``: users, levels, PINs, service reset, and the PIN prompt of other commands."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ _LEVELS = {level.name.lower(): level for level in Level}
 
 
 def add_parser(subparsers: SubParsers) -> None:
-    """The subcommand with its actions."""
+    """Declare the actions and options of the command."""
     parser = subparsers.add_parser("access")
     actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
     for name, text in (
@@ -88,7 +88,7 @@ def add_parser(subparsers: SubParsers) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Does what ``args`` asks; raises CommandError with one sentence."""
+    """Execute the action. Raises CommandError."""
     if args.action == "table":
         sys.stdout.write(_table(json_wanted=args.json))
         return EXIT_OK
@@ -151,7 +151,7 @@ def _pin(store: Store, args: argparse.Namespace) -> str:
 
 
 def _kept(store: Store, args: argparse.Namespace, name: str, level: Level, done: str) -> str:
-    """Ask for the PIN twice and keep it."""
+    """Ask for the PIN twice and store the user."""
     from app.extras.access.access_command import asked_pin
     from core.extras.access.pins import PinError, check_pin, hashed
     from core.store import people
@@ -193,11 +193,14 @@ def _reset(store: Store, _args: argparse.Namespace) -> str:
 _ACTIONS = {"list": _list, "add": _add, "pin": _pin, "remove": _remove, "reset": _reset}
 
 
-_WRONG = "wrong PINs"  # the setting that the desk keeps too
+_WRONG = "wrong PINs"  # setting, shared with the operator screen
 
 
 def demand_pin(store: Store, row: PersonRow, remedy: str) -> None:
-    """Raises CommandError for a wrong one, which is logged, and lets the next wait."""
+    """Ask for the PIN of a user, with a wait after wrong PINs. Raises CommandError for a wrong PIN.
+
+    Wrong PINs are logged.
+    """
     from core.extras.access.pins import Hashed, hashed, is_outdated, is_pin, wait_after
 
     if not row.has_pin:
@@ -210,7 +213,7 @@ def demand_pin(store: Store, row: PersonRow, remedy: str) -> None:
         sys.stderr.write(f"turndesk: {wrong} wrong PINs in a row; try again in {pause:.0f} s\n")
         time.sleep(pause)
     pin = asked_pin(Message("PIN for {row}: ", row=row.name))
-    # Before the PIN is checked: ending TurnDesk then does not avoid the wait.
+    # counted before the check, so that ending TurnDesk does not avoid the wait
     store.settings.save_setting(_WRONG, wrong + 1).result()
     stored = Hashed(row.salt, row.hash)
     if is_pin(pin, stored):
@@ -232,7 +235,7 @@ def demand_pin(store: Store, row: PersonRow, remedy: str) -> None:
 
 
 def asked_pin(question: str) -> str:
-    """What is typed, which nobody sees; without a terminal a line of the standard input."""
+    """Return a hidden entry from the terminal, or without a terminal a line from stdin."""
     if sys.stdin.isatty():
         return getpass.getpass(question)
     return sys.stdin.readline().strip()

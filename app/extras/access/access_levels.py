@@ -1,4 +1,4 @@
-"""Access levels: who works here, signing in by PIN, people, and what each level may change."""
+"""Access levels: signed-in user, sign-in by PIN, users, and the changes that each level permits."""
 
 from __future__ import annotations
 
@@ -26,16 +26,19 @@ _DOT = "●"
 
 @dataclass(slots=True)
 class _Draft:
-    """What is being entered: the PIN of somebody who signs in, or a person and his PIN, step by step."""
+    """Entry in several steps: the PIN for signing in, or a user with a PIN."""
 
-    step: str  # sign in, name, level, pin, again
+    step: str  # sign in, name, level, pin or again
     name: str = ""
     level: Level = Level.SERVICE
     pin: str = ""
 
 
 class AccessLevels(SpecialFunction):
-    """Return on a name asks its PIN; whoever is of SERVICE level enters the people."""
+    """Special function for access levels: Enter on a name asks for the PIN.
+
+    SERVICE level edits users.
+    """
 
     name = "ACCESS LEVELS"
     use = "sign in, users, PINs"
@@ -50,22 +53,22 @@ class AccessLevels(SpecialFunction):
 
     @property
     def access(self) -> Access:
-        """Who is in force."""
+        """Present access of TurnDesk."""
         return self.desk.access
 
     @property
     def count(self) -> int:
-        """How many rows can be marked."""
+        """Number of rows that can be selected."""
         return len(RULES) if self.table else len(self.access.people.rows)
 
     @property
     def person(self) -> PersonRow | None:
-        """The one that is marked."""
+        """Selected user, or None."""
         rows = self.access.people.rows
         return rows[min(self.marked, len(rows) - 1)] if rows and not self.table else None
 
     def sheet(self, _snapshot: Snapshot) -> Sheet:
-        """The people, or what each level may change."""
+        """Return the table of users, or of the level that each change requires."""
         if self.table:
             rows = tuple(Row((act.value, rule.level.name)) for act, rule in RULES.items())
             heads, shares, raw = ("TYPE OF CHANGE", "LEVEL"), (0.65, 0.35), frozenset[int]()
@@ -109,7 +112,7 @@ class AccessLevels(SpecialFunction):
         }[draft.step]
 
     def prompt(self) -> str:
-        """What the keys do."""
+        """Return the prompt for the present keys."""
         if self.service_reset.under_way:
             return tr("PINS WILL BE REMOVED. RELEASE E-STOP OR SIGN IN TO CANCEL")
         if self.draft is not None:
@@ -121,7 +124,7 @@ class AccessLevels(SpecialFunction):
     # --- keys ----------------------------------------------------------------------------------------
 
     def keys(self) -> Mapping[str, Key]:
-        """Those of the people, as far as there are levels."""
+        """Return the function keys. Most exist only while access levels are on."""
         keys = {"F3": Key("NEW", self.add), "F5": Key("USERS" if self.table else "LEVELS", self._turn)}
         if self.access.people.on:
             keys |= {
@@ -138,13 +141,13 @@ class AccessLevels(SpecialFunction):
         self.draft, self.table, self.marked = None, not self.table, 0
 
     def takes(self, key: str) -> bool:
-        """Letters of a name; figures of a PIN."""
+        """Return whether a character is part of a name or a PIN."""
         if self.draft is None or len(key) != 1:
             return False
         return self.entry.takes(key) if self.draft.step == "name" else key.isascii() and key.isdigit()
 
     def typed(self, key: str) -> bool:
-        """What is asked takes every key; else arrows mark and Return signs in."""
+        """Handle a key of the entry, or of the list."""
         if self.draft is None:
             return super().typed(key)
         if key == "Enter":
@@ -159,22 +162,22 @@ class AccessLevels(SpecialFunction):
         return True
 
     def act(self) -> bool:
-        """Return on a name: its PIN is asked."""
+        """Ask for the PIN of the selected user."""
         row = self.person
         if row is not None:
             self._ask(_Draft("sign in", row.name))
         return row is not None
 
     def escape(self) -> bool:
-        """Leave what is being entered; False when nothing was."""
+        """Cancel the entry. Return False without an entry."""
         open_before, self.draft, self.entry = self.draft is not None, None, Entry()
         return open_before
 
     def left(self) -> None:
-        """Nothing stays half typed."""
+        """Cancel the entry when the function closes."""
         self.draft, self.entry, self.table = None, Entry(), False
 
-    # --- what is entered, step by step ---------------------------------------------------------------
+    # --- entry in steps ------------------------------------------------------------------------------
 
     def _ask(self, draft: _Draft) -> None:
         self.desk.clear()
@@ -227,7 +230,7 @@ class AccessLevels(SpecialFunction):
             raise PinError("the two PINs do not match; nothing was saved. Enter the PIN again")
         self.escape()
         if draft.name != self.access.name and self.desk.refused(Act.PEOPLE):
-            return  # who began it was away too long, or has signed out
+            return  # the user who started the entry was signed out in the meantime
         row = PersonRow(draft.name, draft.level, b"", b"")
         said = tr(Message("{name}: {level}, PIN SAVED", name=data(draft.name), level=tr(draft.level.name)))
         self._change(
@@ -241,12 +244,12 @@ class AccessLevels(SpecialFunction):
         )
 
     def _keep(self, row: PersonRow, pin: str) -> None:
-        """On the worker. Raises StoreError."""
+        """Store the user on the worker. Raises StoreError."""
         renewed = PersonRow(row.name, row.level, *hashed(pin))
         self.persistence.opened().people.save_person(renewed).result()
 
     def _change(self, work: Callable[[], None], said: str, noted: str) -> None:
-        """Have the people changed, read them again and say so; the log has by whom."""
+        """Change the users on the worker, reload them, report the change and log it with the user."""
 
         def done(_none: None) -> None:
             self.access.note(noted)
@@ -255,27 +258,27 @@ class AccessLevels(SpecialFunction):
 
         self.session.worker.queue(work, done, self.desk.refuse)
 
-    # --- people --------------------------------------------------------------------------------------
+    # --- users ---------------------------------------------------------------------------------------
 
     def sign_out(self) -> None:
-        """F2: nobody is signed in any more."""
+        """Sign out (F2)."""
         self.access.sign_out()
         self.desk.done(tr("SIGNED OUT: OPERATOR LEVEL IS ACTIVE"))
 
     def add(self) -> None:
-        """F3: somebody new; the first one is of SERVICE level."""
+        """Add a user (F3). The first user has SERVICE level."""
         if not self.desk.refused(Act.PEOPLE):
             self._ask(_Draft("name"))
 
     def new_pin(self) -> None:
-        """F4: another PIN of the marked person; everybody may change his own."""
+        """Change the PIN of the selected user (F4). All users may change their own PIN."""
         row = self.person
         if row is None or (row.name != self.access.name and self.desk.refused(Act.PEOPLE)):
             return
         self._ask(_Draft("pin", row.name, Level(row.level)))
 
     def remove(self) -> None:
-        """F6: the marked person works here no more; with the last one levels go off."""
+        """Remove the selected user (F6). Removing the last user turns access levels off."""
         row = self.person
         if row is None or self.desk.refused(Act.PEOPLE):
             return
@@ -288,7 +291,7 @@ class AccessLevels(SpecialFunction):
         self.desk.ask(asked, partial(self._change, work, said, Message("{row} removed", row=row.name)))
 
     def next_minutes(self) -> None:
-        """F8: another time after which the level falls back."""
+        """Select the next time for the automatic sign-out (F8)."""
         if not self.desk.refused(Act.PEOPLE):
             self.desk.clear()
             self.session.choose_minutes(following(MINUTES, self.session.minutes))
@@ -296,7 +299,7 @@ class AccessLevels(SpecialFunction):
     # --- service reset -------------------------------------------------------------------------------
 
     def ask_reset(self) -> None:
-        """F9: where every PIN is forgotten; the E-stop stays pressed meanwhile."""
+        """Start the reset of all PINs after confirmation (F9). The E-stop must stay pressed."""
         why = self.service_reset.why_not(self.desk.snapshot())
         if why:
             self.desk.say(why)
@@ -305,7 +308,7 @@ class AccessLevels(SpecialFunction):
         self.desk.ask(question, self.service_reset.begin)
 
     def _reset_now(self) -> None:
-        """Also where no store can be read: until TurnDesk ends its levels are off then."""
+        """Remove all users. If the store is unreadable, levels are off until TurnDesk ends."""
 
         def remove() -> None:
             if not self.access.is_unread:

@@ -1,4 +1,4 @@
-"""Registers users with their access levels and PINs."""
+"""Registration of users with access levels and PINs."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class AccessByPin(Extra):
-    """Signing in with a PIN, ACCESS LEVELS in F10, and ``turndesk access``."""
+    """Optional feature with sign-in by PIN, ACCESS LEVELS in F10 and ``turndesk access``."""
 
     commands = {
         "access": Subcommand("store", "manage users, access levels and PINs"),

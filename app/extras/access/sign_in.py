@@ -1,4 +1,4 @@
-"""Signing in with a PIN at the desk, the time after which a level falls back, and the service reset."""
+"""Sign-in by PIN, automatic sign-out, and the service reset."""
 
 from __future__ import annotations
 
@@ -17,15 +17,18 @@ from core.message import Message
 from core.store.people import PersonRow
 from core.store.store_errors import StoreError
 
-MINUTES = (2, 5, 10, 30, 60)  # without a key or finger after which a level falls back
+MINUTES = (2, 5, 10, 30, 60)  # minutes without input before the automatic sign-out
 _USUAL = 10
-_WARNED = 30.0  # s before it does
-_WRONG, _MINUTES = "wrong PINs", "access minutes"  # settings
+_WARNED = 30.0  # seconds of warning before the sign-out
+_WRONG, _MINUTES = "wrong PINs", "access minutes"  # names of settings
 
 
 @dataclass(slots=True)
 class SignIn:
-    """``app.desk.access.Session`` by PINs; ``used`` is told of every key and finger."""
+    """Implementation of ``app.desk.access.Session`` with PINs.
+
+    ``used`` is called for every key and touch.
+    """
 
     access: Access
     minutes: int = _USUAL
@@ -40,17 +43,17 @@ class SignIn:
         self.access.reload()
 
     def reload(self) -> None:
-        """Read the time of the automatic sign-out and the wrong PINs. Raises StoreError."""
+        """Load the time of the automatic sign-out and the wrong PINs. Raises StoreError."""
         persistence = self.access.persistence
         minutes, wrong = persistence.read_setting(_MINUTES), persistence.read_setting(_WRONG)
         self.minutes = minutes if isinstance(minutes, int) and minutes in MINUTES else _USUAL
         if isinstance(wrong, int) and wrong > self.wrong.count:
             self.wrong = WrongPins(wrong, self.access.clock())
 
-    # --- signing in and out --------------------------------------------------------------------------
+    # --- sign-in and sign-out ------------------------------------------------------------------------
 
     def sign_in(self, row: PersonRow, pin: str) -> None:
-        """Try a PIN; the answer comes with a later frame, and wrong ones let wait longer and longer."""
+        """Check a PIN. The result arrives in a later frame, and each wrong PIN increases the wait."""
         left = self.wrong.left(self.access.clock())
         if left > 0.0:
             self.access.say(
@@ -65,18 +68,18 @@ class SignIn:
             self.worker.queue(partial(self._try, row, pin), partial(self._tried, row), self.access.say)
 
     def _try(self, row: PersonRow, pin: str) -> bool:
-        """On the worker: whether it is the PIN. One that was stored at a lower cost is stored again."""
+        """Return whether the PIN is correct. An outdated hash is replaced. Runs on the worker."""
         kept = Hashed(row.salt, row.hash)
         right = is_pin(pin, kept)
         if right and is_outdated(kept):
-            with suppress(StoreError):  # the next time that a PIN is entered it is tried again
+            with suppress(StoreError):  # retried at the next sign-in
                 renewed = PersonRow(row.name, row.level, *hashed(pin))
                 self.access.persistence.opened().people.save_person(renewed).result()
         return right
 
     def _tried(self, row: PersonRow, right: bool) -> None:
         if right:
-            self.access.reload()  # a hash may be new
+            self.access.reload()  # the hash may be new
             self.wrong.right()
             self.access.name, self.access.level = row.name, Level(row.level)
             self.used()
@@ -107,11 +110,11 @@ class SignIn:
     # --- time ----------------------------------------------------------------------------------------
 
     def used(self) -> None:
-        """A key or a finger: whoever signed in is there."""
+        """Restart the time of the automatic sign-out after a key or touch."""
         self._used, self._warned = self.access.clock(), False
 
     def look(self, snapshot: Snapshot) -> None:
-        """Once a frame: what was tried, and whether the level falls back, which is said before."""
+        """Process results, warn, and sign out after the time without input; called once per frame."""
         self.worker.poll()
         self.reset_look(snapshot)
         if not self.access.name:
@@ -127,7 +130,7 @@ class SignIn:
             self.access.say(tr(Message(words, name=data(self.access.name), seconds=f"{left:.0f}")))
 
     def choose_minutes(self, minutes: int) -> None:
-        """Another time after which a level falls back."""
+        """Set the time of the automatic sign-out in minutes."""
         self.minutes = minutes
         self._keep(_MINUTES, minutes)
         self.access.note(Message("automatic sign-out after {minutes} min without input", minutes=minutes))
@@ -139,21 +142,21 @@ class SignIn:
             self.access.say(tr(Message("NOT SAVED: {why}", why=error)))
 
     def close(self) -> None:
-        """The desk shuts."""
+        """Stop the worker."""
         self.worker.close()
 
 
 def sign_in_of(access: Access) -> SignIn:
-    """Return how people sign in at this desk; it is made where the desk was put together without it."""
+    """Return the sign-in of TurnDesk, created if necessary."""
     return access.session if isinstance(access.session, SignIn) else SignIn(access)
 
 
-WAIT = 600.0  # s
+WAIT = 600.0  # seconds
 
 
 @dataclass(slots=True)
 class AccessReset:
-    """``reset`` takes all people away; called when the time is over."""
+    """Service reset. ``reset`` removes all users when the waiting time is over."""
 
     sign_in: SignIn
     say: Callable[[str], None]
@@ -165,16 +168,16 @@ class AccessReset:
 
     @property
     def access(self) -> Access:
-        """Who is in force."""
+        """Present access of TurnDesk."""
         return self.sign_in.access
 
     @property
     def under_way(self) -> bool:
-        """Whether it waits for its time."""
+        """Whether the waiting time is running."""
         return self._since is not None
 
     def why_not(self, snapshot: Snapshot) -> str:
-        """Why it cannot begin; empty when it can."""
+        """Return the reason why the reset cannot start, or an empty string."""
         if not self.access.people.on:
             return tr("NO ACCESS LEVELS TO RESET")
         if snapshot.state is not State.ESTOP:
@@ -182,12 +185,15 @@ class AccessReset:
         return ""
 
     def begin(self) -> None:
-        """From now on the time runs."""
+        """Start the waiting time."""
         self._since = self.access.clock()
         self.access.note("service reset started: the E-stop must stay pressed for 10 min")
 
     def look(self, snapshot: Snapshot) -> None:
-        """Once a frame: given up when the E-stop is released or somebody signs in, done in its time."""
+        """Execute the reset after the waiting time, once per frame.
+
+        A release of the E-stop or a sign-in cancels the reset.
+        """
         if self._since is None:
             return
         left = self._since + WAIT - self.access.clock()

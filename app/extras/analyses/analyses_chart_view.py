@@ -1,4 +1,4 @@
-"""The drawing of an analysis: a path with its error magnified, passes of a thread, a ball-bar plot."""
+"""Chart of an analysis: path with magnified error, thread passes or ball-bar plot."""
 
 from __future__ import annotations
 
@@ -14,18 +14,21 @@ from app.screen.look import Look
 
 FloatArray = npt.NDArray[np.float64]
 _LEFT = 9.0  # units
-_ROOM = 0.06  # round what is drawn
+_ROOM = 0.06  # ratio: margin around the lines
 
 
 class AnalysisChart(Chart):
-    """``show_drawing`` puts lines on it; everything fits into it."""
+    """Chart of an analysis. ``show_drawing`` sets its lines and scales the chart to fit."""
 
     def __init__(self, look: Look, parent: QWidget) -> None:
         super().__init__(look, parent)
         self.drawing = Drawing()
 
     def show_drawing(self, drawing: Drawing) -> bool:
-        """Draw this, in the units it is given in. False: its plots are still being made, ask again."""
+        """Draw a drawing.
+
+        Return False while plots are still being created, so that the caller repeats.
+        """
         if not self.ready(bool(drawing.curves) + bool(drawing.below)):
             return False
         self.drawing = drawing
@@ -50,9 +53,9 @@ class AnalysisChart(Chart):
             set_curve(line, points[:, 0], points[:, 1])
 
     def resizeEvent(self, event: QResizeEvent) -> None:
-        """Equal axes stay equal."""
+        """Scale equal axes again after a change of size."""
         super().resizeEvent(event)
-        if self.isVisible() and self.plots:  # it comes once while pyqtgraph makes it
+        if self.isVisible() and self.plots:  # Qt also calls this method while pyqtgraph creates the chart.
             self._fit()
 
     def _fit(self) -> None:
@@ -63,13 +66,13 @@ class AnalysisChart(Chart):
             _range(self.plots[1], list(drawing.below), equal=False)
 
     def dress(self) -> None:
-        """Colours and letters of now."""
+        """Apply the present colors and fonts."""
         super().dress()
         if self.plots:
             self.show_drawing(self.drawing)
 
     def drawForeground(self, painter: QPainter, rect: QRectF) -> None:
-        """Rings round the marks, with their words."""
+        """Draw a circle and a label at each mark."""
         super().drawForeground(painter, rect)
         if not self.plots:
             return
@@ -92,7 +95,7 @@ class AnalysisChart(Chart):
 
 
 def _range(plot: Plot, parts: list[FloatArray], *, equal: bool) -> None:
-    """Everything in sight; both axes in one scale where they are ``equal``."""
+    """Set the range to all points. ``equal`` uses one scale for both axes."""
     points = np.concatenate([each for each in parts if len(each)])
     low, high = points.min(axis=0), points.max(axis=0)
     middle, wide = 0.5 * (low + high), np.maximum((1.0 + 2.0 * _ROOM) * (high - low), 1e-6)

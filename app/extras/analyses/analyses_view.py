@@ -1,4 +1,4 @@
-"""The page of the analyses: path error, thread passes, ball bar; the drawing (loaded late) and figures."""
+"""Page of the analyses: path error, thread passes, ball bar and responses, with drawing and table."""
 
 from __future__ import annotations
 
@@ -29,25 +29,25 @@ if TYPE_CHECKING:
     from app.extras.analyses.analyses_chart_view import AnalysisChart
 
 
-_PLOTS = 2  # of a drawing at most
+_PLOTS = 2  # maximum number of plots in a drawing
 
 
 def _chart_class() -> type[AnalysisChart]:
-    """On a worker: pyqtgraph takes a third of a second."""
+    """Import the chart class on a worker, because importing pyqtgraph takes 0.3 s."""
     from app.extras.analyses.analyses_chart_view import AnalysisChart
 
     return AnalysisChart
 
 
 class DrawingRoom(QWidget):
-    """Empty until the chart is there; then what was shown last."""
+    """Area of the drawing, empty until the chart class is loaded."""
 
     part_name = "CHART"
 
     def __init__(self, look: Look, worker: Latest, say: Callable[[str], None], parent: QWidget) -> None:
         super().__init__(parent)
         self._look = look
-        self.chart: AnalysisChart | None = None  # until it is there
+        self.chart: AnalysisChart | None = None  # None until it is loaded
         self._shown: object = None
         worker.queue(_chart_class, self._chart_there, say)
 
@@ -57,24 +57,24 @@ class DrawingRoom(QWidget):
         self.chart.show()
 
     def ready(self) -> bool:
-        """Whether nothing has to be made any more before a drawing can be shown."""
+        """Return whether the chart and its plots exist."""
         return self.chart is not None and self.chart.ready(_PLOTS)
 
     def show_drawing(self, drawn: object, drawing: Callable[[], Drawing], *, metric: bool) -> None:
-        """The drawing (mm) of what ``drawn`` names, in mm or inches; nothing where that is shown already."""
+        """Show a drawing in mm or inches, unless ``drawn`` identifies the present drawing."""
         if self.chart is None or drawn == self._shown:
             return
         if self.chart.show_drawing(scaled(drawing(), 1.0 if metric else 1.0 / MM_PER_INCH)):
             self._shown = drawn
 
     def dress(self) -> None:
-        """Other colours, or another language, are in force."""
+        """Draw again with the present colors and language."""
         self._shown = None
         if self.chart is not None:
             self.chart.dress()
 
     def lay_out(self, place: QRect) -> None:
-        """Put it there; what is shown follows, also while it is hidden."""
+        """Place the area and resize the chart, even while hidden."""
         self.setGeometry(place)
         if self.chart is not None:
             self.chart.setGeometry(self.rect())
@@ -85,7 +85,7 @@ _TABLE, _HEAD = 50.0, 3.4  # units
 
 
 class Above(Panel):
-    """What is looked at, or why there is nothing."""
+    """Line with the description of the analysis, or the reason for a missing result."""
 
     ground = "panel"
     words = Shown("")
@@ -97,7 +97,7 @@ class Above(Panel):
 
 
 class AnalysesPage(ListPage):
-    """The model decides; this shows it."""
+    """Page of the analyses: shows its model."""
 
     NAME = page_table.ANALYSES
     model: _Keys
@@ -110,13 +110,13 @@ class AnalysesPage(ListPage):
         self.table = SheetPanel(self.look, analyses.mark, self)
 
     def ahead(self) -> bool:
-        """The chart, then its plots."""
+        """Create the chart and its plots in steps, before the page is first shown."""
         self.analyses.worker.poll()
         return not self.drawing.ready()
 
     def _keys(self) -> Mapping[str, Key]:
         choose = self.analyses.choose
-        mill = self.desk.machine.language == "klartext"  # no slide follows its spindle
+        mill = self.desk.machine.language == "klartext"  # no axis of a mill follows the spindle
         thread = {} if mill else {"F3": Key("THREAD", partial(choose, Kind.THREAD))}
         return {
             "F2": Key("PATH", partial(choose, Kind.PATH)),
@@ -136,11 +136,11 @@ class AnalysesPage(ListPage):
         self.host.go(page_table.SCOPE)
 
     def labels(self) -> tuple[str, ...]:
-        """The analyses, and the way back."""
+        """Return the labels of the analyses and of the key that returns to the scope."""
         return self.labels_of({}, self._keys())
 
     def key_actions(self) -> KeyActions:
-        """Function keys, and how much an error is magnified."""
+        """Return the actions of the function keys and of the magnification."""
         magnify = self.analyses.magnify
         return {
             **{name: key.action for name, key in self._keys().items()},
@@ -149,19 +149,22 @@ class AnalysesPage(ListPage):
         }
 
     def wheelEvent(self, event: QWheelEvent) -> None:
-        """How much an error is magnified."""
+        """Change the magnification with the wheel."""
         self.analyses.magnify(1 if event.angleDelta().y() > 0 else -1)
         event.accept()
 
     def escape(self) -> bool:
-        """Back to the scope, unless something moves: then the desk holds."""
+        """Clear the message.
+
+        Otherwise leave Esc to the window, which holds the feed during motion.
+        """
         if self.desk.notice:
             self.desk.clear()
             return True
         return False
 
     def refresh(self, _snapshot: Snapshot, _view: MachineStatus, _loaded: Loaded) -> None:
-        """What has been found."""
+        """Show the present result."""
         analyses = self.analyses
         analyses.look()
         self.above.words = analyses.words
@@ -171,11 +174,11 @@ class AnalysesPage(ListPage):
         self.drawing.show_drawing(shown, analyses.drawing, metric=metric)
 
     def dress(self) -> None:
-        """Other colours, or another language, are in force."""
+        """Apply the present colors and language."""
         self.drawing.dress()
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """Drawing at the left, figures at the right."""
+        """Arrange drawing and table."""
         u = self.look.u
         gap, side, high = max(4, round(0.7 * u)), round(_TABLE * u), round(_HEAD * u)
         left = self.width() - side - gap
@@ -185,30 +188,30 @@ class AnalysesPage(ListPage):
 
 
 class _Keys:
-    """What a page asks of its model."""
+    """Adapter between the page and its model."""
 
     def __init__(self, analyses: Analyses) -> None:
         self._analyses = analyses
 
     def typed(self, key: str) -> bool:
-        """Arrows mark a row."""
+        """Select a row by arrow keys."""
         return self._analyses.typed(key)
 
     def takes(self, _key: str) -> bool:
-        """No character is text here."""
+        """Return False, because this page has no entry."""
         return False
 
     def opened(self) -> None:
-        """Look at what there is now."""
+        """Analyze the present data."""
         self._analyses.opened()
 
     def escape(self) -> bool:
-        """Nothing is open in it."""
+        """Return False, because there is nothing to close."""
         return False
 
     def prompt(self) -> str:
-        """What keys do now."""
+        """Return the prompt for the present keys."""
         return tr("ARROWS: SELECT ROW   Z: MAGNIFY   SAME F-KEY AGAIN: UPDATE")
 
     def leave(self) -> None:
-        """Nothing stays open."""
+        """Do nothing, because there is nothing to close."""

@@ -1,7 +1,7 @@
-"""Response of an axis to its last move: rise, overshoot, settling, lag; what other windows would do.
+"""Response of an axis to its last move: rise, overshoot, settling and lag, and the effect of other limits.
 
-A move from rest to rest is looked at, as a step of the Jog page makes it: nothing is moved from here, and
-nothing is written to a drive.
+The analysis uses a move from rest to rest, such as a jog step. The analysis moves no axis and writes nothing
+to a drive.
 """
 
 from __future__ import annotations
@@ -31,47 +31,50 @@ from core.message import Message
 from core.records.record import AnalysisError, Record, velocity
 
 FloatArray = npt.NDArray[np.float64]
-_BEFORE, _BEHIND = 0.2, 1.0  # s of rest that belong to a move
-_REST = 0.15  # s without a new setpoint that end a move
-_STILL = 1e-7  # mm: setpoints nearer than that are one
-FACTORS = (1.5, 2.0)  # of the speed
-WINDOWS = (0.5, 0.25)  # of the window
+_BEFORE, _BEHIND = 0.2, 1.0  # seconds of rest before and after a move
+_REST = 0.15  # seconds without a new setpoint that end a move
+_STILL = 1e-7  # mm: smaller differences of setpoints are ignored
+FACTORS = (1.5, 2.0)  # ratios to the speed
+WINDOWS = (0.5, 0.25)  # ratios to the following-error limit
 
 
-SHARES = (0.5, 0.2, 0.3)  # of the columns: name, verdict, figure
+SHARES = (0.5, 0.2, 0.3)  # ratios of the columns: name, verdict, value
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Moved:
-    """Motion of one axis. Times (n,) s from its beginning; ``speed`` the greatest asked for, mm/s."""
+    """Motion of one axis.
+
+    ``times`` (n,) are seconds from its start. ``speed`` is the highest commanded speed in mm/s.
+    """
 
     letter: str
     times: FloatArray
     demand: FloatArray
     actual: FloatArray
     speed: float
-    lag: float  # s, by the part of the error that goes with the speed
+    lag: float  # seconds, from the part of the error that is proportional to the speed
     axis: Axis
 
     @property
     def error(self) -> FloatArray:
-        """The following error (n,)."""
+        """Following error (n,)."""
         return self.demand - self.actual
 
     def faster(self, factor: float) -> FloatArray:
-        """The error at so many times the speed."""
+        """Return the expected following error at ``factor`` times the speed."""
         return at_other_speed(np.nan_to_num(velocity(self.times, self.demand)), self.error, factor)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class AxisResponse(Moved):
-    """One move from rest to rest."""
+    """Motion from rest to rest with its step response."""
 
     step: StepResponse
 
 
 def moved(letter: str, axis: Axis, record: Record, cut: slice, zero: float) -> Moved:
-    """What an axis was asked and did in a part of a record; times count from ``zero`` of its clock."""
+    """Return the motion of an axis in a part of a record, with times relative to ``zero`` of its clock."""
     times = record.times[cut] - zero
     demand, actual = (
         record.columns[Message("{item} demand", item=letter)][cut],
@@ -83,7 +86,7 @@ def moved(letter: str, axis: Axis, record: Record, cut: slice, zero: float) -> M
 
 
 def last_move(record: Record, drives: Mapping[str, Axis]) -> AxisResponse:
-    """The last move from rest to rest of one axis. Raises AnalysisError."""
+    """Return the last move of one axis from rest to rest. Raises AnalysisError."""
     found: tuple[int, int, str] | None = None
     for letter in drives:
         demand = record.columns.get(Message("{item} demand", item=letter))
@@ -108,7 +111,7 @@ def last_move(record: Record, drives: Mapping[str, Axis]) -> AxisResponse:
 
 
 def stretches(times: FloatArray, demand: FloatArray) -> list[tuple[int, int]]:
-    """First and last sample of every move that has come to rest, the oldest first."""
+    """Return the first and last sample of every completed move, oldest first."""
     moving = np.flatnonzero(np.abs(np.diff(demand)) > _STILL)
     if not len(moving):
         return []
@@ -116,7 +119,7 @@ def stretches(times: FloatArray, demand: FloatArray) -> list[tuple[int, int]]:
     starts = np.concatenate([[0], breaks + 1])
     ends = np.concatenate([breaks, [len(moving) - 1]])
     if times[-1] - times[moving[-1]] < _REST:
-        starts, ends = starts[:-1], ends[:-1]  # it still moves
+        starts, ends = starts[:-1], ends[:-1]  # the last move has not ended
     return [(int(moving[a]), int(moving[b]) + 1) for a, b in zip(starts, ends, strict=True)]
 
 
@@ -129,7 +132,7 @@ def _response(letter: str, axis: Axis, record: Record, cut: slice, zero: float) 
 
 
 def response_drawing(found: Moved) -> Drawing:
-    """Asked and done above, the following error below, over seconds."""
+    """Return the drawing of command and actual position above, and following error below, over seconds."""
     asked = np.column_stack([found.times, found.demand])
     done = np.column_stack([found.times, found.actual])
     error = np.column_stack([found.times, found.error])
@@ -139,29 +142,29 @@ def response_drawing(found: Moved) -> Drawing:
 
 @dataclass(frozen=True, slots=True)
 class Units:
-    """How lengths and speeds are written."""
+    """Text format of lengths and speeds."""
 
     metric: bool
 
     @property
     def name(self) -> str:
-        """Of a length."""
+        """Unit of a length."""
         return "mm" if self.metric else "in"
 
     def way(self, mm: float) -> str:
-        """A length."""
+        """Return a length as text."""
         return f"{formats.length(mm, self.metric)} {self.name}"
 
     def speed(self, mm: float) -> str:
-        """A speed, a second."""
+        """Return a speed per second as text."""
         return f"{formats.fixed(mm if self.metric else mm / formats.MM_PER_INCH, 3)} {self.name}/s"
 
     def share(self, part: float) -> str:
-        """A part of a whole."""
+        """Return a ratio as a percentage."""
         return f"{formats.fixed(100.0 * part, 2)} %"
 
     def ms(self, seconds: float) -> str:
-        """A short time."""
+        """Return a short time in milliseconds as text."""
         return (
             Message("{seconds} ms", seconds=formats.fixed(1000.0 * seconds, 1))
             if math.isfinite(seconds)
@@ -170,7 +173,7 @@ class Units:
 
 
 def step_rows(steps: Sequence[StepResponse], units: Units) -> list[tuple[str, ...]]:
-    """A row a figure, a cell a step."""
+    """Return one row per value, with one cell per step."""
     return [
         (tr("RISE, 10 TO 90 %"), *(units.ms(each.rise) for each in steps)),
         (tr("OVERSHOOT"), *(units.share(each.overshoot) for each in steps)),
@@ -179,7 +182,7 @@ def step_rows(steps: Sequence[StepResponse], units: Units) -> list[tuple[str, ..
 
 
 def window_rows(found: Moved, units: Units) -> list[tuple[str, str, str]]:
-    """What the window is to this move, and what another window or speed would do: name, verdict, figure."""
+    """Return rows of name, verdict and value for the following-error limit, other limits and other speeds."""
     axis, times, error = found.axis, found.times, found.error
 
     def trips(error: FloatArray, window: float) -> str:
@@ -213,7 +216,7 @@ def window_rows(found: Moved, units: Units) -> list[tuple[str, str, str]]:
 
 
 def response_sheet(title: str, found: AxisResponse, metric: bool) -> Sheet:
-    """Its figures, and what other windows and speeds would do."""
+    """Return the table of the response, and the effect of other limits and speeds."""
     units = Units(metric)
     rows = [
         Row((tr("TRAVEL"), "", units.way(found.step.way))),

@@ -1,4 +1,4 @@
-"""What an analysis draws: lines and marks, in units inside."""
+"""Drawing of an analysis: lines and marks in internal units."""
 
 from __future__ import annotations
 
@@ -12,10 +12,11 @@ FloatArray = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Drawing:
-    """``soft`` (n, 2) is what was asked for, then a curve each; ``below`` are curves of a second plot.
+    """Drawing with the command ``soft`` (n, 2), the ``curves``, and the curves ``below`` of a second plot.
 
-    ``equal``: both axes are lengths, in one scale. ``marks`` are places with their words. ``names`` say what
-    is shown upwards, upwards in the second plot, and across; {unit} in them is that of a length.
+    ``equal`` means that both axes are lengths with one scale. ``marks`` are points with labels. ``names`` are
+    the labels of the vertical axis, the second vertical axis and the horizontal axis. In a label, {unit} is
+    replaced by the unit of length.
     """
 
     soft: FloatArray = field(default_factory=lambda: np.empty((0, 2)))
@@ -23,11 +24,11 @@ class Drawing:
     below: tuple[FloatArray, ...] = ()
     marks: tuple[tuple[float, float, str], ...] = ()
     equal: bool = True
-    lengths: bool = True  # what is shown upwards
-    lengths_below: bool = False  # what the second plot shows upwards is a length too
+    lengths: bool = True  # the vertical axis is a length
+    lengths_below: bool = False  # the vertical axis of the second plot is a length
     names: tuple[str, str, str] = ("", "", "")
 
     @property
     def downwards(self) -> bool:
-        """Whether the upright axis grows downwards: X of a lathe does, as the operator sees the slide."""
+        """Whether the vertical axis points down, as X of a lathe does for the operator."""
         return self.equal and self.names[0].startswith("X")

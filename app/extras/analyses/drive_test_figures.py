@@ -1,6 +1,6 @@
-"""Figures of a drive test: step, ramp and sine responses, bandwidth, and what another window would do.
+"""Results of a drive test: step, ramp and sine responses, bandwidth, and the effect of other limits.
 
-A record of a test carries in its words what was played, so that one that is opened again tells the same.
+The record of a test contains the commanded test path, so that a stored record gives the same results.
 """
 
 from __future__ import annotations
@@ -33,20 +33,20 @@ from core.message import Message
 from core.records.record import AnalysisError, Record
 
 FloatArray = npt.NDArray[np.float64]
-TESTED = "drive test"  # of a record's words
-BEFORE = 0.1  # s of rest before a test that belong to it
-_SETTLES = 0.9 * PAUSE  # s of the rest behind a way that belong to it
+TESTED = "drive test"  # key of the test path in a record
+BEFORE = 0.1  # seconds of rest before a test that are included
+_SETTLES = 0.9 * PAUSE  # seconds of rest after a move that are included
 _NAMES = {Shape.STEP: "STEP", Shape.RAMP: "RAMP", Shape.SINE: "SINE"}
 
 
 def words_of(path: DriveTestPath) -> str:
-    """What was played, as a record keeps it."""
+    """Return the test path in the form for the record."""
     told = (path.axis, path.shape.value, path.size, path.speed, path.frequencies)
     return json.dumps(told)
 
 
 def path_in(record: Record) -> DriveTestPath | None:
-    """What was played in this record; None: it is none of a test."""
+    """Return the test path of a record, or None if the record is not from a drive test."""
     try:
         axis, shape, size, speed, frequencies = json.loads(record.about.get(TESTED, ""))
         return DriveTestPath(
@@ -58,7 +58,7 @@ def path_in(record: Record) -> DriveTestPath | None:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class DriveTestFigures:
-    """One test: of each way, out and back, its response; or of each frequency."""
+    """Results of one test: the response of the outbound and the return move, or of each frequency."""
 
     path: DriveTestPath
     move: Moved
@@ -68,7 +68,7 @@ class DriveTestFigures:
 
 
 def drive_test_figures(record: Record, path: DriveTestPath, drives: Mapping[str, Axis]) -> DriveTestFigures:
-    """Worked out of the record of a whole test. Raises AnalysisError."""
+    """Calculate the results from the record of a complete test. Raises AnalysisError."""
     name, axis = Message("{item} demand", item=path.axis), drives.get(path.axis)
     if axis is None or name not in record.columns:
         raise AnalysisError(tr(Message("this machine has no {axis} axis", axis=path.axis)), "no-axis")
@@ -106,18 +106,18 @@ def _about(times: FloatArray, begin: float, end: float) -> slice:
 
 
 def _sine(record: Record, path: DriveTestPath, first: int, last: int, frequency: float) -> SineResponse:
-    """Without its first wave, in which the axis swings in."""
+    """Return the sine response without the first period, in which the axis settles."""
     times = record.times
     cut = _about(times, float(times[first]) + 1.0 / frequency, float(times[last]))
     asked, done = (record.columns[f"{path.axis} {what}"][cut] for what in ("demand", "actual"))
     return sine_response(times[cut], asked, done, frequency)
 
 
-# --- shown ----------------------------------------------------------------------------------------------
+# --- display --------------------------------------------------------------------------------------------
 
 
 def shown_words(path: DriveTestPath, metric: bool) -> str:
-    """What is played, in words."""
+    """Return the test path as display text."""
     units = Units(metric)
     words = (
         f"{path.axis}{'+' if path.size > 0.0 else '−'}  {tr(_NAMES[path.shape])}  {units.way(abs(path.size))}"
@@ -132,7 +132,7 @@ def shown_words(path: DriveTestPath, metric: bool) -> str:
 
 
 class Part(Enum):
-    """Which of its figures are shown; they do not fit on one small screen."""
+    """Displayed part of the results, because a small screen cannot show all."""
 
     RESPONSE = "response"
     WINDOW = "window"
@@ -140,7 +140,7 @@ class Part(Enum):
 
 
 def figures_sheet(title: str, found: DriveTestFigures, metric: bool, part: Part = Part.ALL) -> Sheet:
-    """Responses first, then what the window is to them."""
+    """Return the table of responses, followed by the effect of the limits."""
     units = Units(metric)
     rows = [Row(cells) for cells in _responses(found, units)] if part is not Part.WINDOW else []
     rows += map(Row, window_rows(found.move, units)) if part is not Part.RESPONSE else ()
@@ -164,7 +164,7 @@ def _responses(found: DriveTestFigures, units: Units) -> list[tuple[str, ...]]:
 
 
 def _gain(ramp: RampResponse) -> str:
-    """The gain of the position loop as its lag tells it, Kv = v/e; none where feed-forward takes the lag."""
+    """Return the gain of the position loop, Kv = v/e, or a dash if feedforward removes the lag."""
     return f"{formats.fixed(1.0 / abs(ramp.lag), 0)} /s" if abs(ramp.lag) > 1e-5 else formats.NOTHING
 
 

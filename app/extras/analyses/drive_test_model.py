@@ -1,7 +1,7 @@
-"""Drive test: what is chosen, the travel it asks for, the key that is held for it, and its figures.
+"""Model of the drive test: selection, travel, motion and results.
 
-The first press of an arrow asks and shows the travel; the next one of the same arrow moves the slide, for as
-long as it is held. Nothing is written to a drive.
+The first press of an arrow key shows the travel. The next press of the same key moves the axis while the key
+is held down. The test writes nothing to a drive.
 """
 
 from __future__ import annotations
@@ -46,16 +46,19 @@ from core.records.record import AnalysisError, Record
 SHAPES = {Shape.STEP: "STEP", Shape.RAMP: "RAMP", Shape.SINE: "SINE"}
 INCH_SIZES, MM_SIZES = (0.002, 0.005, 0.01, 0.02, 0.05, 0.1), (0.05, 0.1, 0.2, 0.5, 1.0, 2.5)
 INCH_RAMPS, MM_RAMPS = (0.1, 0.2, 0.5, 1.0), (2.5, 5.0, 10.0, 25.0)
-INCH_SPEEDS, MM_SPEEDS = (5.0, 20.0, 50.0, 100.0), (125.0, 500.0, 1250.0, 2500.0)  # a minute
+INCH_SPEEDS, MM_SPEEDS = (5.0, 20.0, 50.0, 100.0), (125.0, 500.0, 1250.0, 2500.0)  # per minute
 SERIES = (1.0, 2.0, 5.0, 10.0, 20.0, 40.0)  # Hz
-_SETTLED = 0.3  # s behind a test until its last samples are there
+_SETTLED = 0.3  # seconds after a test until its last samples are available
 
 Asked = tuple[str, int]  # axis and sign
 
 
 @dataclass(slots=True)
 class HeldTest(HeldJog):
-    """As a held jog; ``path`` is what a direction asks for now, ``asked`` the one whose travel is shown."""
+    """Key of a drive test that must be held down.
+
+    ``path`` returns the test path, and ``asked`` is the direction whose travel is shown.
+    """
 
     starting: ClassVar[Starting] = Starting.DRIVE_TEST
     path: Callable[[str, int], DriveTestPath] = field(kw_only=True)
@@ -78,7 +81,10 @@ class HeldTest(HeldJog):
 
 @dataclass(slots=True)
 class DriveTests:
-    """``drives`` are the slides by letter. ``part`` of the last test's figures is shown; None: the choice."""
+    """Model of the drive test page. ``drives`` are the linear axes by letter.
+
+    ``part`` is the displayed part of the last results, or None for the selection.
+    """
 
     desk: Desk
     scope: Scope
@@ -87,15 +93,15 @@ class DriveTests:
     size: int = 2
     way: int = 1
     speed: int = 1
-    hertz: int = 0  # 0: the series, else one of its sines
+    hertz: int = 0  # 0 for the series, otherwise the number of a single sine
     part: Part | None = None
     found: DriveTestFigures | None = None
-    kept: str = ""  # the file of the last test
+    kept: str = ""  # file of the last test
     hold: HeldTest = field(init=False)
     directions: tuple[JogDirection, ...] = ()
     drives: Mapping[str, Axis] = field(default_factory=dict)
-    _begun: tuple[DriveTestPath, int] | None = None  # under way, and its number
-    _whole: int = -1  # tests that had come to their end
+    _begun: tuple[DriveTestPath, int] | None = None  # active test and its number
+    _whole: int = -1  # number of completed tests at the start
 
     def __post_init__(self) -> None:
         desk, machine = self.desk, self.machine
@@ -116,19 +122,19 @@ class DriveTests:
     def _now(self) -> float:
         return self.desk.hands.clock()
 
-    # --- what is chosen ------------------------------------------------------------------------------
+    # --- selection -----------------------------------------------------------------------------------
 
     @property
     def metric(self) -> bool:
-        """Whether lengths are chosen and shown in mm."""
+        """Whether lengths are selected and displayed in mm."""
         return self.scope.metric
 
     def _of(self, inches: tuple[float, ...], mm: tuple[float, ...], at: int) -> float:
-        """One of a row of lengths, mm."""
+        """Return a length of a series in mm."""
         return mm[at] if self.metric else inches[at] * MM_PER_INCH
 
     def path(self, axis: str, sign: int) -> DriveTestPath:
-        """What is played in this direction."""
+        """Return the test path for a direction."""
         if self.shape is Shape.RAMP:
             size = self._of(INCH_RAMPS, MM_RAMPS, self.way)
             return DriveTestPath(
@@ -148,12 +154,12 @@ class DriveTests:
         return Limits(min(model.vmax, machine.limits.manual_rapid), model.amax, rate)
 
     def next_shape(self) -> None:
-        """F2: step, ramp, sine."""
+        """Select the next shape: step, ramp or sine (F2)."""
         self._choose()
         self.shape = following(Shape, self.shape)
 
     def next_size(self) -> None:
-        """F3: larger, and from the largest to the smallest."""
+        """Select the next larger size. The smallest size follows the largest (F3)."""
         self._choose()
         if self.shape is Shape.RAMP:
             self.way = (self.way + 1) % len(INCH_RAMPS)
@@ -161,7 +167,7 @@ class DriveTests:
             self.size = (self.size + 1) % len(INCH_SIZES)
 
     def next_speed(self) -> None:
-        """F4: of a ramp its speed, of a sine its frequency."""
+        """Select the next speed of a ramp or the next frequency of a sine (F4)."""
         self._choose()
         if self.shape is Shape.RAMP:
             self.speed = (self.speed + 1) % len(INCH_SPEEDS)
@@ -169,7 +175,7 @@ class DriveTests:
             self.hertz = (self.hertz + 1) % (len(SERIES) + 1)
 
     def toggle_figures(self) -> None:
-        """F5: the figures of the last test, its window, what is chosen for the next."""
+        """Show the next part of the results, or the selection (F5)."""
         self.desk.clear()
         if self.found is None:
             self.desk.say(tr("NO TEST VALUES YET. RUN A TEST FIRST"))
@@ -177,7 +183,7 @@ class DriveTests:
             self.part = following((None, Part.RESPONSE, Part.WINDOW), self.part)
 
     def choose(self, row: int) -> None:
-        """A finger on one of the rows."""
+        """Change the setting of the touched row."""
         if self.part is None:
             actions = (self.next_shape, self.next_size, self.next_speed)
             if row < len(actions):
@@ -188,10 +194,10 @@ class DriveTests:
         self.hold.let_go(tr("TEST STOPPED: ANOTHER TEST WAS SELECTED"))
         self.hold.asked, self.part = None, None
 
-    # --- may it, and where does it go ------------------------------------------------------------------
+    # --- conditions and travel -------------------------------------------------------------------------
 
     def barred(self) -> str:
-        """Why nothing is tested now; empty when it may be."""
+        """Return the reason why no test is possible now, or an empty string."""
         snapshot = self.desk.snapshot()
         if self.desk.window.is_stop_held():
             return tr(STOP_HELD)
@@ -202,7 +208,10 @@ class DriveTests:
         return why_no_jog(snapshot.state)
 
     def refusal(self, asked: Asked) -> str:
-        """Why this direction is not tested; empty when it may be. The control looks at it again."""
+        """Return the reason why this direction cannot be tested, or an empty string.
+
+        The control checks again.
+        """
         axis, sign = asked
         snapshot, model = self.desk.snapshot(), self.machine.axis(axis)
         index = snapshot.axes.index(axis)
@@ -220,7 +229,7 @@ class DriveTests:
         return ""
 
     def travel(self, asked: Asked) -> str:
-        """From where to where it goes, on the machine's scale, and how long."""
+        """Return the text about start, end and duration of the travel in machine coordinates."""
         axis, sign = asked
         units, snapshot = Units(self.metric), self.desk.snapshot()
         path, limits = self.path(axis, sign), self._limits(axis)
@@ -237,7 +246,7 @@ class DriveTests:
         )
 
     def asks(self) -> str:
-        """The question that stands: the travel that the next press would make."""
+        """Return the question about the travel of the next press, or an empty string."""
         asked = self.hold.asked
         if asked is None or self.hold.held is not None:
             return ""
@@ -253,10 +262,13 @@ class DriveTests:
     # --- every frame ---------------------------------------------------------------------------------
 
     def look(self, snapshot: Snapshot) -> None:
-        """Renew what is held, and follow the test that is under way."""
+        """Renew the motion while the key is held down, and follow the active test.
+
+        Called once per frame.
+        """
         self.hold.look(snapshot)
         if snapshot.state not in BY_HAND:
-            self.hold.asked = None  # an alarm or the E-stop has the prompt line
+            self.hold.asked = None  # The prompt line belongs to an alarm or the E-stop.
         self.scope.filing.poll()
         told = snapshot.drive_test
         if self.hold.held is not None and (self._begun is None or told.axis == ""):
@@ -267,7 +279,7 @@ class DriveTests:
             self._ended(snapshot)
 
     def _ended(self, snapshot: Snapshot) -> None:
-        """It is over: a whole one is analysed once its last samples are there."""
+        """Finish a test. A complete test is analyzed once its last samples are available."""
         assert self._begun is not None
         told, live = snapshot.drive_test, self.scope.live
         if told.whole == self._whole or live is None:
@@ -306,23 +318,23 @@ class DriveTests:
     # --- keys ----------------------------------------------------------------------------------------
 
     def finger(self, source: str, axis: str, sign: int) -> None:
-        """A finger or the mouse goes down on a direction."""
+        """Handle a touch or mouse press on a direction."""
         self.hold.press(source, axis, sign, rapid=False)
 
     def typed(self, _key: str) -> bool:
-        """Nothing is typed here."""
+        """Return False, because this page has no entry."""
         return False
 
     def takes(self, _key: str) -> bool:
-        """No character is text here."""
+        """Return False, because this page has no entry."""
         return False
 
     def opened(self) -> None:
-        """The page comes up: nothing is asked."""
+        """Clear the requested direction when the page opens."""
         self.hold.asked = None
 
     def escape(self) -> bool:
-        """Ends what is held, takes the question back; False when the page may be left."""
+        """Stop the motion or clear the question. Return False if the page can close."""
         if self.hold.held is not None:
             self.hold.let_go()
             return True
@@ -331,16 +343,16 @@ class DriveTests:
 
     @property
     def active(self) -> bool:
-        """Whether something is held."""
+        """Whether a key is held down."""
         return self.hold.held is not None
 
     def let_go(self) -> None:
-        """Hands off: the keyboard, the window or the page is gone."""
+        """Stop the motion, because the keyboard, the window or the page has lost the focus."""
         self.hold.let_go(tr("TEST STOPPED: THIS PAGE NO LONGER HAS KEYBOARD FOCUS"))
         self.hold.asked = None
 
     def leave(self) -> None:
-        """The page goes: nothing stays held or asked."""
+        """Stop all motion and clear the question when the page closes."""
         self.hold.let_go()
         if self.desk.snapshot().state is State.JOG:
             self.desk.post(JogStop())
@@ -348,12 +360,12 @@ class DriveTests:
         self.desk.clear()
 
     def close(self) -> None:
-        """The desk shuts; its worker is the scope's."""
+        """Do nothing, because the worker belongs to the scope."""
 
-    # --- what is shown -------------------------------------------------------------------------------
+    # --- display -------------------------------------------------------------------------------------
 
     def prompt(self) -> str:
-        """What may be done now."""
+        """Return the prompt for the present state."""
         why = self.barred()
         if why:
             return why
@@ -364,17 +376,17 @@ class DriveTests:
         return tr("PRESS ARROW: SHOW TRAVEL   HOLD ARROW: RUN TEST   F5: VALUES")
 
     def drawing(self) -> Drawing:
-        """Asked and done of the last test."""
+        """Return the drawing of command and actual position of the last test."""
         return response_drawing(self.found.move) if self.found is not None else Drawing()
 
     def words(self) -> str:
-        """What the drawing shows."""
+        """Return the description of the drawing."""
         if self.found is None:
             return tr("no test has been run yet")
         return shown_words(self.found.path, self.metric) + "  ·  " + self.kept
 
     def sheet(self) -> Sheet:
-        """What is chosen, or the figures of the last test."""
+        """Return the table of the selection, or the results of the last test."""
         if self.part is not None and self.found is not None:
             return figures_sheet(tr("DRIVE TEST"), self.found, self.metric, self.part)
         units = Units(self.metric)
@@ -410,7 +422,7 @@ class DriveTests:
         return Sheet(tr("DRIVE TEST"), heads, shares, tuple(rows), notes=notes, figures=frozenset({2}))
 
     def _axis_rows(self, units: Units) -> list[Row]:
-        """Of each slide what the watch allows it, and what it has been off at most since the start."""
+        """Return the permitted following error of each linear axis at standstill and at full speed."""
         return [
             Row(
                 (

@@ -1,4 +1,4 @@
-"""The page of the drive tests: asked and done drawn, the cross to hold, the choice and the figures."""
+"""Page of the drive tests: drawing, arrow pad, selection and results."""
 
 from __future__ import annotations
 
@@ -22,11 +22,14 @@ from app.screen.sheet_panel import SheetPanel
 from core.executor.snapshot import Snapshot
 from core.message import Message
 
-_TABLE, _HEAD, _PAD = 50.0, 3.4, 0.42  # units, units, share of the height
+_TABLE, _HEAD, _PAD = 50.0, 3.4, 0.42  # units, units, ratio of the height
 
 
 class DriveTestPad(JogCross):
-    """The cross: a press asks, the next one is held."""
+    """Arrow pad of the drive test.
+
+    The first press requests a direction. The next press runs the test while the key is held down.
+    """
 
     shown: Shown[object] = Shown(None)
 
@@ -46,7 +49,10 @@ class DriveTestPad(JogCross):
 
 
 class DriveTestPage(HeldKeysPage):
-    """What is held is renewed from ``refresh``: a screen that stands still moves nothing for longer."""
+    """Page of the drive tests.
+
+    ``refresh`` renews the motion while a key is held down, so that a frozen screen stops the axis.
+    """
 
     NAME = "DRIVE TEST"
     LABELS = ("MENU", "SHAPE", "SIZE", "SPEED", "VALUES", "", "ALARMS", "ANALYZE", "JOG", "")
@@ -61,12 +67,12 @@ class DriveTestPage(HeldKeysPage):
         self.table = SheetPanel(self.look, model.choose, self)
 
     def ahead(self) -> bool:
-        """The chart, then its plots."""
+        """Create the chart and its plots in steps, before the page is first shown."""
         self.model.scope.filing.poll()
         return not self.drawing.ready()
 
     def key_actions(self) -> KeyActions:
-        """The choice, figures, and the pages beside it."""
+        """Return the actions for the selection, the results and the related pages."""
         model = self.model
         return {
             "F2": model.next_shape,
@@ -78,29 +84,29 @@ class DriveTestPage(HeldKeysPage):
         }
 
     def barred(self) -> frozenset[str]:
-        """Return the key of the figures until a test was played."""
+        """Return the key of the results as barred until a test has run."""
         return frozenset() if self.model.found is not None else frozenset({"F5"})
 
     def asks(self) -> str:
-        """The travel that the next press would make."""
+        """Return the question about the travel of the next press."""
         return self.model.asks()
 
     def prompt(self) -> str:
-        """What may be done now."""
+        """Return the prompt for the present state."""
         return self.model.prompt()
 
     def lively(self) -> bool:
-        """Something is held."""
+        """Return whether a key is held down."""
         return self.model.active
 
     def leave(self) -> bool:
-        """Nothing stays held or asked."""
+        """Stop all motion, and return True."""
         self.pad.let_go()
         self.model.leave()
         return True
 
     def refresh(self, snapshot: Snapshot, _view: MachineStatus, _loaded: Loaded) -> None:
-        """Renew what is held, show what is so."""
+        """Renew the motion while a key is held down, and update the page."""
         if not self._has_keyboard():
             self.let_go_if_held()
         model = self.model
@@ -111,11 +117,11 @@ class DriveTestPage(HeldKeysPage):
         self.drawing.show_drawing((model.found, model.metric), model.drawing, metric=model.metric)
 
     def dress(self) -> None:
-        """Other colours, or another language, are in force."""
+        """Apply the present colors and language."""
         self.drawing.dress()
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """Drawing over the cross at the left, choice and figures at the right."""
+        """Arrange drawing and arrow pad on the left, and the table on the right."""
         u = self.look.u
         gap, side, high = max(4, round(0.7 * u)), round(_TABLE * u), round(_HEAD * u)
         left, pad = self.width() - side - gap, round(_PAD * self.height())

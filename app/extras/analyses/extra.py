@@ -1,4 +1,4 @@
-"""Registers the analyses of scope records, and the drive tests."""
+"""Registration of the analyses of scope records and of the drive tests."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _DRIVE_TESTS = "app.extras.analyses.drive_test_model.DriveTests"
 
 
 class ScopeAnalyses(Extra):
-    """The page ANALYSES, which the scope opens, and the page DRIVE TEST."""
+    """Optional feature with the pages ANALYSES, which the scope opens, and DRIVE TEST."""
 
     @property
     def pages(self) -> Sequence[PageEntry]:

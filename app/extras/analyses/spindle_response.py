@@ -1,6 +1,6 @@
-"""Response of the spindle to the last speed it was brought to: rise, overshoot, time until at speed, swing.
+"""Response of the spindle to the last change of speed: rise, overshoot, time to settle and variation.
 
-Read off the record of a run-up that was made anyway: the spindle is turned by programs and MDI alone.
+The analysis uses the record of an ordinary run-up. Only programs and MDI turn the spindle.
 """
 
 from __future__ import annotations
@@ -21,19 +21,19 @@ from core.message import Message
 from core.records.record import AnalysisError, Record
 
 FloatArray = npt.NDArray[np.float64]
-_CHANGE = 1.0  # rpm by which a command differs from the one before
-_ONE = 0.15  # s between two changes of one run-up: a pot that is turned, a surface speed
-_BEFORE, _BEHIND, _MOST = 0.2, 2.0, 15.0  # s that belong to it; once it is there, and where it never is
-WINDOWS = (0.02, 0.01)  # of the speed
+_CHANGE = 1.0  # rpm: minimum change of the command
+_ONE = 0.15  # seconds between two changes of one run-up, as by a pot or constant surface speed
+_BEFORE, _BEHIND, _MOST = 0.2, 2.0, 15.0  # seconds before the change, after reaching the speed, and at most
+WINDOWS = (0.02, 0.01)  # ratios to the speed
 _SHARES = (0.62, 0.38)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SpindleResponse:
-    """One change of speed; ``times`` (n,) s from it on, ``asked`` and ``turned`` (n,) rpm.
+    """Response to one change of speed. ``times`` (n,) are seconds from the change, speeds are (n,) in rpm.
 
-    ``steps`` by the machine file's window of at speed, then by each of ``WINDOWS``. ``swing`` rpm from least
-    to greatest and ``off`` rpm of the mean, over the last second.
+    ``steps`` are the responses for the at-speed tolerance of the machine file and for each of ``WINDOWS``.
+    ``swing`` is the peak-to-peak variation and ``off`` the mean error in rpm over the last second.
     """
 
     times: FloatArray
@@ -46,13 +46,13 @@ class SpindleResponse:
 
     @property
     def acceleration(self) -> float:
-        """From 10 to 90 % of the way, rpm/s; inf where both lie in one sample."""
+        """Acceleration from 10 to 90 % of the change in rpm/s; inf if both are in one sample."""
         step = self.steps[0]
         return 0.8 * abs(step.way) / step.rise if step.rise > 0.0 else np.inf
 
 
 def last_run_up(record: Record, model: SpindleModel | None) -> SpindleResponse:
-    """The last change to a speed that is not 0. Raises AnalysisError."""
+    """Return the response to the last change to a speed other than 0. Raises AnalysisError."""
     if model is None:
         raise AnalysisError(tr("this machine has no spindle"), "no-spindle")
     nothing = np.full(len(record.times), np.nan)
@@ -107,21 +107,21 @@ def _shares(model: SpindleModel) -> tuple[float, ...]:
 
 
 def _stayed(step: StepResponse, times: FloatArray, model: SpindleModel) -> StepResponse:
-    """A speed that only passes through a window at the end of the record has not settled in it."""
+    """Return the response, with settling set to nan if the speed only passed through the tolerance band."""
     if times[-1] - step.settling >= model.at_speed_time:
         return step
     return replace(step, settling=math.nan)
 
 
 def spindle_drawing(found: SpindleResponse) -> Drawing:
-    """Asked and turned over seconds."""
+    """Return the drawing of commanded and actual speed over seconds."""
     asked, turned = (np.column_stack([found.times, each]) for each in (found.asked, found.turned))
     names = Message("{title}  rpm", title=tr("SPINDLE")), "", "s"
     return Drawing(asked, (turned,), equal=False, lengths=False, names=names)
 
 
 def spindle_sheet(title: str, found: SpindleResponse) -> Sheet:
-    """Its figures, and when narrower windows would call it at speed."""
+    """Return the table of the response and of the settling times for narrower tolerances."""
     step, model = found.steps[0], found.model
     target = float(found.asked[-1])
     rows = (

@@ -1,4 +1,7 @@
-"""The form of a drawing (DXF, SVG): read, planned and tried beside the screen; it writes shapes."""
+"""Form of a drawing (DXF, SVG): read, planned and tried on workers.
+
+The form writes shapes.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +31,7 @@ from core.sketch import Dim, Sketch, cut, part, sketch
 
 NO_DRAWINGS = "No drawings in the program folder: copy a DXF or SVG file into it with F6, then F8."
 CANCELED = "Reading was canceled. Press F6 to read the drawing again."
-_WORDS = {"DUNIT": (*UNITS, OWN), "LAYER": (ALL,)}  # choices of a drawing that are words of ours
+_WORDS = {"DUNIT": (*UNITS, OWN), "LAYER": (ALL,)}  # translatable choices of a drawing
 
 
 def _inside(values: Values) -> bool:
@@ -90,12 +93,12 @@ PROFILE = Shape(
 
 @dataclass(frozen=True, slots=True)
 class FromDrawing(Filled):
-    """The form of a drawing, filled in: its text are the lines of several shapes."""
+    """Filled form of a drawing. ``text`` contains the lines of several shapes."""
 
     text: tuple[str, ...] = ()
 
     def lines(self, setting: Setting) -> list[str]:
-        """As the shapes have written them."""
+        """Return the lines as the shapes have written them."""
         code = Code(setting)
         self.shape.cut(self, setting, code)
         return code.lines
@@ -103,9 +106,10 @@ class FromDrawing(Filled):
 
 @dataclass(slots=True)
 class DrawingForm(ShapeForm):
-    """``files``: the drawings there are; ``before``: the program in front; ``pending`` is to be planned.
+    """Form of a drawing. ``files`` are the available drawings and ``before`` is the preceding program text.
 
-    ``words`` say what the program needs and leaves, when it has been tried.
+    ``pending`` is the request that is being planned. ``words`` are the needs of the program and its uncut
+    parts, after the trial.
     """
 
     files: Mapping[str, Path] = field(default_factory=dict)
@@ -116,7 +120,7 @@ class DrawingForm(ShapeForm):
     canceled: bool = False
 
     def work(self) -> None:
-        """Ask for a plan of what is typed; what was planned before stays until it comes."""
+        """Request a plan for the entries. The previous plan remains until the new plan arrives."""
         self.worked += 1
         self.troubles, self.canceled = {}, False
         values: dict[str, Value] = {}
@@ -134,7 +138,10 @@ class DrawingForm(ShapeForm):
         self._show()
 
     def use_setting(self, setting: Setting) -> None:
-        """Calculate again with other tool data, except where the reading was canceled: F6 begins it again."""
+        """Calculate again with other tool data, unless the reading was canceled.
+
+        After a cancellation, F6 starts the reading again.
+        """
         if self.canceled:
             self.setting = setting
         else:
@@ -153,14 +160,14 @@ class DrawingForm(ShapeForm):
         self.one = FromDrawing(self.shape, {**known, **proposed, **values})
 
     def cancel(self) -> None:
-        """Reading is given up: nothing is planned until it is asked for again."""
+        """Cancel the reading. F6 requests a new plan."""
         self.pending, self.canceled = None, True
         self.worked += 1
         self.lines = []
         self.troubles["FILE"] = CANCELED
 
     def take(self, plan: Plan) -> None:
-        """The plan has come."""
+        """Show a finished plan."""
         self.plan, self.pending = plan, None
         self.worked += 1
         values = {word: v for word in self.typed if (v := self._value(word)) is not None}
@@ -179,7 +186,7 @@ class DrawingForm(ShapeForm):
         self.one = FromDrawing(self.shape, self.one.values, text=tuple(self.lines))
 
     def tried(self, comparison: Comparison | None, errors: tuple[str, ...]) -> None:
-        """The program was proved, and its part held against the drawing."""
+        """Show the result of the trial: the proof of the program and the comparison with the drawing."""
         plan = self.plan
         if plan is None or plan.made is None or plan.chosen is None:
             return
@@ -196,16 +203,16 @@ class DrawingForm(ShapeForm):
 
     @property
     def sketch(self) -> Sketch:
-        """The drawing with the contour that is chosen."""
+        """Drawing with the selected contour."""
         return self.plan.picture if self.plan is not None and self.plan.placed else PROFILE.sketch(self.one)
 
     @property
     def waits(self) -> bool:
-        """Whether a plan is still to come."""
+        """Whether a plan is pending."""
         return self.pending is not None
 
     def choices(self, each: Field) -> tuple[str, ...]:
-        """Of this drawing."""
+        """Return the choices of a field, including those of the drawing."""
         if each.word == "FILE":
             return tuple(self.files)
         if each.choices or self.plan is None:
@@ -213,24 +220,24 @@ class DrawingForm(ShapeForm):
         return self.plan.choices.get(each.word, ())
 
     def is_word(self, each: Field, choice: str) -> bool:
-        """Also of what the drawing brings: its layers have names, but for that of all."""
+        """Return whether a choice is a translatable word. Names of layers are not translated."""
         return choice in each.choices or choice in _WORDS.get(each.word, ())
 
     def dimension(self, word: str) -> str:
-        """The number of a contour."""
+        """Return the number of a contour, or the value of another dimension."""
         return (
             word.removeprefix("CONTOUR ") if word.startswith("CONTOUR ") else ShapeForm.dimension(self, word)
         )
 
     def go_to(self, word: str) -> None:
-        """A field, or a contour by the number that stands on it."""
+        """Select a field, or a contour by its number in the drawing."""
         if word.startswith("CONTOUR "):
             self._set("CONTOUR", word.removeprefix("CONTOUR "))
             word = "CONTOUR"
         ShapeForm.go_to(self, word)
 
     def touch_at(self, point: tuple[float, float]) -> None:
-        """The pointer on the drawing: the nearest contour; where AXIS is marked, the nearest line."""
+        """Select the touched contour, or the touched line while AXIS is selected."""
         plan = self.plan
         if plan is None or not plan.placed:
             return
@@ -262,12 +269,15 @@ Attempt = Callable[[str, Plan, Watch], tuple[Comparison | None, tuple[str, ...]]
 
 
 def nothing_tried(_text: str, _plan: Plan, _watch: Watch) -> tuple[Comparison | None, tuple[str, ...]]:
-    """Of a desk that knows no machine."""
+    """Return no result; used without machine data."""
     return None, ()
 
 
 class AddedDrawing(AddedForm):
-    """``files`` returns the drawings beside the programs; ``attempt`` tries a program that was made."""
+    """Added form for drawings.
+
+    ``files`` returns the available drawings, ``attempt`` tries a program.
+    """
 
     key, shape = "X", PROFILE
 
@@ -277,18 +287,18 @@ class AddedDrawing(AddedForm):
         self.planning, self.trying = Latest("planning-drawing"), Latest("trying-drawing")
 
     def open_form(self, setting: Setting, before: tuple[str, ...], wanted: Path | None) -> DrawingForm:
-        """With the drawings beside the programs, that which was asked for first."""
+        """Return a form with the available drawings, the requested drawing first."""
         files = dict(self.files())
         if wanted is not None:
             files = {wanted.name: wanted, **{name: path for name, path in files.items() if path != wanted}}
         return DrawingForm(PROFILE, setting, files=files, before=before)
 
     def makes_of(self, name: str) -> bool:
-        """Of a drawing."""
+        """Return whether the file is a drawing."""
         return is_drawing(name)
 
     def work(self, form: ShapeForm, show: Show, tell: Callable[[str], None]) -> None:
-        """What was typed is worked out beside the screen; then the program is tried."""
+        """Plan the entries on a worker, then try the program."""
         if not isinstance(form, DrawingForm) or form.pending is None:
             return
         asked = form.pending
@@ -305,7 +315,7 @@ class AddedDrawing(AddedForm):
         self.planning.ask(lambda watch: self.planner.plan(asked, watch), planned, failed)
 
     def _try(self, form: DrawingForm, plan: Plan, text: str | None, failed: Callable[[str], None]) -> None:
-        """``text`` is the program with what the form writes; None where the form is no longer open."""
+        """Try the program ``text``, or do nothing if the form has been closed (None)."""
         if not form.lines or text is None:
             return
 
@@ -322,7 +332,7 @@ class AddedDrawing(AddedForm):
             form.cancel()
 
     def keys(self, form: ShapeForm, show: Show) -> Mapping[int, Key]:
-        """F6 cancels the reading, and begins it again."""
+        """Return F6, which cancels the reading or starts it again."""
 
         def read_again() -> None:
             form.work()
@@ -333,7 +343,7 @@ class AddedDrawing(AddedForm):
         return {6: Key("READ", read_again)} if isinstance(form, DrawingForm) and form.canceled else {}
 
     def prompt(self, form: ShapeForm) -> str:
-        """How far the reading is, what is wrong, or what the keys do."""
+        """Return the progress of the reading, the error, or the prompt for the keys."""
         if not form.waits:
             keys = tr("LEFT/RIGHT: CHANGE   TAP DRAWING: PICK CONTOUR OR AXIS")
             return tr(form.trouble or keys)
@@ -343,11 +353,11 @@ class AddedDrawing(AddedForm):
         return tr(Message(words, seconds=self.planning.reached))
 
     def poll(self) -> None:
-        """Take up what was planned and tried."""
+        """Process the results of planning and trials."""
         self.planning.poll()
         self.trying.poll()
 
     def close(self) -> None:
-        """End both workers."""
+        """Stop both workers."""
         self.planning.close()
         self.trying.close()

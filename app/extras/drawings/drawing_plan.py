@@ -1,4 +1,4 @@
-"""A program from a drawing, worked out beside the screen: proposals, choices, lines and the picture."""
+"""Plan of a program from a drawing, calculated on a worker: proposals, choices, lines and picture."""
 
 from __future__ import annotations
 
@@ -37,14 +37,14 @@ if TYPE_CHECKING:
 
 ALL = "ALL"
 OWN = "AS DRAWN"
-_MOST_DRAWN = 3000  # elements of a picture
-_CHORD = 0.15  # rad of an arc of the picture
+_MOST_DRAWN = 3000  # maximum number of elements in a picture
+_CHORD = 0.15  # rad of an arc per chord of the picture
 _NUMBERS = ("FROM", "STOCK", "HOLE", "ROUGH", "T", "BLADE", "COMP")
 
 
 @dataclass(frozen=True, slots=True)
 class Asked:
-    """``values`` are what was typed, ``lines`` the program before it."""
+    """Request of a plan. ``values`` are the entries, and ``lines`` is the preceding program."""
 
     path: Path
     values: Values
@@ -54,7 +54,7 @@ class Asked:
 
 @dataclass(frozen=True, slots=True)
 class Placed:
-    """An element as it is drawn, (z, r) from the axis; ``number``: its line, ``net``: its contour, from 1."""
+    """Element of the drawing as (z, r) points from the axis, with its line number or contour, from 1."""
 
     points: tuple[tuple[float, float], ...]
     number: int = 0
@@ -63,7 +63,7 @@ class Placed:
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """``troubles`` by field. ``made`` and ``chosen`` are None where something is wrong."""
+    """Plan with ``troubles`` by field. ``made`` and ``chosen`` are None if there is an error."""
 
     asked: Asked
     proposals: Mapping[str, Value] = field(default_factory=dict)
@@ -76,7 +76,10 @@ class Plan:
 
 
 class Planner:
-    """Keeps the last drawing that was read; used by one worker. ``reading`` is true while a file is read."""
+    """Planner with a cache of the last drawing, used by one worker.
+
+    ``reading`` is set while a file is read.
+    """
 
     def __init__(self, read: Callable[[Path, Watch], Drawing]) -> None:
         self._read = read
@@ -84,7 +87,7 @@ class Planner:
         self.reading = False
 
     def plan(self, asked: Asked, watch: Watch) -> Plan:
-        """The plan; what is wrong stands beside its field. ``watch`` may end it."""
+        """Return the plan, with errors by field. ``watch`` can raise an exception to cancel."""
         try:
             drawing = self._drawing(asked.path, watch)
         except DrawingError as error:
@@ -110,7 +113,7 @@ class Planner:
 
 
 class _Making:
-    """One plan on its way: each step adds what is proposed, and may end it by what is wrong."""
+    """Calculation of one plan. Each step adds proposals and can end the plan with an error."""
 
     def __init__(self, drawing: Drawing, asked: Asked) -> None:
         self.drawing, self.asked = drawing, asked
@@ -120,7 +123,7 @@ class _Making:
         self.view: View | None = None
 
     def word(self, name: str, proposed: str = "") -> str:
-        """What is chosen in a field."""
+        """Return the choice of a field."""
         if proposed:
             self.proposals[name] = proposed
         value = self.asked.values.get(name, proposed)
@@ -222,7 +225,7 @@ class _Making:
         return self.nets[int(number) - 1]
 
     def _check_unit(self, net: Net) -> None:
-        """Refuse the unit of the file if the contour fits the machine in another one."""
+        """Reject the unit of the file if the contour fits the machine only in another unit."""
         assert self.view is not None
         if "DUNIT" in self.asked.values:
             return
@@ -260,11 +263,11 @@ _FIELDS = frozenset(
 
 
 def _field_of(word: str) -> str:
-    """The field of the form that a refusal of a shape is shown at."""
+    """Return the field of the form that shows a rejection by a shape."""
     return word if word in _FIELDS else "CONTOUR" if word.startswith("#") else "T"
 
 
-# --- the picture
+# --- picture ---
 
 
 def _placed(drawing: Drawing, view: View | None, nets: Sequence[Net], layer: str) -> Iterator[Placed]:
@@ -281,7 +284,7 @@ def _placed(drawing: Drawing, view: View | None, nets: Sequence[Net], layer: str
 
 
 def _polyline(each: Element) -> tuple[tuple[float, float], ...]:
-    """(z, r), arcs in chords."""
+    """Return the (z, r) points of an element, with arcs as chords."""
     if isinstance(each, Line):
         return _turned([each.start, each.end])
     assert isinstance(each, Arc)
@@ -294,7 +297,7 @@ def _turned(points: Iterable[tuple[float, float]]) -> tuple[tuple[float, float],
 
 
 def pictured(plan: Plan, number: int, comparison: Comparison | None = None) -> Sketch:
-    """The drawing about its axis, the chosen contour, and in red what stays of it or is cut too deep."""
+    """Return the drawing with its axis and the selected contour, with uncut and wrongly cut parts in red."""
     drawn = [Outline(each.points, "part") for each in plan.placed if each.number]
     outlines = [*drawn, *(Outline(p.points, "far") for p in plan.placed if p.net and p.net != number)]
     here = [Outline(each.points, "cut") for each in plan.placed if each.net == number]
@@ -314,7 +317,7 @@ def pictured(plan: Plan, number: int, comparison: Comparison | None = None) -> S
 
 
 def _left(plan: Plan, number: int, comparison: Comparison | None) -> Iterator[Outline]:
-    """The pieces of the contour at which the part is another than the drawing."""
+    """Yield the sections of the contour where the part differs from the drawing."""
     if plan.chosen is None or plan.made is None:
         return
     spans = [(each.back, each.front) for each in plan.made.left]

@@ -1,4 +1,4 @@
-"""The form of a drawing on a desk: the drawings beside its programs, and the trial with its tools."""
+"""Setup of the drawing form: available drawings and the trial with the present tools."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def add_drawing(shapes: Shapes, desk: Desk, machine: Machine) -> None:
 def attempt(
     machine: Machine, shapes: Callable[[], Mapping[int, ToolShape]], text: str, plan: Plan, watch: Watch
 ) -> tuple[Comparison | None, tuple[str, ...]]:
-    """The program on the bar that the form names, with the tools of the moment."""
+    """Prove the program with the stock of the form and the present tools, and compare the part."""
     made, chosen, mm = plan.made, plan.chosen, plan.asked.setting.mm
     if made is None or chosen is None:
         return None, ()

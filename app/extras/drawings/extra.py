@@ -1,4 +1,4 @@
-"""Registers the programs that are made from drawings (DXF, SVG)."""
+"""Registration of programs that are made from drawings (DXF, SVG)."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class Drawings(Extra):
-    """The form DRAWING in the list of shapes, ``turndesk profile``, and drawings in the list of programs."""
+    """Optional feature with the form DRAWING, ``turndesk profile``, and drawings in the program list."""
 
     needs = ("shapes",)
     commands = {

@@ -1,4 +1,4 @@
-"""``turndesk profile PART.dxf``: the contour of a drawing, and the program that turns it; its JSON keys."""
+"""Command ``turndesk profile PART.dxf``: the contour of a drawing, its turning program, and the JSON keys."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 
 def add_parser(subparsers: SubParsers) -> None:
-    """Declare the command."""
+    """Declare the options of the command."""
     parser = subparsers.add_parser("profile")
     parser.add_argument("file", metavar="DRAWING")
     parser.add_argument(
@@ -137,7 +137,10 @@ def _add_tool_options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Write the program, and say what stays of the drawing; 1 when the program would have errors."""
+    """Write the program and report uncut parts of the drawing.
+
+    Return 1 if the program has errors.
+    """
     from core.extras.drawings.drawing import DrawingError, limited_work
 
     with as_command_error(DrawingError), limited_work(lambda _seconds: None):
@@ -192,7 +195,7 @@ def _run(args: argparse.Namespace) -> int:
 
 
 def _check_unit(drawing: Drawing, view: View, net: Net, machine: Machine) -> None:
-    """Refuse a contour that is too large for the machine only because of the unit that its file states."""
+    """Raise CommandError if the contour is too large for the machine only because of the unit of its file."""
     from app.extras.shapes.shapes_desk import shop_of
     from core.extras.drawings.unit_check import wrong_unit
 
@@ -210,7 +213,10 @@ def _check_unit(drawing: Drawing, view: View, net: Net, machine: Machine) -> Non
 
 
 def _language(args: argparse.Namespace, machine: Machine) -> Dialect:
-    """By the name of the program, without one that of the machine."""
+    """Return the language of the output file name, or else of the machine.
+
+    Raises CommandError for Klartext.
+    """
     if args.out is None:
         return Dialect.SINUMERIK if machine.language == Dialect.SINUMERIK else Dialect.OMNITURN
     said = dialect_of(Path(args.out).name)
@@ -352,7 +358,7 @@ def _shapes(args: argparse.Namespace) -> Mapping[int, ToolShape]:
 
 
 def _typed(chosen: Profile, args: argparse.Namespace, shapes: Mapping[int, ToolShape]) -> dict[str, Value]:
-    """The fields of the shapes, lengths in the unit of the program."""
+    """Return the field values of the shapes, with lengths in the unit of the program."""
     from core.extras.drawings.profile_job import proposed_fields
 
     said: dict[str, Value | None] = {

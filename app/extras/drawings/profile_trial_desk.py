@@ -1,4 +1,4 @@
-"""A program that was made of a drawing, tried before it is written: its part held against the drawing."""
+"""Trial of a program from a drawing: proof, and comparison of the part with the drawing."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ from core.part.tool_shape import ToolShape
 from core.proving.part_proof import prove_with_part
 from core.tool_edges import edge_key
 
-_SPARE = 10.0  # mm of stock behind the part
+_SPARE = 10.0  # mm of stock beyond the part
 _HOME = ToolOffset(12.7, -76.2)
 
 
 @dataclass(frozen=True, slots=True)
 class TrialStock:
-    """mm: the bar, what stands before the face, and the hole that is drilled already."""
+    """Stock of a trial in mm: bar diameter, material in front of the face, and predrilled hole."""
 
     diameter: float
     before_face: float = 0.0
@@ -35,7 +35,10 @@ class TrialStock:
 
 @dataclass(frozen=True, slots=True)
 class Trial:
-    """``comparison`` is None where the program makes no part; ``errors`` are what proving found wrong."""
+    """Result of a trial.
+
+    ``comparison`` is None if the program makes no part, ``errors`` are from the proof.
+    """
 
     comparison: Comparison | None
     errors: tuple[str, ...] = ()
@@ -51,7 +54,7 @@ def tried(
     watch: Callable[[float], None] | None = None,
     dialect: Dialect = Dialect.OMNITURN,
 ) -> Trial:
-    """The proof of the program with tools touched off at one place and the nose offset that it needs."""
+    """Prove the program with all tools at one position and the required nose offset, and compare the part."""
     of_edge = nose is not None and nose.quadrant
     secondary = {nose.number: SecondaryOffset(nose.x, nose.z, nose.r)} if nose and not of_edge else {}
     tools = dict.fromkeys(range(1, 33), _HOME)

@@ -1,4 +1,4 @@
-"""Registers the job queue."""
+"""Registration of the job queue."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class Jobs(Extra):
-    """The page JOBS with its special function and its key in the program list, and ``turndesk jobs``."""
+    """Optional feature with the page JOBS, its special function and ``turndesk jobs``."""
 
     commands = {
         "jobs": Subcommand("parts", "manage the queue of programs to run next, with their part counts"),

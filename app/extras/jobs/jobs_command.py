@@ -1,4 +1,4 @@
-"""``turndesk jobs``: the queue of programs, how many parts of each, and the keys of its JSON."""
+"""Command ``turndesk jobs``: queue of programs with their number of parts, and the keys of its JSON."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def add_parser(subparsers: SubParsers) -> None:
-    """The subcommand with its actions."""
+    """Declare the actions and options of the command."""
     parser = subparsers.add_parser("jobs")
     actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
     listing = actions.add_parser("list", help="list the queue in order, with the number of parts made")
@@ -51,7 +51,7 @@ def add_parser(subparsers: SubParsers) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Does what ``args`` asks; raises CommandError with one sentence."""
+    """Execute the action. Raises CommandError."""
     with opened_store(read_only=args.action == "list") as store:
         who = who_changes(store, args, Act.JOBS) if args.action != "list" else COMMAND_LINE
         told = _ACTIONS[args.action](store, args)

@@ -1,4 +1,4 @@
-"""The queue of jobs of a desk: what proves the next one, put together and given to it."""
+"""Setup of the job queue, including the proof of the next job."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ Before = Callable[[str], tuple[str, dict[int, ToolRow]]]
 
 
 def attach_jobs(desk: Desk, machine: Machine, journal: Journal | None, work: LoadingSteps) -> None:
-    """Give the desk the queue and its page, and the list of programs its key."""
+    """Attach the job queue, its page and its key in the program list to TurnDesk."""
     parts = desk.pages.find(PartsWatch)
     if parts is None:
         return
@@ -54,7 +54,10 @@ def _proved(
     program: str,
     watch: Watch,
 ) -> ProvedJob:
-    """On the worker: its setup sheet, with the offsets and shapes of this moment. Raises ValueError."""
+    """Return the setup sheet of a program with the present offsets and shapes.
+
+    Runs on a worker. Raises ValueError if the program is not in the list.
+    """
     from app.special.setup_sheet import setup_sheet
 
     path = desk.programs.folders.find(program)

@@ -1,4 +1,4 @@
-"""The page of jobs: the queue, what the marked one needs on the plate, the operator's keys. Without Qt."""
+"""Model of the page JOBS without Qt: queue, setup of the selected job, and keys."""
 
 from __future__ import annotations
 
@@ -29,42 +29,45 @@ from core.store.store_file import notes_key
 
 NONE_YET = "NO JOBS. F3: ADD LOADED PROGRAM   F1, F6, THEN F10: ADD JOB"
 NO_PROGRAM = "F1, THEN F2: LOAD PROGRAM   F1, F6, THEN F10: ADD JOB"
-_WIDE = 46  # letters of a cell
+_WIDE = 46  # characters of a cell
 
 
 @dataclass(slots=True)
 class JobsModel:
-    """``asking``: what is typed: a count or a note, of the marked job or of a new one of ``program``."""
+    """Model of the page JOBS.
+
+    ``asking`` is the entry of a count or note for the selected or a new job.
+    """
 
     desk: Desk
     watch: JobsWatch
     marked: int = 0
-    asking: str = ""  # "count" or "note"
-    program: str = ""  # of the job that is being added
+    asking: str = ""  # "count", "note" or empty
+    program: str = ""  # program of the job that is being added
     entry: Entry = field(default_factory=Entry)
     _notes: tuple[str, tuple[str, ...]] = ("", ())
     _sheets: tuple[object, Sheet, Sheet] | None = None
 
-    # --- what is shown -------------------------------------------------------------------------------
+    # --- display -------------------------------------------------------------------------------------
 
     @property
     def jobs(self) -> tuple[JobRow, ...]:
-        """The queue."""
+        """Jobs of the queue."""
         return self.watch.jobs
 
     @property
     def job(self) -> JobRow | None:
-        """The marked one."""
+        """Selected job, or None."""
         return self.jobs[self.marked] if self.marked < len(self.jobs) else None
 
     @property
     def locked(self) -> str:
-        """Why nothing is kept here; empty where jobs are."""
+        """Reason why jobs are not stored, or an empty string."""
         book = self.watch.parts.book
         return "" if book.store is not None else book.away or tr("JOBS CANNOT BE SAVED: NO DATA STORE")
 
     def look(self) -> None:
-        """Once a frame: the marked job is proved as the next one is."""
+        """Limit the selection and request the proof of the selected job; called once per frame."""
         self.marked = max(0, min(self.marked, len(self.jobs) - 1))
         job = self.job
         self.watch.also = (
@@ -72,11 +75,11 @@ class JobsModel:
         )
 
     def proof_of(self, job: JobRow) -> ProvedJob | str | None:
-        """Its proof, why there is none, None: not yet."""
+        """Return the job's proof, the reason why proving failed, or None while it is pending."""
         return self.watch.proofs.of(job.program, self.desk.book.changes)
 
     def sheet(self, snapshot: Snapshot) -> Sheet:
-        """The queue, and what is asked below it."""
+        """Return the table of the queue with the question below."""
         rows = tuple(self._row(number, job, snapshot) for number, job in enumerate(self.jobs, 1))
         question = ""
         if self.asking == "count":
@@ -119,7 +122,7 @@ class JobsModel:
         return tr("IN PROGRESS") if self.watch.on_desk(job) else self.watch.state_words(job)
 
     def setup(self) -> Sheet:
-        """Of the marked job: its tools and what each lacks, what the proof has found, notes of its setup."""
+        """Return the setup table of the selected job: tools, findings of the proof, and notes."""
         job = self.job
         title = tr("SETUP SHEET") + (f"  ·  {job.program}" if job is not None else "")
         rows = tuple(self._setup_rows(job)) if job is not None else ()
@@ -164,7 +167,7 @@ class JobsModel:
                    Tone.PAUSE if station.lacks else Tone.RUN)  # fmt: skip
 
     def notes_of(self, program: str) -> Sequence[str]:
-        """What was noted on the program's setup sheet (F10)."""
+        """Return the notes of the program's setup sheet (F10)."""
         if self._notes[0] != program:
             try:
                 kept = self.desk.runs.counter.persistence.read_setting(notes_key(program))
@@ -175,7 +178,7 @@ class JobsModel:
         return self._notes[1]
 
     def prompt(self) -> str:
-        """What the keys do now."""
+        """Return the prompt for the present keys."""
         if self.asking:
             return "TYPE THE ENTRY   ENTER: ACCEPT   ESC: CANCEL"
         if self.job is None:
@@ -187,7 +190,7 @@ class JobsModel:
     # --- keys ----------------------------------------------------------------------------------------
 
     def keys(self) -> Mapping[str, Key]:
-        """Function keys of this moment; none while something is asked, which Return and Esc end."""
+        """Return the function keys; none during an entry, which Enter and Esc end."""
         if self.asking:
             return {}
         none = self.job is None
@@ -204,23 +207,23 @@ class JobsModel:
 
     @property
     def load_barred(self) -> str:
-        """Why the marked job cannot be put on the desk; empty when it can."""
+        """Reason why the selected job cannot be loaded, or an empty string."""
         return NONE_YET if self.job is None else program_barred(self.desk.snapshot())
 
     def may_load(self) -> bool:
-        """Whether the marked job can be put on the desk; why not is said."""
+        """Return whether the selected job can be loaded, and show the reason if not."""
         if why := self.load_barred:
             self.desk.say(why)
         return not why
 
     def load(self) -> None:
-        """The marked job becomes the one under way. Its cycle is started at the palms, by nobody here."""
+        """Load the selected job. Only the palm buttons start its cycle."""
         job = self.job
         if job is not None:
             self.watch.load(job)
 
     def add(self) -> None:
-        """The program on the desk as one more job: how many parts is asked."""
+        """Add a job for the loaded program. The number of parts is asked."""
         name = self.desk.session.now.name
         if not name:
             self.desk.say(NO_PROGRAM)
@@ -228,7 +231,7 @@ class JobsModel:
         self.add_program(name)
 
     def add_program(self, name: str) -> None:
-        """A program as one more job: how many parts is asked."""
+        """Add a job for a program. The number of parts is asked."""
         self.desk.clear()
         self.asking, self.program, self.entry = "count", name, Entry()
 
@@ -244,7 +247,7 @@ class JobsModel:
             self.asking, self.program, self.entry = what, "", Entry(words=what == "note", text=text)
 
     def move(self, by: int) -> None:
-        """The marked job one place up or down the queue."""
+        """Move the selected job up or down the queue."""
         job, to = self.job, self.marked + 1 + by
         if job is None:
             self.desk.say(NONE_YET)
@@ -260,7 +263,7 @@ class JobsModel:
         self.marked = row
 
     def remove(self) -> None:
-        """The marked job goes, after asking; what was counted of its program stays."""
+        """Remove the selected job after confirmation. The part count of its program remains."""
         job = self.job
         if job is None:
             self.desk.say(NONE_YET)
@@ -277,7 +280,7 @@ class JobsModel:
         )
 
     def clear(self) -> None:
-        """Jobs that are done go, after asking."""
+        """Remove finished jobs after confirmation."""
         done = sum(job.done for job in self.jobs)
         if not done:
             self.desk.done("NO FINISHED JOBS TO CLEAR")
@@ -295,7 +298,7 @@ class JobsModel:
         self.watch.parts.book.write(Act.JOBS, operation, done, self.watch.parts.refuse, change)
 
     def typed(self, key: str) -> bool:
-        """Arrows mark; what is asked takes the rest."""
+        """Handle a key: arrows select a job, and other keys edit the entry."""
         if not self.asking:
             if key in STEPS and self.jobs:
                 self.choose(self.marked + STEPS[key])
@@ -347,22 +350,25 @@ class JobsModel:
         self.asking = ""
 
     def takes(self, key: str) -> bool:
-        """Whether a character is text now."""
+        """Return whether a character is part of the entry."""
         return bool(self.asking) and self.entry.takes(key)
 
     def choose(self, row: int) -> None:
-        """Mark a row."""
+        """Select a row."""
         if not self.asking and self.jobs:
             self.desk.clear()
             self.marked = max(0, min(len(self.jobs) - 1, row))
 
     def opened(self) -> None:
-        """The page comes up: programs and shapes may be others by now."""
+        """Discard cached notes and proofs when the page opens.
+
+        Programs and shapes can have changed.
+        """
         self._notes = "", ()
         self.watch.proofs.anew()
 
     def escape(self) -> bool:
-        """One step back; False when the page may be left."""
+        """Go back one step. Return False if the page can close."""
         if self.desk.notice:
             self.desk.clear()
         elif self.asking:
@@ -372,15 +378,15 @@ class JobsModel:
         return True
 
     def leave(self) -> None:
-        """Nothing stays half typed; only the next job is proved from now on."""
+        """Cancel the entry when the page closes. Then only the next job is proved."""
         self.asking, self.watch.also = "", ""
 
     def close(self) -> None:
-        """The watch ends by itself."""
+        """Do nothing, because the watch is closed separately."""
 
 
 def _folded(text: str) -> str:
-    """On the two lines of a cell."""
+    """Return a text folded into the two lines of a cell."""
     first, *more = wrap(text, _WIDE) or [""]
     return f"{first}\n{' '.join(more)}" if more else first
 

@@ -1,4 +1,4 @@
-"""J or Shift+F6, JOBS: the queue above, what the marked job needs on the gang plate below."""
+"""Page JOBS (J or Shift+F6): queue above, setup of the selected job below."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from app.screen.page_base import Host, KeyActions
 from app.screen.sheet_panel import ListPage, SheetPanel
 from core.executor.snapshot import Snapshot
 
-PAD, LETTERS, QUEUE = 28.4, 24.0, 0.5  # units; share of the height
+PAD, LETTERS, QUEUE = 28.4, 24.0, 0.5  # units; ratio of the height
 
 
 class JobsPage(ListPage):
-    """The model decides; this shows it and hands the keys on."""
+    """Page JOBS: shows its model and passes the keys to it."""
 
     NAME = "JOBS"
     model: JobsModel
@@ -36,19 +36,19 @@ class JobsPage(ListPage):
         self._asked = ""
 
     def barred(self) -> frozenset[str]:
-        """Return those of the model, and F2 while no job can be loaded."""
+        """Return the barred keys of the model, and F2 while no job can be loaded."""
         return super().barred() | ({"F2"} if self.model.load_barred else set())
 
     def page_keys(self) -> Mapping[str, Key]:
-        """Return those of the model."""
+        """Return the function keys of the model."""
         return self.model.keys()
 
     def labels(self) -> tuple[str, ...]:
-        """F2 beside those of the model."""
+        """Return the labels of F2 and of the model."""
         return self.labels_of({"F2": "LOAD"}, self.page_keys())
 
     def key_actions(self) -> KeyActions:
-        """The function keys of the queue."""
+        """Return the actions of the function keys."""
         keys = self.page_keys()
         return {"F2": self._load, **{name: partial(self._do, name) for name in keys}}
 
@@ -56,7 +56,10 @@ class JobsPage(ListPage):
         self.page_keys()[name].action()
 
     def _load(self) -> None:
-        """The page first: what is asked about an interrupted job belongs to the page that stays."""
+        """Open the Automatic page, then load the job.
+
+        A question about an interrupted job is then visible.
+        """
         model = self.model
         if model.may_load() and self.host.go(page_table.AUTOMATIC):
             model.load()
@@ -65,11 +68,11 @@ class JobsPage(ListPage):
         self.model.choose(row)
 
     def has_field(self) -> bool:
-        """A count or a note is asked."""
+        """Return whether a count or a note is being typed."""
         return bool(self.model.asking)
 
     def refresh(self, snapshot: Snapshot, _view: MachineStatus, _loaded: Loaded) -> None:
-        """Queue and setup of this moment."""
+        """Update queue and setup."""
         model = self.model
         model.look()
         self.table.show_sheet(model.sheet(snapshot))
@@ -79,7 +82,7 @@ class JobsPage(ListPage):
             self._lay_out()
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """Queue over setup, what is typed with beside or below."""
+        """Arrange queue, setup and pads."""
         self._lay_out()
 
     def _lay_out(self) -> None:
@@ -89,7 +92,7 @@ class JobsPage(ListPage):
         self.letters.setVisible(self._asked == "note")
         low = max(round(LETTERS * u), self.letters.least)
         high = round(QUEUE * (self.height() - gap))
-        if self._asked == "note":  # the keyboard lies over the setup
+        if self._asked == "note":  # the keyboard covers the setup
             high = min(high, self.height() - low - gap)
         pad = round(PAD * u) + gap if self._asked == "count" else 0
         wide = self.width() - pad

@@ -1,6 +1,6 @@
-"""The queue of jobs in every frame: what is under way, what comes next, and what that needs on the plate.
+"""Watch of the job queue: the active job, the next job and its required setup.
 
-The next job is proved while another one runs, on a worker of the desk and never in the executor's way.
+The next job is proved on a worker while another job runs, without affecting the executor.
 """
 
 from __future__ import annotations
@@ -35,15 +35,16 @@ if TYPE_CHECKING:
     from app.special.setup_sheet import SetupSheet, SheetTool
 
 
-_SAME = 1e-4  # mm: nose radii that differ by less are one
-_TOLD = 3  # findings of the proof that are named
+_SAME = 1e-4  # mm: smaller differences of nose radii are ignored
+_TOLD = 3  # maximum number of displayed findings
 
 
 @dataclass(frozen=True, slots=True)
 class ProvedJob:
-    """A program of the queue as it was proved with the offsets of that moment.
+    """Program of the queue, proved with the offsets of that moment.
 
-    ``before``: its tools as they were set when it was started last, ``ran`` (UTC); empty: it never was.
+    ``before`` contains the tools at its last start, and ``ran`` is the time of that start (UTC), or empty if
+    it never ran.
     """
 
     sheet: SetupSheet
@@ -53,26 +54,26 @@ class ProvedJob:
 
 @dataclass(frozen=True, slots=True)
 class Station:
-    """One tool that a job needs; ``lacks``: in words what is to be done about it, empty: nothing."""
+    """Tool that a job needs. ``lacks`` lists the required actions as text."""
 
     tool: SheetTool
     lacks: tuple[str, ...] = ()
 
 
 def stations(job: ProvedJob, lives: Mapping[int, ToolLife], parts: int) -> tuple[Station, ...]:
-    """The tools of a job that is to make so many parts still, in the order of the plate."""
+    """Return the tools of a job that has ``parts`` parts to make, in the order of the gang plate."""
     return tuple(
         Station(tool, tuple(_lacks(tool, job, lives.get(tool.number), parts))) for tool in job.sheet.tools
     )
 
 
 def missing(job: ProvedJob, lives: Mapping[int, ToolLife], parts: int) -> int:
-    """How many things are to be seen to before it can be started: tools, and errors of its proof."""
+    """Return the number of open items before the job can start: tool actions and errors of the proof."""
     return sum(len(each.lacks) for each in stations(job, lives, parts)) + job.sheet.errors
 
 
 def findings(sheet: SetupSheet) -> tuple[Diagnostic, ...]:
-    """The first errors of the proof, and behind them its first warnings."""
+    """Return the first errors of the proof, followed by its first warnings."""
     worth = [each for each in sheet.found if each.severity is not Severity.NOTE]
     return tuple(sorted(worth, key=lambda each: (each.severity is not Severity.ERROR, each.line))[:_TOLD])
 
@@ -97,7 +98,7 @@ def _of_life(tool: SheetTool, life: ToolLife | None, parts: int) -> Iterator[str
 
 
 def _parts_left(life: ToolLife, seconds: float) -> int | None:
-    """By what a part of this job takes of it, which may be less or more than the parts before have taken."""
+    """Return the number of parts that the tool life covers, at the cutting time per part of this job."""
     left = [life.limit_parts - life.parts] if life.limit_parts else []
     if life.limit_seconds and seconds > 0.0:
         left.append(int((life.limit_seconds - life.seconds) / seconds + 1e-9))
@@ -105,7 +106,7 @@ def _parts_left(life: ToolLife, seconds: float) -> int | None:
 
 
 def _of_tip(tool: SheetTool, job: ProvedJob) -> Iterator[str]:
-    """Another tip than that with which the program was started last: other inserts are on the plate now."""
+    """Yield a note if the tool tip differs from that at the last start of the program."""
     then, now = job.before.get(tool.number), tool.offset
     if then is None or now is None:
         return
@@ -132,15 +133,15 @@ def _tip(quadrant: int) -> str:
 
 
 def tool_name(number: int) -> str:
-    """``T3``, ``T1D2``."""
+    """Return the name of a tool or edge, such as ``T3`` or ``T1D2``."""
     return edge_name(number)
 
 
-PAGE = "JOBS"  # its name in app.screen.page_table
+PAGE = "JOBS"  # name of the page in app.screen.page_table
 
 
 class JobsFunction(PageFunction):
-    """How many jobs wait, and which is next."""
+    """Special function with the number of waiting jobs and the next job."""
 
     name = "JOBS"
     use = "next job, number of parts, setup requirements"
@@ -151,7 +152,7 @@ class JobsFunction(PageFunction):
     )
 
     def facts(self) -> tuple[Row, ...]:
-        """Under way, next, waiting."""
+        """Return the rows with the active, next and waiting jobs."""
         watch = self.desk.pages.find(JobsWatch)
         if watch is None:
             return ()
@@ -162,7 +163,7 @@ class JobsFunction(PageFunction):
         return (Row((tr("IN PROGRESS"), made)), Row((tr("NEXT"), then)), Row((tr("WAITING"), str(waiting))))
 
     def prompt(self) -> str:
-        """How the page is opened."""
+        """Return the prompt that names the keys."""
         return "ENTER: OPEN JOBS   ESC: BACK TO THE LIST"
 
 
@@ -173,7 +174,7 @@ KEPT = 20
 
 @dataclass(slots=True)
 class JobProofs:
-    """``want`` and ``of`` never wait. A proof is of a program and the offsets that it was made with."""
+    """Proofs of jobs by program and offsets. ``want`` and ``of`` never wait."""
 
     prove: Prove
     worker: Latest = field(default_factory=lambda: Latest("editing-jobs"))
@@ -181,8 +182,9 @@ class JobProofs:
     _asked: tuple[str, int] | None = None
 
     def want(self, programs: Sequence[str], offsets: int) -> None:
-        """Once a frame: these are to be proved, the first one first; ``offsets`` tells one state of tables
-        from another. What is being proved and is wanted no longer is given up.
+        """Request proofs, the first program first, and cancel an obsolete proof; called once per frame.
+
+        ``offsets`` identifies the state of the offset tables.
         """
         self.worker.poll()
         keys = [(program, offsets) for program in programs[:KEPT]]
@@ -194,11 +196,11 @@ class JobProofs:
         self.worker.ask(partial(self.prove, wanted[0]), done, done)
 
     def of(self, program: str, offsets: int) -> ProvedJob | str | None:
-        """What is known of it: its proof, why there is none, None: it is not proved yet."""
+        """Return the proof of a program, the reason why proving failed, or None while it is pending."""
         return self._made.get((program, offsets))
 
     def anew(self) -> None:
-        """Files and shapes may have changed: everything is proved again."""
+        """Discard all proofs, because files and shapes can have changed."""
         self._made.clear()
         self._asked = None
 
@@ -209,54 +211,57 @@ class JobProofs:
             del self._made[next(iter(self._made))]
 
     def close(self) -> None:
-        """Give up what is being proved and end the worker."""
+        """Cancel the present proof and stop the worker."""
         self.worker.close()
 
 
-FEATURE = "jobs"  # name of the queue in the book
-KEY = "Shift+F6"  # its name in app.screen.window.keys
+FEATURE = "jobs"  # name of the queue in the parts book
+KEY = "Shift+F6"  # name of the key in app.screen.window.keys
 
 
 @dataclass(slots=True)
 class JobsWatch:
-    """``see`` is called once a frame. Nothing is put on the desk or started here: that is the operator's."""
+    """Watch of the job queue.
+
+    ``see`` is called once per frame. Only the operator loads and starts jobs.
+    """
 
     desk: Desk
     parts: PartsWatch
     proofs: JobProofs
-    also: str = ""  # a job that is looked at on the page is proved too
+    also: str = ""  # program of the job that is selected on the page, which is proved too
     _counted: tuple[str, int] = ("", 0)
-    _told: int = 0  # the job whose end was told
+    _told: int = 0  # job whose end was reported
     _known: bool = False
-    _loading: tuple[JobRow, Path, int] | None = None  # put on the desk, and not taken by it yet
+    _loading: tuple[JobRow, Path, int] | None = None  # job that is being loaded, with its path and load count
 
     @property
     def jobs(self) -> tuple[JobRow, ...]:
-        """The queue as it is kept."""
+        """Stored jobs of the queue."""
         jobs: tuple[JobRow, ...] = self.parts.book.now.more.get(FEATURE, ())
         return jobs
 
     @property
     def under_way(self) -> JobRow | None:
-        """The job for which parts are counted now."""
+        """Active job, whose parts are counted, or None."""
         return next((row for row in self.jobs if row.under_way), None)
 
     def on_desk(self, job: JobRow) -> bool:
-        """Whether it is under way and its program is the one on the desk; after a restart it may not be."""
+        """Return whether a job is active and its program is loaded, which may differ after a restart."""
         return job.under_way and self.desk.session.now.name == job.program
 
     @property
     def next(self) -> JobRow | None:
-        """The first of those that are still to be made, but for the one under way."""
+        """First unfinished job that is not active, or None."""
         return next((row for row in self.jobs if not row.done and not row.under_way), None)
 
     @property
     def lives(self) -> Mapping[int, ToolLife]:
-        """Of the tools, as of now."""
+        """Tool life of all tools."""
         return self.parts.lives.lives()
 
     def see(self, snapshot: Snapshot, loaded: Loaded) -> None:
-        """One frame."""
+        """Update the active job, its target and the proofs. Called once per frame."""
         counter = self.desk.runs.counter
         if (counter.program, counter.count) != self._counted:
             self._counted = counter.program, counter.count
@@ -268,15 +273,15 @@ class JobsWatch:
         self._prove(snapshot)
 
     def _prove(self, snapshot: Snapshot) -> None:
-        """The marked one and the next; those behind them while nothing is under way."""
+        """Request the proofs of the selected and the next job, and of all jobs while no program runs."""
         waiting = [row.program for row in self.jobs if not row.done and not row.under_way]
         wanted = waiting if snapshot.state not in UNDER_WAY else waiting[:1]
         self.proofs.want([each for each in (self.also, *wanted) if each], self.desk.book.changes)
 
-    # --- putting one on the desk -------------------------------------------------------------------------
+    # --- loading a job -----------------------------------------------------------------------------------
 
     def load(self, job: JobRow) -> None:
-        """The operator has chosen it: its program is loaded; once the desk has taken it, its parts count."""
+        """Load the program of a job that the operator has selected. Its parts count after loading."""
         if not self.desk.programs.can_choose():
             return
         path = self.desk.programs.folders.find(job.program)
@@ -290,7 +295,10 @@ class JobsWatch:
         self._loading = job, path, loads
 
     def _begin(self, loaded: Loaded) -> None:
-        """What is asked about an interrupted job may still be answered with no."""
+        """Start the job after loading.
+
+        A question about an interrupted job can still cancel the loading.
+        """
         if self._loading is None:
             return
         job, path, loads = self._loading
@@ -307,10 +315,13 @@ class JobsWatch:
         elif not self.desk.asked:
             self._loading = None
 
-    # --- what is told --------------------------------------------------------------------------------
+    # --- messages ------------------------------------------------------------------------------------
 
     def _tell(self, job: JobRow | None) -> None:
-        """Once when its count is reached; one that was done before this desk began is told by the notice."""
+        """Report once when the count of a job is reached.
+
+        The notice shows jobs finished before the start.
+        """
         if not self.parts.book.loads:
             return
         done = job.id if job is not None and job.done else 0
@@ -339,7 +350,7 @@ class JobsWatch:
         return Message("{words}, {job}", words=words, job=self.state_words(job))
 
     def state_words(self, job: JobRow) -> str:
-        """How a job that waits stands: not proved yet, what is missing, ready."""
+        """Return the state of a waiting job as text: not proved, open items or ready."""
         made = self.proofs.of(job.program, self.desk.book.changes)
         if made is None:
             return tr("NOT PROVED YET")
@@ -353,20 +364,20 @@ class JobsWatch:
         )
 
     def notice(self, snapshot: Snapshot) -> NoticeRow | None:
-        """On the Automatic page, between cycles: the job is done, and which comes next."""
+        """Return the notice of the Automatic page about a finished job and the next job, or None."""
         job = self.under_way
         if job is None or not job.done or snapshot.state in UNDER_WAY or snapshot.interrupted is not None:
             return None
         return NoticeRow(self._done_words(job), self._next_words(), ((KEY, "SHIFT+F6"),), "run")
 
     def due(self) -> str:
-        """The notice tells it; the prompt line has nothing besides."""
+        """Return an empty string, because the notice replaces the text on the prompt line."""
         return ""
 
     def close(self) -> None:
-        """End the worker."""
+        """Stop the worker."""
         self.proofs.close()
 
 
 def _nothing() -> None:
-    """What was kept is seen in the queue."""
+    """Do nothing, because the queue shows the stored change."""

@@ -1,4 +1,4 @@
-"""Registers the MTConnect adapter."""
+"""Registration of the MTConnect adapter."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ if TYPE_CHECKING:
     from core.machine.machine_model import Machine
     from core.table_schema import Driver
 
-_TABLE = "mtconnect"  # the adapter is loaded by the machines that have this table
+_TABLE = "mtconnect"  # table whose presence loads the adapter
 
 
 class Mtconnect(Extra):
-    """The adapter for MTConnect agents, ``turndesk machine mtconnect``, and [mtconnect]."""
+    """Optional feature with the MTConnect adapter and ``turndesk machine mtconnect``."""
 
     machine_actions = ("mtconnect",)
     threads = {"mtconnect": "MTCONNECT"}

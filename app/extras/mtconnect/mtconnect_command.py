@@ -1,4 +1,4 @@
-"""``turndesk machine mtconnect``: the device model for an agent; and the adapter's row of machine check."""
+"""Command ``turndesk machine mtconnect`` with the device model, and the adapter's row of machine check."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def check_mtconnect(machine: Machine, answers: Answers) -> None:
-    """Add whether agents would find the adapter, and accept its device model."""
+    """Add a row that shows whether agents can connect to the adapter and its device model is valid."""
     from app.compose.backends.backend_entry import Row
     from app.extras.mtconnect.driver.mtconnect_table import MtconnectTable
     from app.extras.mtconnect.shop_floor import try_shop_floor

@@ -1,4 +1,4 @@
-"""The MTConnect adapter of a machine, and the device model that fits it."""
+"""MTConnect adapter of a machine, and its device model."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ from drivers.waiting import RealClock
 def open_shop_floor(
     machine: Machine, snapshot: Callable[[], Snapshot], tell: Callable[[str], None]
 ) -> Callable[[], None] | None:
-    """Begin to report the machine to agents, and return a function that ends it.
+    """Start to report the machine to agents, and return a function that stops it.
 
-    A port that cannot be opened is told, and the machine runs all the same. None: the file does not enable
-    the adapter, or it cannot run.
+    A port that cannot be opened is reported, and the machine runs anyway. Returns None if the adapter is not
+    enabled or cannot run.
     """
     model = machine.hardware.table(MtconnectTable)
     if model is None or not model.enabled:
@@ -41,9 +41,9 @@ def open_shop_floor(
 def open_headless(
     machine: Machine, snapshot: Callable[[], Snapshot], say: Callable[[str], None], *, paced: bool
 ) -> Callable[[], None] | None:
-    """Do the same for a run without a screen.
+    """Start to report a run without a screen, and return a function that stops it.
 
-    A run that takes less than its time would tell the shop floor of parts that nobody has made.
+    A run that is faster than real time is not reported, because it would report parts that were not made.
     """
 
     def tell(why: str) -> None:
@@ -56,26 +56,29 @@ def open_headless(
 
 
 def told_to_agents(machine: Machine) -> bool:
-    """Whether its file wants agents to be told of it."""
+    """Return whether the machine file enables the adapter."""
     model = machine.hardware.table(MtconnectTable)
     return model is not None and model.enabled
 
 
 def try_shop_floor(machine: Machine, model: MtconnectTable) -> None:
-    """Open the port and close it again, make the model and throw it away. Raises DriverError."""
+    """Check that the port can be opened and the device model can be made. Raises DriverError."""
     listening(model.bind, model.port).close()
     device_model(machine, utc_now())
 
 
 def adapter_of(machine: Machine, model: MtconnectTable, snapshot: Callable[[], Snapshot]) -> Adapter:
-    """The adapter on real time; it looks at snapshots and at nothing else."""
+    """Return the adapter on the real-time clock. Its data is from snapshots only."""
     device = device_of(machine, model.device)
     reader = FloorReader(machine, time.monotonic)
     return Adapter(model, tuple(device.all_items()), lambda: _report(reader.look(snapshot())), RealClock())
 
 
 def device_model(machine: Machine, at: datetime) -> str:
-    """``Devices.xml`` for the agent. Raises DriverError without an [mtconnect] table or for a bad name."""
+    """Return ``Devices.xml`` for the agent.
+
+    Raises DriverError without [mtconnect] or for an invalid name.
+    """
     model = machine.hardware.table(MtconnectTable)
     if model is None:
         raise DriverError(
@@ -93,7 +96,7 @@ def device_model(machine: Machine, at: datetime) -> str:
 def device_of(machine: Machine, name: str) -> Component:
     """Return the device model of a machine under a name.
 
-    On a lathe the spindle is the C axis too, unless C has its own drive.
+    On a lathe the spindle is also the C axis, unless C has a separate drive.
     """
     lathe = machine.kind == "lathe"
     one = lathe and machine.spindle_is_c

@@ -1,4 +1,4 @@
-"""What is told to others: the end of a part, a stop, an alarm, a tool at the end of its life."""
+"""Announcements to other systems: finished parts, stops, alarms and used-up tool life."""
 
 from __future__ import annotations
 
@@ -11,27 +11,27 @@ from app.desk.background_work import RepeatingThread
 from app.shopfloor.status_file import Status
 from core.message import Message
 
-LOOK = 0.5  # s
-HELD = 100  # announcements that wait for somebody who does not answer; of more the oldest go
+LOOK = 0.5  # seconds
+HELD = 100  # announcements that wait for a receiver that does not respond; the oldest are discarded
 _STANDS = frozenset({"FEED HOLD", "PROGRAM STOP", "WAITING", "SINGLE BLOCK"})
 _FAULTS = frozenset({"ALARM", "E-STOP", "CONTROL SILENT"})
 
 
 @dataclass(frozen=True, slots=True)
 class Announcement:
-    """What has happened: ``part stop alarm tool-life`` or ``runs``, one sentence, the status."""
+    """Event with its kind (part, stop, alarm, tool-life or runs), a sentence, and the status."""
 
     kind: str
     text: str
     status: Status
 
     def json(self) -> bytes:
-        """As it goes out: kind and text beside the keys of the status."""
+        """Return the JSON with kind and text in addition to the keys of the status."""
         return json.dumps({"event": self.kind, "text": self.text, **self.status}).encode()
 
 
 def happened(before: Mapping[str, Any], now: Status) -> Iterator[Announcement]:
-    """What has happened between two looks; nothing before the first."""
+    """Yield the events between two statuses. No events without a previous status."""
     state, was = str(now["state"]), before.get("state")
     if was is None:
         return
@@ -50,7 +50,10 @@ def happened(before: Mapping[str, Any], now: Status) -> Iterator[Announcement]:
 
 
 def _more(before: object, now: object) -> bool:
-    """Of the parts since the start: the program's own count is also read from the store, or typed."""
+    """Return whether parts were made since the start.
+
+    The program's own count can also be edited.
+    """
     return isinstance(now, int) and isinstance(before, int) and now > before
 
 
@@ -66,20 +69,20 @@ def _changed(was: str, state: str, now: Status) -> Iterator[Announcement]:
 
 
 class Told(Protocol):
-    """Somebody who is told. Neither call waits for the other side."""
+    """Receiver of announcements. Neither call waits for the other side."""
 
     def state(self, status: Status) -> None:
-        """How the machine stands now, whenever that has changed."""
+        """Send the status of the machine after a change."""
 
     def tell(self, announcement: Announcement) -> None:
-        """Something has happened."""
+        """Send an announcement."""
 
     def close(self) -> None:
-        """The desk ends."""
+        """Close the connection when TurnDesk ends."""
 
 
 class Announcer:
-    """Looks at the status twice a second, by a thread of its own, and tells."""
+    """Announcer that polls the status twice per second in a separate thread."""
 
     def __init__(self, look: Callable[[], Status], told: Sequence[Told]) -> None:
         self._look, self._told = look, told
@@ -87,17 +90,17 @@ class Announcer:
         self._thread = RepeatingThread("announcer", self.once, LOOK)
 
     def start(self) -> None:
-        """Once."""
+        """Start the thread; to be called once."""
         self._thread.start()
 
     def close(self) -> None:
-        """Nobody is told any more; MQTT's own word for that goes out."""
+        """Stop the thread and close all receivers. MQTT then reports that TurnDesk is offline."""
         self._thread.close()
         for each in self._told:
             each.close()
 
     def once(self) -> None:
-        """One look."""
+        """Poll the status once, and send changes and events."""
         now = self._look()
         shown = {key: value for key, value in now.items() if key not in _ALWAYS_NEW}
         if shown != {key: value for key, value in self._before.items() if key not in _ALWAYS_NEW}:
@@ -106,7 +109,8 @@ class Announcer:
         for announcement in happened(self._before, now):
             for told in self._told:
                 told.tell(announcement)
-        parts = now.get("parts")  # of a silent control nobody knows them: what it made meanwhile is told then
+        # unknown while the control is silent; parts made in the meantime are reported afterwards
+        parts = now.get("parts")
         self._before = now if parts is not None else {**now, "parts": self._before.get("parts")}
 
 

@@ -1,4 +1,4 @@
-"""Registers the status page for the office, and the announcements by MQTT and web hook."""
+"""Registration of the office status page and of the announcements by MQTT and webhook."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ if TYPE_CHECKING:
     from core.machine.machine_model import Machine
     from core.table_schema import Driver
 
-_TABLES = frozenset({"status_page", "announce"})  # the office is loaded by the machines that have one of them
+_TABLES = frozenset({"status_page", "announce"})  # tables whose presence loads the office
 
 
 class Office(Extra):
-    """The status page for the office, and the announcements; [status_page] and [announce]."""
+    """Optional feature with the office status page and announcements; tables [status_page] and [announce]."""
 
     threads = {
         "status-page": "STATUS PAGE",
         "announcer": "MQTT AND WEBHOOK",
-        "paho-mqtt-client-": "MQTT BROKER CONNECTION",  # the name that paho gives its thread
+        "paho-mqtt-client-": "MQTT BROKER CONNECTION",  # thread name used by paho
         "web-hook": "WEBHOOK",
     }
     tables_follow = "setter"

@@ -1,4 +1,4 @@
-"""An MQTT broker is told: TOPIC/available (offline by its last will), TOPIC/state, TOPIC/event."""
+"""MQTT receiver with the topics TOPIC/available (offline by last will), TOPIC/state and TOPIC/event."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
 ONLINE, OFFLINE = "online", "offline"
 _SURE = 1  # quality of service: at least once
-KEEP_ALIVE = 15  # s; half as much again without a sign of us, and the broker tells our last will
-_SILENT = "Keep alive timeout"  # as paho calls it
+KEEP_ALIVE = 15  # seconds; after 1.5 times this time without data, the broker publishes the last will
+_SILENT = "Keep alive timeout"  # name used by paho
 _NO_WORD = (
     "the server closed the connection without an MQTT response; check whether the server "
     "uses this port without TLS"
@@ -38,28 +38,29 @@ _log = logging.getLogger(__name__)
 
 
 class _Client(mqtt.Client):
-    """Paho's client, which keeps to itself why it could not connect."""
+    """Paho client that reports why it could not connect."""
 
     failed: Callable[[Exception], None]
 
     def reconnect(self) -> MQTTErrorCode:
-        """Called by paho's thread, which goes on behind an OSError and ends with any other."""
+        """Reconnect; called by paho's thread, which continues only after an OSError."""
         try:
             return super().reconnect()
-        except (OSError, ValueError) as error:  # ValueError: a name that can be none
+        except (OSError, ValueError) as error:  # ValueError: an invalid name
             self.failed(error)
             raise OSError(str(error)) from error
 
 
 class MqttBroker:
-    """Connected by a thread of paho's own, and again whenever the broker was away."""
+    """MQTT connection, which paho's thread opens again whenever the broker was away."""
 
     def __init__(self, table: AnnounceTable) -> None:
         self._topic = table.topic.rstrip("/")
         self._state = b""
-        self._answered = self._refused = False  # by the connection that there is; paho's thread alone
+        self._answered = self._refused = False  # for the present connection; used by paho's thread only
         self._waiting: deque[Announcement] = deque(maxlen=HELD)
-        self._handing = threading.Lock()  # the announcer's thread and paho's both hand over, in order
+        # preserves the order, because both the announcer's and paho's thread publish
+        self._handing = threading.Lock()
         self._client = client = _Client(CallbackAPIVersion.VERSION2)
         if table.user:
             client.username_pw_set(table.user, table.password or None)
@@ -74,21 +75,27 @@ class MqttBroker:
         client.loop_start()
 
     def state(self, status: Status) -> None:
-        """Retained: whoever comes later sees it too. While the broker is away the newest waits."""
+        """Publish the status as a retained message.
+
+        The latest status waits while the broker is away.
+        """
         self._state = json.dumps(status).encode()
         if self._client.is_connected():
             self._client.publish(f"{self._topic}/state", self._state, _SURE, retain=True)
 
     def tell(self, announcement: Announcement) -> None:
-        """Not retained; the newest hundred wait for a broker that is away."""
+        """Publish an announcement that is not retained.
+
+        The latest hundred wait for a broker that is away.
+        """
         self._waiting.append(announcement)
         self._hand_over()
 
     def close(self) -> None:
-        """Offline by our own word: a last will is told only where a connection breaks.
+        """Publish offline, because a last will is sent only after a broken connection.
 
-        To a broker that takes no word we say no good-bye either: it tells our last will when this process
-        has ended. Paho's thread, which may wait for a broker that is away, ends with the process.
+        If the broker does not respond, the connection is left open. The broker then publishes the last will
+        after this process has ended. Paho's thread ends with the process.
         """
         if not self._client.is_connected():
             self._client.disconnect()
@@ -101,11 +108,11 @@ class MqttBroker:
         try:
             told.wait_for_publish(1.0)
             return told.is_published()
-        except RuntimeError:  # the connection was lost since we asked
+        except RuntimeError:  # the connection was lost in the meantime
             return True
 
     def _hand_over(self) -> None:
-        """Give paho what waits, once there is a broker: a full queue of paho's refuses what is newest."""
+        """Publish waiting announcements while connected, because a full queue of paho rejects the latest."""
         with self._handing:
             while self._waiting and self._client.is_connected():
                 event = self._waiting.popleft().json()
@@ -138,10 +145,10 @@ class MqttBroker:
         reason: ReasonCode,
         _more: Properties | None,
     ) -> None:
-        """Also where a host takes the connection and says no word: paho gives it up behind the keep-alive."""
+        """Report a lost connection, including a host that accepts the connection but does not respond."""
         answered, refused = self._answered, self._refused
         self._answered = self._refused = False
-        if refused or not reason.is_failure:  # the refusal has said the cause
+        if refused or not reason.is_failure:  # the rejection has already reported the cause
             return
         if str(reason) == _SILENT:
             self._trouble.say(NO_ANSWER)

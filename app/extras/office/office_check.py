@@ -1,4 +1,4 @@
-"""What ``turndesk machine check`` reports of the status page and of the MQTT broker."""
+"""Rows of ``turndesk machine check`` for the status page and the MQTT broker."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from core.machine.machine_model import Machine
 from core.message import Message
 from core.ports import DriverError
 
-_BROKER_PATIENCE = 2.0  # s
+_BROKER_PATIENCE = 2.0  # seconds
 
 
 def check_office(machine: Machine, answers: Answers) -> None:
-    """Add whether browsers would find the status page, and whether the broker is there."""
+    """Add rows that show whether the status page can be opened and the broker responds."""
     page, told = machine.hardware.table(StatusPageTable), machine.hardware.table(AnnounceTable)
     if page is not None and page.enabled:
         try:

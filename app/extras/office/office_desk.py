@@ -1,4 +1,4 @@
-"""The status page for the office, and who is told of ends and stops: put together for a desk."""
+"""Setup of the office status page and of the announcements."""
 
 from __future__ import annotations
 
@@ -37,12 +37,15 @@ if TYPE_CHECKING:
     from core.machine.machine_model import Machine
 
 
-STOPS = 6  # the newest
+STOPS = 6  # number of latest stops
 
 
 @dataclass(frozen=True, slots=True)
 class OfficeLook:
-    """Looks at what the desk publishes; from any thread. ``time_left`` is in s, infinite while it stands."""
+    """Source of the status, readable from any thread.
+
+    ``time_left`` returns seconds, inf while stopped.
+    """
 
     machine: str
     reader: FloorReader
@@ -52,14 +55,18 @@ class OfficeLook:
     utc: Callable[[], datetime]
 
     def status(self) -> Status:
-        """The keys of status.json and those of the page; seconds, ``None`` for what is not known."""
+        """Return the keys of status.json and of the page.
+
+        Times are in seconds, and None means not known.
+        """
         snapshot = self.snapshot()
         reading = self.reader.look(snapshot)
         told = {"updated": self.utc().isoformat(timespec="seconds"), **status_of(self.machine, reading)}
         if not reading.available:
             return {**told, **_NOTHING_KNOWN}
         left = self.time_left(snapshot)
-        newest = self.stops()[::-1][:STOPS]  # as they came: the clock may have been set back
+        # in the order of recording, because the clock can have been set back
+        newest = self.stops()[::-1][:STOPS]
         return {
             **told,
             "state": snapshot.state.value,
@@ -90,7 +97,7 @@ _NOTHING_KNOWN: Status = {
 
 
 def _words(snapshot: Snapshot) -> str:
-    """Why it stands, in the words of the screen."""
+    """Return the reason why the machine is stopped, in the words of the screen."""
     if snapshot.alarms:
         return Message("{alarms}: {cause}", alarms=snapshot.alarms[0].text, cause=snapshot.alarms[0].cause)
     if snapshot.message:
@@ -99,16 +106,16 @@ def _words(snapshot: Snapshot) -> str:
     return "" if told == snapshot.state.value else told
 
 
-PICTURE = 600, 400  # pixels: as large as a telephone shows it
+PICTURE = 600, 400  # pixels, the size for a phone
 MISSING = "{what} needs {package}, which is not installed; install turndesk[shop]"
 
 
 def open_office(
     desk: Desk, machine: Machine, journal: Journal, tell: Callable[[str], None]
 ) -> Callable[[], None]:
-    """Begin to serve and to tell, as the machine file wants it; returns how to end it.
+    """Start the status page and the announcer, and return a function that stops them.
 
-    What cannot be had is told, and the machine runs all the same.
+    The machine file enables them. A failure is reported, and the machine runs anyway.
     """
     look = _look(desk, machine)
     closing: list[Callable[[], None]] = []
@@ -204,21 +211,21 @@ def _page(
 
 @dataclass(slots=True)
 class PartPicture:
-    """The part of the program on the desk as PNG, drawn once a program and never while anything runs."""
+    """PNG of the loaded program's part, drawn once per program and only while no program runs."""
 
     job: Callable[[], Job | None]
-    still: Callable[[], bool]  # whether drawing keeps nobody waiting
+    still: Callable[[], bool]  # whether drawing delays nothing
     draw: DrawThumbnail
     _drawn: tuple[str, bytes] = ("", b"")
 
     def look(self) -> None:
-        """Draw the part of another program than before; now and then, by one thread."""
+        """Draw the part of a new program; called repeatedly by one thread."""
         job = self.job()
         if job is not None and job.digest != self._drawn[0] and self.still():
             self._drawn = job.digest, self._png(job)
 
     def png(self) -> bytes:
-        """Empty: there is no program, it makes no part, or that is not drawn yet."""
+        """Return the PNG, or empty bytes if no part is drawn."""
         job, (digest, png) = self.job(), self._drawn
         return png if job is not None and job.digest == digest else b""
 
@@ -231,14 +238,14 @@ class PartPicture:
 
 @dataclass(slots=True)
 class AlarmDrawing:
-    """The scope's newest record of an alarm as a drawing; ``folder`` None: nothing is kept."""
+    """Drawing of the latest alarm record of the scope. ``folder`` is None without records."""
 
     folder: Path | None
     still: Callable[[], bool]
     _drawn: tuple[str, bytes] = ("", b"")
 
     def look(self) -> None:
-        """Draw another record than before, while nothing runs."""
+        """Draw a new record while no program runs."""
         from core.records.record_file import ENDING
 
         names = sorted(self.folder.glob(f"*-alarm*{ENDING}")) if self.folder is not None else []
@@ -246,7 +253,7 @@ class AlarmDrawing:
             self._drawn = names[-1].name, _drawing(names[-1])
 
     def svg(self) -> bytes:
-        """Empty: no alarm was recorded, or its record cannot be read."""
+        """Return the SVG, or empty bytes without a readable record."""
         return self._drawn[1]
 
 

@@ -1,4 +1,4 @@
-"""Pictures for the office's page: following errors about an alarm as SVG, and a picture in memory as PNG."""
+"""Pictures of the office page: following errors around an alarm as SVG, and an image as PNG."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from core.records.record import FloatArray, Record
 WIDE, HIGH = 640, 220  # pixels
 _LEFT, _TOP, _FOOT = 8, 24, 22
 _INKS = ("#0b5cad", "#b5651d", "#6a1b9a", "#2e7d32", "#b3261e")
-_POINTS = 600  # columns of a curve
+_POINTS = 600  # maximum number of columns of a curve
 _ERROR = " following error"
 
 
 def alarm_drawing(record: Record) -> bytes:
-    """Each axis' following error over time, all in one scale, with the alarm's words and a line at it."""
+    """Return the following errors over time on one scale, with the text and time of the alarm, as SVG."""
     curves = _curves(record)
     times = record.times - record.times[0] if len(record.times) else record.times
     lasts = float(times[-1]) if len(times) else 0.0
@@ -49,7 +49,7 @@ def alarm_drawing(record: Record) -> bytes:
 
 
 def _curves(record: Record) -> dict[str, FloatArray]:
-    """By the letters of the slides; an axis of which nothing is known has none, nor a rotary one."""
+    """Return the following errors by letter, for linear axes with data."""
     found = {
         each.name.removesuffix(_ERROR): record.columns[each.name]
         for each in record.channels
@@ -59,7 +59,7 @@ def _curves(record: Record) -> dict[str, FloatArray]:
 
 
 def _curve(at: FloatArray, height: FloatArray, ink: str) -> str:
-    """The least and the greatest of each column, so that no peak is lost."""
+    """Return a curve with the minimum and maximum of each column, so that no peak is lost."""
     known = np.isfinite(height)
     at, height = at[known], height[known]
     chunks = np.array_split(np.arange(len(at)), min(_POINTS, len(at)))
@@ -77,14 +77,14 @@ def _text(x: float, y: float, text: str, ink: str) -> str:
 
 
 _SIGNATURE = b"\x89PNG\r\n\x1a\n"
-_BITS, _RGBA = 8, 6  # a sample; the colour type
+_BITS, _RGBA = 8, 6  # bits per sample; the color type
 
 
 def png_of(pixels: bytes, width: int, height: int) -> bytes:
-    """32 bits a pixel, alpha, red, green, blue from the highest; rows from the top."""
+    """Return a PNG. Pixels have 32 bits (alpha, red, green, blue from the highest), rows from the top."""
     argb = np.frombuffer(pixels, dtype=np.uint32).reshape(height, width)
     rgba = np.stack([argb >> 16, argb >> 8, argb, argb >> 24], axis=-1).astype(np.uint8)
-    rows = np.zeros((height, 1 + 4 * width), dtype=np.uint8)  # each begins with its filter: none
+    rows = np.zeros((height, 1 + 4 * width), dtype=np.uint8)  # each row begins with its filter type, 0
     rows[:, 1:] = rgba.reshape(height, -1)
     head = struct.pack(">IIBBBBB", width, height, _BITS, _RGBA, 0, 0, 0)
     body = _chunk(b"IHDR", head) + _chunk(b"IDAT", zlib.compress(rows.tobytes())) + _chunk(b"IEND", b"")

@@ -1,4 +1,4 @@
-"""Keys of the office page, of MQTT and of the web hook, for the reference and its tests."""
+"""JSON keys of the office page, MQTT and webhook, for the reference and its tests."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Machines beside this desk, read while somebody looks at the page: TurnDesks, and MTConnect agents."""
+"""Status of other machines, read while the page is viewed: TurnDesk systems and MTConnect agents."""
 
 from __future__ import annotations
 
@@ -21,30 +21,33 @@ from app.extras.office.status_page import NOT_YET, OtherDesk
 from app.extras.office.timed_http import cause_of, one_line, timed_opener
 from core.message import Message
 
-EVERY = 3.0  # s
-LOOKED_AT = 15.0  # s after which nobody looks any more
-STALE = 10.0  # s after which what was heard is not true any more
-_PATIENCE = 2.0  # s
-_LARGEST = 1e9  # of its figures; JSON as Python reads it has Infinity and NaN
+EVERY = 3.0  # seconds
+LOOKED_AT = 15.0  # seconds after which the page counts as not viewed
+STALE = 10.0  # seconds after which a status is outdated
+_PATIENCE = 2.0  # seconds
+_LARGEST = 1e9  # largest value; Python's JSON reader accepts Infinity and NaN
 _MOST = 100_000  # bytes
-_ASK = timed_opener(ProxyHandler({}))  # desks of one shop are not asked by way of a proxy
+_ASK = timed_opener(ProxyHandler({}))  # machines of one shop are accessed without a proxy
 
 
 def status_address(address: str) -> str:
-    """Where a desk that has its page at ``address`` says its status; the token stays in the question."""
+    """Return the address of the status of a TurnDesk page. The token remains in the query."""
     parts = urlsplit(address)
     return urlunsplit(parts._replace(path=parts.path.rstrip("/") + "/status.json", fragment=""))
 
 
 class Answer(NamedTuple):
-    """What the page shows of an answer; ``trouble``: why the machine stands, or why nothing is known."""
+    """Part of a response that the page shows.
+
+    ``trouble`` is a stop reason or the reason for a missing status.
+    """
 
     status: Mapping[str, object] | None
     trouble: str = ""
 
 
 def asked(address: str) -> OtherDesk:
-    """One desk, asked now; waits for two seconds at most."""
+    """Read the status of a TurnDesk system, waiting at most 2 s."""
     return answered(address, status_address(address), _MOST, _desk_answer)
 
 
@@ -57,7 +60,10 @@ def _desk_answer(data: bytes) -> Answer:
 
 
 def answered(address: str, question: str, most: int, read: Callable[[bytes], Answer]) -> OtherDesk:
-    """What ``read`` makes of the answer (bytes, ``most`` of them); it raises ValueError for what is none."""
+    """Request ``question`` and convert the response with ``read``, which raises ValueError for invalid data.
+
+    ``most`` is the maximum number of bytes. An error is returned as the ``trouble`` of the result.
+    """
     name = _name(address)
     try:
         with _ASK.open(question, timeout=_PATIENCE) as answer:
@@ -85,16 +91,15 @@ _FIGURES = frozenset({"line", "made", "time_left", "last_cycle", "spindle_load"}
 
 
 def _fits(key: str, value: object) -> bool:
-    """Whether the page can show it: nobody knows who answers there."""
+    """Return whether the page can show a value, because the other side is not trusted."""
     figure = isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < _LARGEST
     return (key in _TEXTS and isinstance(value, str)) or (key in _FIGURES and figure)
 
 
 class OtherDesks:
-    """``look`` tells what was heard last; each is asked by a thread while ``look`` is called.
+    """Status of other machines. One thread per machine reads the status while ``look`` is called.
 
-    One that hangs, or sends its answer letter by letter, keeps nobody from hearing of the others; and what
-    was heard long ago is not told as if it were so now.
+    A machine that hangs or responds slowly does not delay the others. Outdated statuses are not shown.
     """
 
     def __init__(
@@ -104,7 +109,8 @@ class OtherDesks:
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         self._ask, self._clock = ask, clock
-        self._names = {each: _name(each) for each in addresses}  # with that of the machine, once it is known
+        # including the name of the machine, once it is known
+        self._names = {each: _name(each) for each in addresses}
         self._heard = {each: self._not_yet(each, clock()) for each in addresses}
         self._looked = threading.Event()
         self._closing = threading.Event()
@@ -115,21 +121,22 @@ class OtherDesks:
         ]
 
     def start(self) -> None:
-        """Once; without other desks nothing is to be asked."""
+        """Start the threads; to be called once."""
         for thread in self._threads:
             thread.start()
 
     def look(self) -> Sequence[OtherDesk]:
-        """What was heard of each."""
+        """Return the latest status of each machine."""
         now = self._clock()
-        if now - self._last > LOOKED_AT:  # nobody has asked meanwhile: that is no silence of theirs
+        # no requests were made in the meantime, so the machines are not silent
+        if now - self._last > LOOKED_AT:
             self._heard.update({each: self._not_yet(each, now) for each in self._heard})
         self._last = now
         self._looked.set()
         return tuple(_if_fresh(desk, now - at) for at, desk in self._heard.values())
 
     def close(self) -> None:
-        """The threads end behind the questions that are open; nobody waits for them."""
+        """Stop the threads after their pending requests, without waiting for them."""
         self._closing.set()
         self._looked.set()
 
@@ -149,13 +156,13 @@ class OtherDesks:
 
 
 def _name(address: str) -> str:
-    """Without what only the two desks need to know."""
+    """Return the address without user, password and token."""
     parts = urlsplit(address)
     return parts.netloc.rpartition("@")[2] + parts.path.rstrip("/")
 
 
 def _if_fresh(desk: OtherDesk, age: float) -> OtherDesk:
-    """Of a desk that was not heard for ``age`` s nobody knows how it is."""
+    """Return the status, or a message if it is older than ``STALE``."""
     if age <= STALE:
         return desk
     return OtherDesk(desk.address, trouble=tr(Message("no response for {age} s", age=round(age))))
@@ -169,23 +176,23 @@ _WORDS = {
     "PROGRAM_STOPPED": "PROGRAM STOP",
     "PROGRAM_COMPLETED": "READY",
 }
-_LONGEST = 15  # figures of a number
+_LONGEST = 15  # digits of a number
 
 
 def current_address(address: str) -> str:
-    """Where the agent says how the machine is now, which ``address`` names behind the agent's own."""
+    """Return the address of the agent's current state. ``address`` includes the device's path."""
     parts = urlsplit(address)
     return urlunsplit(parts._replace(path=parts.path.rstrip("/") + "/current", fragment=""))
 
 
 def asked_agent(address: str) -> OtherDesk:
-    """One machine, asked now; waits for two seconds at most."""
+    """Read the status of a machine from its agent, waiting at most 2 s."""
     return answered(address, current_address(address), _MOST_OF_AGENT, streams_answer)
 
 
 def streams_answer(data: bytes) -> Answer:
-    """What of an MTConnectStreams document the page shows, and why the machine stands. Raises ValueError."""
-    if b"<!DOCTYPE" in data:  # an agent sends none, and entities can grow without end
+    """Return the status in an MTConnectStreams document and its faults. Raises ValueError."""
+    if b"<!DOCTYPE" in data:  # agents do not send a DOCTYPE, and entities could grow without limit
         raise ValueError(data[:40])
     try:
         device = next(_named(ElementTree.fromstring(data), "DeviceStream"), None)
@@ -204,7 +211,7 @@ def streams_answer(data: bytes) -> Answer:
 
 
 def _state(device: Element, *, faulty: bool) -> str:
-    """In the words of our own desks, where they have one."""
+    """Return the state, in TurnDesk's words where possible."""
     if "TRIGGERED" in _values(device, "EmergencyStop"):
         return "E-STOP"
     if faulty:
@@ -229,7 +236,7 @@ def _whole(text: str | None) -> int | None:
 
 
 def _named(inside: Element, name: str) -> Iterator[Element]:
-    """Whatever the version of the standard, which stands in the name space."""
+    """Yield the elements with a name, independent of the version in the namespace."""
     return (each for each in inside.iter() if each.tag.rpartition("}")[2] == name)
 
 

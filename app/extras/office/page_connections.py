@@ -1,6 +1,6 @@
-"""Connections of browsers to the status page: limited in number, each with a deadline for its request.
+"""Browser connections of the status page: limited in number and with a deadline per request.
 
-Imported only where waitress is installed.
+This module is imported only if waitress is installed.
 """
 
 from __future__ import annotations
@@ -15,17 +15,17 @@ if TYPE_CHECKING:
     from waitress.adjustments import Adjustments
     from waitress.server import BaseWSGIServer
 
-DEADLINE = 10.0  # s for a whole request, and for reading the whole answer
-MOST = 100  # connections in all
+DEADLINE = 10.0  # seconds for a whole request, and for reading the whole response
+MOST = 100  # total connections
 MOST_OF_ONE = 20  # connections of one address; a browser opens six
-_NO_HTTP = b"?\r\n\r\n"  # what waitress refuses as a bad request
+_NO_HTTP = b"?\r\n\r\n"  # data that waitress rejects as a bad request
 
 
 class Connection(HTTPChannel):
-    """One browser; ``since`` is when it connected or was answered last.
+    """Browser connection. ``since`` is the time of the connection or of the last response.
 
-    A new connection beyond a limit ends the oldest one that is not being answered. So whoever asks a whole
-    question at once is answered, however many others hold theirs back.
+    A new connection beyond a limit closes the oldest connection that is not being answered. A complete
+    request is therefore answered even while others withhold theirs.
     """
 
     def __init__(
@@ -43,7 +43,7 @@ class Connection(HTTPChannel):
         self._make_room()
 
     def received(self, data: bytes) -> bool:
-        """Take bytes of a request; those that waitress cannot parse are a bad request."""
+        """Process received bytes. Unparsable bytes become a bad request."""
         try:
             return bool(super().received(data))
         except ValueError:
@@ -51,12 +51,12 @@ class Connection(HTTPChannel):
             return bool(super().received(_NO_HTTP))
 
     def service(self) -> None:
-        """Answer; the time for reading the answer and for the next request begins now."""
+        """Send the response and restart the time limit."""
         super().service()
         self.since = self._clock()
 
     def end_if_late(self) -> None:
-        """End a connection that has used up its time while nothing here kept it waiting."""
+        """Close the connection if its time is used up and no request is being answered."""
         if not self.requests and self._clock() - self.since > DEADLINE:
             self.will_close = True
 

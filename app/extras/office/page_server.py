@@ -1,4 +1,4 @@
-"""The server of the status page: a socket that listens, and the threads that answer browsers."""
+"""Server of the status page: listening socket, and threads that answer browsers."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ from core.ports import DriverError
 if TYPE_CHECKING:
     from _typeshed.wsgi import WSGIApplication
 
-_THREADS = 3  # that answer browsers
-_WAITING = 100  # connections that the system holds until they are accepted
+_THREADS = 3  # threads that answer browsers
+_WAITING = 100  # connections that the system queues until they are accepted
 _LONGEST = 16 * 1024  # bytes of a request
-_TURN = 0.5  # s
-ENDS = 2.0  # s that closing waits for its threads
+_TURN = 0.5  # seconds
+ENDS = 2.0  # seconds that closing waits for its threads
 
 
 class PageServer:
-    """Answers browsers on a socket that listens, until it is closed."""
+    """Server that answers browsers until it is closed."""
 
     def __init__(
         self,
@@ -36,7 +36,7 @@ class PageServer:
         between: Callable[[], None],
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        """``between`` is called twice a second by the server's own thread."""
+        """Create the server. Its thread calls ``between`` twice per second."""
         from waitress import wasyncore
         from waitress.server import create_server
         from waitress.task import ThreadedTaskDispatcher
@@ -47,7 +47,8 @@ class PageServer:
         self._between, self._clock = between, clock
         self._channels: dict[int, Any] = {}
         self._workers = ThreadedTaskDispatcher()
-        self._workers.queue_logger.setLevel(logging.ERROR)  # that one browser waits for another is no warning
+        # a browser that waits for another one is not worth a warning
+        self._workers.queue_logger.setLevel(logging.ERROR)
         self._workers.set_thread_count(_THREADS)
         server: Any = create_server(
             page,
@@ -55,7 +56,7 @@ class PageServer:
             _dispatcher=self._workers,
             sockets=[listening],
             ident="",
-            connection_limit=2 * MOST,  # never reached: Connection has the limits
+            connection_limit=2 * MOST,  # never reached, because Connection has lower limits
             max_request_body_size=1,
             max_request_header_size=_LONGEST,
         )
@@ -65,11 +66,11 @@ class PageServer:
         self._thread = threading.Thread(target=self._serve, name="status-page", daemon=True)
 
     def start(self) -> None:
-        """Once."""
+        """Start the thread; to be called once."""
         self._thread.start()
 
     def close(self) -> None:
-        """No browser is answered any more."""
+        """Stop answering browsers."""
         self._closing.set()
         self._thread.join(ENDS)
 
@@ -82,19 +83,19 @@ class PageServer:
             if self._clock() - looked >= _TURN:
                 looked = self._clock()
                 self._between()
-        self._workers.shutdown(timeout=1)  # first: an answer that is ready still needs the sockets
+        self._workers.shutdown(timeout=1)  # first, because a finished response still needs the sockets
         self._close_all(self._channels)
 
 
 def listening_at(bind: str, port: int) -> socket.socket:
-    """The socket on which browsers ask. Raises DriverError."""
+    """Return the listening socket for browsers. Raises DriverError."""
     try:
         family, kind, protocol, _, address = socket.getaddrinfo(bind, port, type=socket.SOCK_STREAM)[0]
         found = socket.socket(family, kind, protocol)
     except OSError as error:
         raise DriverError(_why(bind, port, error)) from error
     try:
-        if sys.platform != "win32":  # elsewhere it lets two programs listen at one port
+        if sys.platform != "win32":  # On Windows, this option would let two programs listen on one port.
             found.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         found.bind(address)
         found.listen(_WAITING)

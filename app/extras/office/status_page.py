@@ -1,7 +1,8 @@
-"""The page for the office and the telephone: one desk, and those beside it. It shows; it takes no orders.
+"""Status page of TurnDesk and other machines for office and phone; display only.
 
-A WSGI application: ``/`` the page, ``/now`` what of it changes, ``status.json``, ``part.png``, ``alarm.svg``.
-People read it in the language of the screen; ``status.json``, which programs read, has one language.
+A WSGI application with the addresses ``/`` (the page), ``/now`` (its changing part), ``status.json``,
+``part.png`` and ``alarm.svg``. The page uses the language of the screen, and ``status.json`` is independent
+of the language.
 """
 
 from __future__ import annotations
@@ -28,28 +29,31 @@ if TYPE_CHECKING:
     from _typeshed.wsgi import StartResponse, WSGIEnvironment
 
 _FILES = Path(__file__).with_name("page")
-COOKIE = "turndesk-"  # and the port: a browser keeps one name for all ports of a computer
+COOKIE = "turndesk-"  # followed by the port, because browsers share cookies between all ports of a computer
 _NO_ORDERS = b"this page takes no orders\n"
 _NO_TOKEN = b"open this page with ?token= and the token of the machine file\n"
 _GOOD = frozenset({"RUNNING", "WAITING", "READY", "JOG", "HOMING"})
 _BAD = frozenset({"ALARM", "E-STOP", "CONTROL SILENT", "NO ANSWER"})
-NOT_YET = "…"  # nobody has asked it yet
+NOT_YET = "…"  # not read yet
 Headers = list[tuple[str, str]]
 
 
 @dataclass(frozen=True, slots=True)
 class OtherDesk:
-    """Another desk as it was last heard; ``status`` None: nothing is known of it, ``trouble`` says why."""
+    """Latest state of another machine.
+
+    ``status`` is None if not known, and ``trouble`` is the reason.
+    """
 
     address: str
     status: Mapping[str, Any] | None = None
     trouble: str = ""
-    state: str = "NO ANSWER"  # where nothing is known of it
+    state: str = "NO ANSWER"  # state if the status is not known
 
 
 @dataclass(frozen=True, slots=True)
 class StatusPage:
-    """``picture``: the loaded part as PNG, ``alarm``: the scope's last alarm as SVG; empty: there is none."""
+    """Status page. ``picture`` returns the part as PNG, ``alarm`` the last alarm as SVG, or empty bytes."""
 
     machine: str
     token: str
@@ -59,7 +63,7 @@ class StatusPage:
     alarm: Callable[[], bytes]
 
     def __call__(self, environ: WSGIEnvironment, start: StartResponse) -> Iterable[bytes]:
-        """Answer one request, as WSGI wants it."""
+        """Answer one WSGI request."""
         status, headers, body = self._answer(environ)
         size = ("Content-Length", str(len(body)))
         start(f"{status.value} {status.phrase}", [*headers, *_ALWAYS, size])
@@ -84,7 +88,7 @@ class StatusPage:
         return HTTPStatus.OK, [("Content-Type", kind), *kept], body
 
     def page(self) -> tuple[str, bytes]:
-        """The whole page."""
+        """Return the type and content of the whole page."""
         frame = Template((_FILES / "page.html").read_text("utf-8"))
         page = frame.substitute(
             title=escape(self.machine),
@@ -99,27 +103,30 @@ class StatusPage:
         return "text/html; charset=utf-8", page.encode()
 
     def now(self) -> tuple[str, bytes]:
-        """What of the page changes."""
+        """Return the type and content of the changing part of the page."""
         return "text/html; charset=utf-8", self._now().encode()
 
     def style(self) -> tuple[str, bytes]:
-        """How it looks."""
+        """Return the type and content of the style sheet."""
         return "text/css; charset=utf-8", (_FILES / "page.css").read_bytes()
 
     def script(self) -> tuple[str, bytes]:
-        """What looks again, and says when nobody answers any more."""
+        """Return the type and content of the script.
+
+        The script refreshes the page and reports lost connections.
+        """
         return "text/javascript; charset=utf-8", (_FILES / "page.js").read_bytes()
 
     def json(self) -> tuple[str, bytes]:
-        """The same for other desks and for scripts."""
+        """Return the type and content of the JSON for other machines and scripts."""
         return "application/json", (json.dumps(self.status(), indent=1) + "\n").encode()
 
     def png(self) -> tuple[str, bytes]:
-        """The part of the program on the desk."""
+        """Return the type and content of the part's picture."""
         return "image/png", self.picture()
 
     def svg(self) -> tuple[str, bytes]:
-        """Following errors in the seconds before the last alarm."""
+        """Return the type and content of the following errors before the last alarm."""
         return "image/svg+xml", self.alarm()
 
     def _now(self) -> str:
@@ -141,7 +148,7 @@ _PAGES: dict[str, Callable[[StatusPage], tuple[str, bytes]]] = {
 
 
 def _given(environ: WSGIEnvironment) -> str:
-    """The token that a browser brings: in the address, as a bearer, or in the cookie of before."""
+    """Return the token of a request from the address, the bearer header or the cookie."""
     query = parse_qs(environ.get("QUERY_STRING", "")).get("token", [""])[0]
     bearer = environ.get("HTTP_AUTHORIZATION", "").removeprefix("Bearer ")
     try:
@@ -163,12 +170,12 @@ def _look(state: str) -> str:
 
 
 def _mark(picture: bytes) -> str:
-    """By which a browser sees that it is another one than before; empty: there is none."""
+    """Return a checksum by which a browser detects a new picture, or an empty string."""
     return f"{crc32(picture):x}" if picture else ""
 
 
 def _picture(name: str, address: str, picture: bytes, words: str) -> str:
-    """The drawing with its words below; hidden while there is none."""
+    """Return a figure with its caption, hidden without a picture."""
     mark = _mark(picture)
     source = f'src="{address}?{mark}"' if mark else ""
     hidden = "" if mark else " hidden"
@@ -180,7 +187,7 @@ def _desk(status: Status) -> str:
     alarms = found if isinstance(found := status["alarms"], list) else []
     told = "".join(map(_alarm, alarms))
     if any(each["text"] == status["stop"] for each in alarms):
-        status = {**status, "stop": ""}  # the alarm says it, and what to do
+        status = {**status, "stop": ""}  # the alarm contains this text and the remedy
     made = f'<p class="made">{escape(_local(status["updated"]))}</p>'
     return f"{_head(status)}{told}{_table(_figures(status))}{_stops(status)}{made}"
 
@@ -193,7 +200,7 @@ def _alarm(alarm: Mapping[str, Any]) -> str:
 
 
 def _head(status: Mapping[str, Any], trouble: str = "") -> str:
-    """The state, and why."""
+    """Return the state and its reason."""
     state = str(status.get("state") or status.get("execution") or "?")
     why = trouble or str(status.get("stop") or status.get("waiting_for") or "")
     said = f'<p class="why">{escape(tr(why))}</p>' if why else ""
@@ -201,9 +208,9 @@ def _head(status: Mapping[str, Any], trouble: str = "") -> str:
 
 
 def _local(at: object, *, short: bool = False) -> str:
-    """A moment in ISO 8601 as the clock of this desk shows it; what is none stays as it is.
+    """Return an ISO 8601 time in local time, or the text unchanged if it is not a time.
 
-    ``short``: without the date where that is today's, without seconds where it is not.
+    ``short`` omits today's date, and otherwise the seconds.
     """
     try:
         here = datetime.fromisoformat(str(at)).astimezone()

@@ -1,4 +1,4 @@
-"""HTTP exchanges with a deadline for the whole of each, and why another computer could not be reached."""
+"""HTTP requests with a deadline for the whole exchange, and causes of failed connections."""
 
 from __future__ import annotations
 
@@ -28,30 +28,30 @@ Clock = Callable[[], float]
 
 
 class _TimedReader(io.RawIOBase):
-    """The bytes of a socket until ``left`` seconds are used up. Raises TimeoutError."""
+    """Reader of a socket until ``left`` returns 0 seconds. Raises TimeoutError."""
 
     def __init__(self, raw: io.RawIOBase, sock: socket.socket, left: Callable[[], float]) -> None:
         self._raw, self._socket, self._left = raw, sock, left
 
     def readable(self) -> bool:
-        """Always."""
+        """Return True."""
         return True
 
     def readinto(self, buffer: Any, /) -> int | None:
-        """Wait for some bytes, for the rest of the time at most."""
+        """Read some bytes, waiting at most for the remaining time."""
         if (left := self._left()) <= 0.0:
             raise TimeoutError("timed out")
         self._socket.settimeout(left)
         return self._raw.readinto(buffer)
 
     def close(self) -> None:
-        """Close the socket as well."""
+        """Close the reader and the socket."""
         self._raw.close()
         super().close()
 
 
 class _TimedResponse(HTTPResponse):
-    """An answer that is read for ``left`` seconds at most."""
+    """Response that is read within ``left`` seconds."""
 
     def __init__(self, sock: socket.socket, *args: Any, left: Callable[[], float], **more: Any) -> None:
         super().__init__(sock, *args, **more)
@@ -60,7 +60,7 @@ class _TimedResponse(HTTPResponse):
 
 
 def _timed(kind: Callable[..., HTTPConnection], clock: Clock, host: str, **more: Any) -> HTTPConnection:
-    """A connection whose time runs from now, for as long as urllib waits for a part of it."""
+    """Return a connection whose time limit starts now and applies to the whole exchange."""
     connection, end = kind(host, **more), clock() + more["timeout"]
     connection.response_class = partial(_TimedResponse, left=lambda: end - clock())  # type: ignore[assignment]
     return connection
@@ -72,29 +72,29 @@ class _TimedHandler(HTTPHandler, HTTPSHandler):
         self._clock = clock
 
     def http_open(self, req: Request) -> HTTPResponse:
-        """Ask without TLS."""
+        """Open a connection without TLS."""
         return self.do_open(partial(_timed, HTTPConnection, self._clock), req)
 
     def https_open(self, req: Request) -> HTTPResponse:
-        """Ask with TLS; the certificate of the other side is verified."""
+        """Open a connection with TLS and verify the certificate."""
         return self.do_open(partial(_timed, HTTPSConnection, self._clock), req)
 
 
 def timed_opener(*handlers: BaseHandler | type[BaseHandler], clock: Clock = time.monotonic) -> OpenerDirector:
-    """An opener of urllib whose ``timeout`` is the deadline of the whole exchange after connecting."""
+    """Return a urllib opener whose ``timeout`` limits the whole exchange after connecting."""
     return build_opener(_TimedHandler(clock), *handlers)
 
 
-LONGEST = 200  # characters of what the other side says that a sentence repeats
+LONGEST = 200  # characters of the other side's text in a message
 NO_ANSWER = "no answer"
 _NO_TLS = frozenset({"WRONG_VERSION_NUMBER", "RECORD_LAYER_FAILURE", "HTTP_REQUEST"})
 _TLS_ALERT = "\x15\x03"
-_CAUSES = 10  # that are told of one trouble: somebody may answer otherwise each time
+_CAUSES = 10  # reported causes of one problem, because a server can respond differently each time
 
 
 def cause_of(error: Exception) -> str:
-    """In the words of the system or of the other side, without numbers, passwords and tokens."""
-    cause = error.reason if isinstance(error, URLError) else error  # it wraps what the system has said
+    """Return the cause in the words of the system or the other side, without passwords and tokens."""
+    cause = error.reason if isinstance(error, URLError) else error  # URLError wraps the error of the system.
     match cause:
         case TimeoutError() if cause.errno is None:
             words = NO_ANSWER
@@ -111,7 +111,7 @@ def cause_of(error: Exception) -> str:
             words = "the server accepts TLS only; use an address that begins with https://"
         case BadStatusLine():
             words = "the server's response is not HTTP"
-        case InvalidURL():  # its sentence has the address with the token
+        case InvalidURL():  # its message contains the address with the token
             words = "the address contains characters that are not allowed in an address"
         case _:
             words = str(getattr(cause, "strerror", None) or cause)
@@ -119,29 +119,29 @@ def cause_of(error: Exception) -> str:
 
 
 def host_of(address: str) -> str:
-    """Scheme, host and port of a web address: the rest may hold a password or a token."""
+    """Return scheme, host and port of an address, without parts that can contain a password or token."""
     parts = urlsplit(address)
     return f"{parts.scheme}://{parts.netloc.rpartition('@')[2]}"
 
 
 def one_line(words: str) -> str:
-    """What somebody else has said, without what a terminal obeys."""
+    """Return a text from the other side without control characters, on one line and limited in length."""
     return "".join(sign for sign in words if sign.isprintable())[:LONGEST]
 
 
 class Trouble:
-    """Says to a log why somebody cannot be told: each cause once, until he was told again."""
+    """Logger of failed deliveries: each cause is logged once until a delivery succeeds."""
 
     def __init__(self, log: logging.Logger, who: str) -> None:
         self._log, self._who = log, who
         self._said = set[str]()
 
     def say(self, why: str) -> None:
-        """From any thread."""
+        """Log a cause; callable from any thread."""
         if why not in self._said and len(self._said) < _CAUSES:
             self._said.add(why)
             self._log.warning("%s cannot be told: %s", self._who, why)
 
     def over(self) -> None:
-        """The next time all of it is news again."""
+        """Reset the logged causes after a successful delivery."""
         self._said.clear()

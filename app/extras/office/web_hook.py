@@ -1,4 +1,4 @@
-"""A web hook is told: each announcement is posted to an address, until it is taken or refused."""
+"""Webhook receiver: each announcement is posted to an address until it is accepted or rejected."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ from app.extras.office.timed_http import Clock, Trouble, cause_of, host_of, one_
 from app.shopfloor.status_file import Status
 from core.message import Message
 
-_PATIENCE = 5.0  # s
+_PATIENCE = 5.0  # seconds
 _LATER = frozenset({HTTPStatus.REQUEST_TIMEOUT, HTTPStatus.TOO_MANY_REQUESTS})
 _log = logging.getLogger(__name__)
 
 
 class WebHook:
-    """Each announcement is posted as JSON, by a thread of its own, in their order.
+    """Webhook that posts each announcement as JSON, in order, in a separate thread.
 
-    A host that is away or has a fault of its own is asked again after ``again`` seconds. What it refuses
-    (4xx) or sends elsewhere (3xx) would be refused again: that one is given up.
+    After a failed connection or a server error, the post is repeated after ``again`` seconds. A rejected
+    (4xx) or redirected (3xx) announcement is discarded.
     """
 
     def __init__(self, address: str, again: float, post: Callable[[str, bytes], None] | None = None) -> None:
@@ -38,15 +38,15 @@ class WebHook:
         self._thread.start()
 
     def state(self, status: Status) -> None:
-        """A web hook is told of what happens, not of every change."""
+        """Do nothing, because a webhook receives only announcements."""
 
     def tell(self, announcement: Announcement) -> None:
-        """Queue it."""
+        """Queue an announcement."""
         self._waiting.append(announcement)
         self._there.set()
 
     def close(self) -> None:
-        """What is under way goes out; nobody waits for it."""
+        """Finish the present post without waiting for it."""
         self._closing.set()
         self._there.set()
 
@@ -58,13 +58,14 @@ class WebHook:
                 self._until_taken(self._waiting.popleft())
 
     def _until_taken(self, announcement: Announcement) -> None:
-        while not self._settled(announcement) and len(self._waiting) < HELD:  # else newer ones push it out
+        # otherwise newer announcements displace it
+        while not self._settled(announcement) and len(self._waiting) < HELD:
             if self._closing.wait(self._again):
                 self._waiting.clear()
                 return
 
     def _settled(self, announcement: Announcement) -> bool:
-        """Whether it is taken, or refused for good."""
+        """Return whether an announcement was accepted or finally rejected."""
         try:
             self._post(self._address, announcement.json())
         except (URLError, HTTPException, OSError, ValueError) as error:
@@ -75,14 +76,17 @@ class WebHook:
 
 
 class _Stay(HTTPRedirectHandler):
-    """Goes nowhere else: urllib would ask there by GET, without what is to be told."""
+    """Handler that follows no redirection, because urllib would use GET without the data."""
 
     def redirect_request(self, *_request: object, **_more: object) -> None:
-        """No other request: the answer stands as a refusal."""
+        """Return None, so that the redirection counts as a rejection."""
 
 
 def posted(address: str, body: bytes, clock: Clock = time.monotonic) -> None:
-    """Post JSON to an address. Raises OSError, ValueError or HTTPException, also after ``_PATIENCE``."""
+    """Post JSON to an address.
+
+    Raises OSError, ValueError or HTTPException, also after ``_PATIENCE``.
+    """
     request = Request(address, body, {"Content-Type": "application/json"}, method="POST")
     try:
         with timed_opener(_Stay, clock=clock).open(request, timeout=_PATIENCE):

@@ -1,4 +1,4 @@
-"""Registers the pendant."""
+"""Registration of the pendant."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ if TYPE_CHECKING:
     from core.machine.machine_model import Machine
     from core.table_schema import Driver
 
-_TABLE = "pendant"  # the pendant is loaded by the machines that have this table
+_TABLE = "pendant"  # table whose presence loads the pendant
 
 
 class Pendant(Extra):
-    """Buttons and the handwheel of a USB pendant, and [pendant]."""
+    """Optional feature with the buttons and handwheel of a USB pendant, and the table [pendant]."""
 
     threads = {"pendant": "PENDANT CONNECTION"}
     tables_follow = "setter"

@@ -1,4 +1,4 @@
-"""The pendant of a machine file: its device is opened and read beside the machine's own ports."""
+"""Pendant of a machine file: its device is opened and read in addition to the machine's ports."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ Find = Callable[[PendantModel, Mapping[str, Control]], Sequence[EventSource]]
 
 
 def wired(machine: Machine) -> Machine:
-    """The machine without what is at its pendant: what its backend is wired to."""
+    """Return the machine without the inputs and the handwheel of the pendant, as its backend is wired."""
     inputs = {name: each for name, each in machine.inputs.items() if not _at_pendant(each.terminal)}
     pots = {name: each for name, each in machine.hardware.analog.items() if not _at_pendant(each.terminal)}
     return replace(machine, inputs=inputs, hardware=replace(machine.hardware, analog=pots))
 
 
 def open_devices(model: PendantModel, wanted: Mapping[str, Control]) -> Sequence[EventSource]:
-    """The nodes of the one device that is meant. Raises DriverError with what to do."""
+    """Open the nodes of the matching device. Raises DriverError with the remedy."""
     if sys.platform != "linux":
         raise DriverError("a USB pendant works only on Linux; remove [pendant] from the machine file")
     devices: list[KernelDevice] = []
@@ -47,7 +47,10 @@ def open_devices(model: PendantModel, wanted: Mapping[str, Control]) -> Sequence
 
 
 def with_pendant(machine: Machine, connected: Connected, find: Find | None = None) -> Connected:
-    """The same machine with its pendant, where the file has one. One that is away is told, and looked for."""
+    """Return the machine with its pendant, if configured.
+
+    A missing pendant is reported and searched for.
+    """
     model = machine.hardware.table(PendantModel)
     if model is None:
         return connected

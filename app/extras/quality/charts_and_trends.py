@@ -1,4 +1,4 @@
-"""Control charts of a feature with its Cpk, and trends: cycle time, load, wear, stops, availability."""
+"""Control charts with Cpk of a feature, and trends: cycle time, load, wear, stops and availability."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ _MOST_BARS = 8
 
 
 class TrendsSection(QualitySection):
-    """A row a trend with its figure, the drawing of the marked one below."""
+    """Section with one row per trend and the chart of the selected trend below."""
 
     name = "TRENDS"
     use = "cycle times, stops, availability"
@@ -58,22 +58,22 @@ class TrendsSection(QualitySection):
 
     @property
     def count(self) -> int:
-        """The trends."""
+        """Number of trends."""
         return len(self.kinds)
 
     @property
     def kind(self) -> str:
-        """The marked one."""
+        """Selected trend."""
         return self.kinds[self.marked]
 
     @property
     def kinds(self) -> tuple[str, ...]:
-        """Those of this machine: a mill's tools wear by DL and DR, which nobody has followed yet."""
+        """Trends of this machine. A mill has no wear trend, because DL and DR are not recorded."""
         return tuple(each for each in KINDS if each != "WEAR" or not self.of_mill)
 
     @property
     def shift(self) -> tuple[int, int]:
-        """First hour and last of the shift, by the clock on the wall; read once."""
+        """First and last hour of the shift in local time, loaded once."""
         if self._shift is None:
             try:
                 kept = self.desk.runs.counter.persistence.read_setting(SETTING)
@@ -83,7 +83,7 @@ class TrendsSection(QualitySection):
         return self._shift
 
     def sheet(self, _snapshot: Snapshot) -> Sheet:
-        """Each trend with what it comes to."""
+        """Return the table of the trends with their values."""
         self.settle()
         minute = int(self._now().timestamp() // 60)
         of = (self.watch.book.loads, self.program, self.mode, minute, self.shift)
@@ -94,7 +94,7 @@ class TrendsSection(QualitySection):
         return Sheet(title, ("", ""), (0.25, 0.75), self._rows[1], self.marked, question, self.entry.text,
                      raw=frozenset({1}))  # fmt: skip
 
-    # --- figures -------------------------------------------------------------------------------------
+    # --- values --------------------------------------------------------------------------------------
 
     def _figure(self, kind: str) -> str:
         return {
@@ -176,7 +176,7 @@ class TrendsSection(QualitySection):
         )
 
     def of_shift(self) -> Availability | None:
-        """Of the shift that is on, up to now, or that ended last; whatever program ran. None before it."""
+        """Return the availability of the present or last shift for all programs, or None before the first."""
         now = self._now()
         shift = shift_of(self.shift, now)
         ends = min(shift.end, now.timestamp())
@@ -187,7 +187,7 @@ class TrendsSection(QualitySection):
     # --- drawing -------------------------------------------------------------------------------------
 
     def drawing(self) -> ChartDrawing:
-        """Of the marked trend."""
+        """Return the chart of the selected trend."""
         of = (self.watch.book.loads, self.program, self.kind, self.mode)
         if self._made[0] != of:
             self._made = of, ChartDrawing(self._plots(), of)
@@ -211,7 +211,10 @@ class TrendsSection(QualitySection):
         return (Plot(tr("CYCLE TIME, s"), (Curve(_numbers(len(rows)), times),), (mean,), across=tr("parts")),)
 
     def _wear_plots(self) -> tuple[Plot, ...]:
-        """X of tools as a diameter; each correction holds until the next one of the same offset."""
+        """Return the wear charts, with X of tools as a diameter.
+
+        A correction applies until the next one.
+        """
         unit, made = self.mode.unit, float(max((row.part for row in self.data.cycles), default=0))
         curves: list[list[Curve]] = [[], []]
         for number, (kind, offset) in enumerate(sorted({(r.kind, r.number) for r in self.data.corrections})):
@@ -257,11 +260,11 @@ class TrendsSection(QualitySection):
     # --- the shift -----------------------------------------------------------------------------------
 
     def takes(self, key: str) -> bool:
-        """Hours of the shift, where they are asked for."""
+        """Return whether a character is part of the shift hours."""
         return self.kind == "AVAILABILITY" and len(key) == 1 and (key.isdigit() or key == "-")
 
     def typed(self, key: str) -> bool:
-        """Arrows, and the hours."""
+        """Handle a key: arrows select a trend, and other keys edit the shift hours."""
         if self.moves(key):
             self.entry.text = ""
             return True
@@ -277,7 +280,7 @@ class TrendsSection(QualitySection):
         return True
 
     def take(self, text: str) -> bool:
-        """First and last hour. Raises EntryError."""
+        """Set the first and last hour of the shift. Raises EntryError."""
         first, _, last = text.partition("-")
         if not (first.isdigit() and last.isdigit() and int(first) < 24 and int(last) <= 24):
             raise EntryError(tr("enter the start and end hour of the shift, such as 6-14"))
@@ -292,7 +295,7 @@ class TrendsSection(QualitySection):
         return True
 
     def prompt(self) -> str:
-        """What can be done here."""
+        """Return the prompt, or the reason why nothing is stored."""
         return self.watch.book.locked or ("ARROWS: SELECT TREND   ESC: BACK TO LIST")
 
 
@@ -300,11 +303,11 @@ def _numbers(count: int) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
     return np.arange(1, count + 1, dtype=np.float64)
 
 
-SHOWN = 100  # newest readings that a chart is made of
+SHOWN = 100  # number of latest readings in a chart
 
 
 class ChartsSection(QualitySection):
-    """A row a feature, the charts of the marked one below."""
+    """Section with one row per feature and the charts of the selected feature below."""
 
     name = "CONTROL CHARTS"
     use = "limits, Cpk, drift"
@@ -317,23 +320,23 @@ class ChartsSection(QualitySection):
 
     @property
     def count(self) -> int:
-        """Features."""
+        """Number of features."""
         return len(self.data.features)
 
     def takes(self, _key: str) -> bool:
-        """Nothing is typed here."""
+        """Return False, because this section has no entry."""
         return False
 
     def take(self, _text: str) -> bool:
-        """Nothing is typed here."""
+        """Return False, because this section has no entry."""
         return False
 
     def typed(self, key: str) -> bool:
-        """The arrows alone."""
+        """Move the selection by arrow keys."""
         return self.moves(key)
 
     def sheet(self, _snapshot: Snapshot) -> Sheet:
-        """Mean, capability and drift of each feature."""
+        """Return the table with mean, capability and drift of each feature."""
         self.settle()
         mode = self.mode
         of = (self.watch.book.loads, self.program, mode)
@@ -378,7 +381,7 @@ class ChartsSection(QualitySection):
         return self.data.readings_of(row.id)[-SHOWN:]
 
     def _drift(self, row: FeatureRow, values: list[float]) -> str:
-        """The last thing that a rule has found, where it is among the last ten points."""
+        """Return the latest rule violation within the last ten points, or an empty string."""
         try:
             chart = charts_of(values, row.sample).location
         except QualityError:
@@ -387,7 +390,7 @@ class ChartsSection(QualitySection):
         return tr(late[-1].words) if late else ""
 
     def drawing(self) -> ChartDrawing:
-        """Location over spread of the marked feature, made when something has changed."""
+        """Return the charts of location and spread of the selected feature, rebuilt after a change."""
         row, mode = self.feature, self.mode
         of = (self.watch.book.loads, self.program, row.id if row is not None else 0, mode)
         if self._made[0] != of:
@@ -400,7 +403,8 @@ class ChartsSection(QualitySection):
             return ChartDrawing((), of)
         parts = [each.part for each in taken]
         if any(after <= before for before, after in pairwise(parts)):
-            parts = list(range(1, len(taken) + 1))  # counted anew, or measured twice: by turns
+            # The count was reset or a part was measured twice, so readings are numbered in sequence.
+            parts = list(range(1, len(taken) + 1))
         try:
             pair = charts_of([each.value for each in taken], row.sample)
         except QualityError:
@@ -410,7 +414,7 @@ class ChartsSection(QualitySection):
         return ChartDrawing(control_plots(pair, parts, feature_of(row).limits, titled, self.mode.unit), of)
 
     def prompt(self) -> str:
-        """What the lines are."""
+        """Return the prompt, which explains the lines of the chart."""
         return self.missing() or (
             "ARROWS: SELECT FEATURE. DASHED: CONTROL LIMITS, DOTTED: TOLERANCE, CIRCLED: RULE VIOLATIONS"
         )

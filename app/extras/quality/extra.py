@@ -1,4 +1,4 @@
-"""Registers measured parts and the shift report."""
+"""Registration of measured parts and the shift report."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class Quality(Extra):
-    """The page MEASURED PARTS, the shift report, their commands, and [gauge] of the machine file."""
+    """Optional feature with the page MEASURED PARTS, the shift report, commands and the table [gauge]."""
 
     commands = {
         "parts": Subcommand(

@@ -1,4 +1,4 @@
-"""Features of the parts of a program: name, nominal, tolerance, what corrects them, how many are measured."""
+"""Features of a program's parts: name, nominal size, tolerance, corrected offset and sampling."""
 
 from __future__ import annotations
 
@@ -41,11 +41,11 @@ FIELDS = (
     "MEASURE EVERY N PARTS (0: NEVER)",
     "PARTS PER SAMPLE",
 )
-_OF_OMNITURN = {"CORRECTED BY"}  # its D offsets
+_OF_OMNITURN = {"CORRECTED BY"}  # D offsets exist only in OmniTurn programs.
 _OF_LATHES = {
     "TOOL OR OFFSET NUMBER",
     "EFFECT OF LARGER OFFSET ON SIZE",
-}  # a mill's DL and DR are typed into its tool table
+}  # DL and DR of a mill are entered in the tool table.
 _TURNED = {"MEASURED", "CORRECTED BY", "EFFECT OF LARGER OFFSET ON SIZE"}
 _WHOLE = {
     "TOOL OR OFFSET NUMBER": "number",
@@ -57,7 +57,7 @@ _LENGTHS = {"NOMINAL": "nominal", "UPPER DEVIATION": "high", "LOWER DEVIATION": 
 
 @dataclass(slots=True)
 class Draft:
-    """A feature that is being entered; ``id`` 0: a new one."""
+    """Feature that is being edited. ``id`` is 0 for a new feature."""
 
     feature: Feature
     id: int = 0
@@ -66,11 +66,11 @@ class Draft:
 
     @property
     def field(self) -> str:
-        """The field under the mark."""
+        """Selected field."""
         return self.fields[self.at]
 
     def cell(self, field: str, mode: Mode) -> str:
-        """A field as the operator reads it."""
+        """Return the text of a field."""
         feature = self.feature
         if field == "NAME":
             return feature.name
@@ -86,7 +86,7 @@ class Draft:
         return size(value, mode) if field == "NOMINAL" else signed_size(value, mode)
 
     def turn(self) -> None:
-        """The other choice of a field that has two."""
+        """Switch a field with two choices to the other choice."""
         feature = self.feature
         if self.field == "MEASURED":
             diameter = feature.kind is FeatureKind.DIAMETER
@@ -98,7 +98,7 @@ class Draft:
             self.feature = replace(feature, grows=-feature.grows)
 
     def take(self, text: str, mode: Mode) -> None:
-        """What is typed into the field. Raises EntryError."""
+        """Set the selected field to the typed text. Raises EntryError."""
         field = self.field
         if field == "NAME":
             self.feature = replace(self.feature, name=text.strip().upper())
@@ -113,7 +113,10 @@ class Draft:
 
 
 class FeaturesSection(QualitySection):
-    """The list of features; F2 and Return open one to be entered, F6 keeps it."""
+    """Section with the list of features.
+
+    F2 adds a feature, Enter opens the selected feature, and F6 saves it.
+    """
 
     name = "FEATURES"
     use = "nominal dimension, tolerance, sampling plan"
@@ -125,17 +128,17 @@ class FeaturesSection(QualitySection):
 
     @property
     def fields(self) -> tuple[str, ...]:
-        """What is asked of a feature on a machine of this language."""
+        """Fields of a feature for the language of the machine."""
         absent = {"omniturn": set[str](), "sinumerik": _OF_OMNITURN, "klartext": _OF_OMNITURN | _OF_LATHES}
         return tuple(each for each in FIELDS if each not in absent[self.desk.machine.language])
 
     @property
     def count(self) -> int:
-        """Fields of the draft, or features."""
+        """Number of fields of the edited feature, or of features."""
         return len(self.draft.fields) if self.draft is not None else len(self.data.features)
 
     def sheet(self, _snapshot: Snapshot) -> Sheet:
-        """The features, or the fields of one."""
+        """Return the table of features, or of the fields of the edited feature."""
         if self.draft is not None:
             return self._fields(self.draft)
         self.settle()
@@ -188,7 +191,7 @@ class FeaturesSection(QualitySection):
         )  # fmt: skip
 
     def keys(self) -> Mapping[str, Key]:
-        """Of the list, or of the draft."""
+        """Return the function keys of the list or of the edited feature."""
         if self.draft is not None:
             return {"F6": Key("SAVE", self.keep)}
         return {
@@ -199,14 +202,14 @@ class FeaturesSection(QualitySection):
         }
 
     def takes(self, key: str) -> bool:
-        """Letters for a name, figures for the rest."""
+        """Return whether a character is part of the entry: letters for a name, digits for other fields."""
         draft = self.draft
         if draft is None or draft.field in _TURNED:
             return False
         return len(key) == 1 and (draft.field == "NAME" or key in CHARACTERS)
 
     def typed(self, key: str) -> bool:
-        """The fields of a draft, or the list."""
+        """Handle a key of the edited feature or of the list."""
         draft = self.draft
         if draft is None:
             return self.moves(key) or (key == "Enter" and self._opened())
@@ -226,7 +229,7 @@ class FeaturesSection(QualitySection):
         return True
 
     def take(self, text: str) -> bool:
-        """The field takes what is typed, or turns over; then the next one is asked for."""
+        """Set the selected field and go to the next one. Raises EntryError."""
         draft = self.draft
         if draft is None:
             return False
@@ -239,7 +242,7 @@ class FeaturesSection(QualitySection):
         return True
 
     def choose(self, row: int) -> None:
-        """A finger on a field marks it; again it is Return."""
+        """Select the touched field. A second touch acts like Enter."""
         if self.draft is None:
             super().choose(row)
         elif row != self.draft.at:
@@ -248,11 +251,11 @@ class FeaturesSection(QualitySection):
             self.enter()
 
     def act(self) -> bool:
-        """Return on a feature opens it."""
+        """Open the selected feature."""
         return self._opened()
 
     def new(self) -> None:
-        """F2: a feature from the beginning."""
+        """Start a new feature (F2)."""
         if not self.program or self.watch.book.locked:
             self.desk.say(self.watch.book.locked or NO_PROGRAM)
             return
@@ -260,7 +263,7 @@ class FeaturesSection(QualitySection):
         self.draft = Draft(NEW, fields=self.fields)
 
     def change(self) -> None:
-        """The marked feature is entered anew; its readings stay."""
+        """Edit the selected feature. Its readings remain."""
         row = self.feature
         if row is None:
             self.desk.say(self.missing())
@@ -269,7 +272,7 @@ class FeaturesSection(QualitySection):
         self.draft = Draft(feature_of(row), row.id, fields=self.fields)
 
     def keep(self) -> None:
-        """F6: keep the feature that is being entered."""
+        """Save the edited feature (F6)."""
         draft = self.draft
         if draft is None:
             return
@@ -293,7 +296,7 @@ class FeaturesSection(QualitySection):
         self.desk.done(tr(Message("{name} SAVED", name=name)))
 
     def remove(self) -> None:
-        """F4: the marked feature is measured no more, after asking."""
+        """Stop measuring the selected feature after confirmation (F4)."""
         row = self.feature
         if row is None:
             self.desk.say(self.missing())
@@ -322,19 +325,19 @@ class FeaturesSection(QualitySection):
             self.desk.keep(self.plan.turn_waits)
 
     def prompt(self) -> str:
-        """What can be done here."""
+        """Return the prompt for the present keys."""
         if self.draft is not None:
             return "FILL IN THE FIELDS. F6: SAVE   ESC: CANCEL"
         return self.missing() or ("ENTER: CHANGE FEATURE   F2: NEW FEATURE   ESC: BACK TO LIST")
 
     def escape(self) -> bool:
-        """What is typed, then the draft."""
+        """Cancel the entry, or else the edited feature."""
         if super().escape():
             return True
         open_one, self.draft = self.draft is not None, None
         return open_one
 
     def left(self) -> None:
-        """Nothing stays half entered."""
+        """Cancel the edited feature when the section closes."""
         super().left()
         self.draft = None

@@ -1,4 +1,4 @@
-"""[gauge] of the machine file: the serial line of a gauge."""
+"""Table [gauge] of the machine file: the serial line of a gauge."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from core.table_schema import Driver, DriverTable
 
 @key_table
 class GaugeModel:
-    """The serial line of a gauge; ``unit`` of lines that do not say theirs."""
+    """Settings of the gauge's serial line. ``unit`` applies to lines that do not state a unit."""
 
     port: str = file_key(meaning="Serial port of the gauge, such as `/dev/serial/by-id/…`.")
     name: str = file_key(default="gauge", meaning="Name that is saved with each reading of the gauge.")

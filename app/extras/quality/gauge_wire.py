@@ -1,4 +1,4 @@
-"""The gauge of a machine file: a thread listens to its serial line and reads Digimatic or plain values."""
+"""Gauge on a serial line: a thread receives readings in Digimatic format or as plain values."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from core.message import CodedError, Message
 from core.ports import DriverError
 from drivers.serial_line import LineSettings, Wire
 
-LONGEST = 60  # characters of a line; more without an end is no gauge
+LONGEST = 60  # characters; a longer line without an end is not from a gauge
 _DIGIMATIC = re.compile(r"\d{2}A([+-]\d{1,8}(?:\.\d{1,8})?)")
 _PLAIN = re.compile(r"([+-]?(?:\d{1,6}(?:[.,]\d{0,7})?|[.,]\d{1,7}))\s*(mm|in|inch|\"|)", re.IGNORECASE)
 _UNITS = {"mm": "mm", "in": "in", "inch": "in", '"': "in", "": ""}
-# What an interface of Mitutoyo answers instead of a value.
+# Error codes of a Mitutoyo interface.
 _ERRORS = {
     "911": ("the gauge is not connected or is switched off", "no-gauge"),
     "912": ("the gauge sent unreadable data", "unreadable"),
@@ -29,19 +29,19 @@ _ERRORS = {
 
 
 class GaugeError(CodedError, ValueError):
-    """A line of a gauge that is not a reading."""
+    """Error for a line that is not a reading."""
 
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """A value as it was sent; ``unit`` mm or in, empty where the line does not say it."""
+    """Reading of a gauge. ``unit`` is mm or in, or empty if the line does not state it."""
 
     value: float
     unit: str = ""
 
 
 def reading_of(line: str) -> Reading:
-    """The value of one line. Raises GaugeError for anything else."""
+    """Return the reading of one line. Raises GaugeError for any other text."""
     text = line.strip()
     if text in _ERRORS:
         raise GaugeError(*_ERRORS[text])
@@ -55,13 +55,16 @@ def reading_of(line: str) -> Reading:
 
 
 class LineReader:
-    """Bytes as they come, cut into lines at CR or LF."""
+    """Splits received bytes into lines at CR or LF."""
 
     def __init__(self) -> None:
         self._text = ""
 
     def lines(self, data: bytes) -> list[str]:
-        """Whole lines; what is unfinished waits, and goes where it is longer than any line."""
+        """Return the complete lines.
+
+        An incomplete line is buffered, or returned if it is too long.
+        """
         self._text += data.decode("ascii", "replace")
         *whole, self._text = re.split(r"[\r\n]+", self._text)
         if len(self._text) > LONGEST:
@@ -71,41 +74,41 @@ class LineReader:
 
 
 class Gauge(Protocol):
-    """A gauge on a serial line. Nothing here waits."""
+    """Gauge on a serial line. No method waits."""
 
     @property
     def open(self) -> bool:
-        """Whether its line is listened to."""
+        """Whether the line is being received."""
         ...
 
     @property
     def name(self) -> str:
-        """As the machine file calls it, kept with its readings."""
+        """Name in the machine file, stored with the readings."""
         ...
 
     @property
     def unit(self) -> str:
-        """Of lines that do not say it, mm or in."""
+        """Unit of lines that do not state it, mm or in."""
         ...
 
     @property
     def words(self) -> str:
-        """Whether it is listened to, and when it was heard last."""
+        """Status text: whether the gauge is being received, and the number or age of its readings."""
         ...
 
     def turn(self) -> str:
-        """Listen, or no more; why not, empty when it does."""
+        """Start or stop receiving. Return a reason if that is not possible, or an empty string."""
         ...
 
     def received(self) -> Sequence[Reading | str]:
-        """What has come since the last look: readings, and sentences of what is wrong."""
+        """Return the readings and error messages since the last call."""
         ...
 
     def close(self) -> None: ...
 
 
 class NoGauge:
-    """A machine whose file names no gauge."""
+    """Gauge of a machine whose file does not define one."""
 
     open = False
     name = ""
@@ -113,28 +116,28 @@ class NoGauge:
 
     @property
     def words(self) -> str:
-        """How a gauge would be wired."""
+        """Text about the configuration of a gauge."""
         return tr("No gauge is configured: enter its serial port under [gauge] in the machine file.")
 
     def turn(self) -> str:
-        """There is none."""
+        """Return the reason why no gauge can be received."""
         return tr("NO GAUGE IN THE MACHINE FILE. ADD [gauge] port = …")
 
     def received(self) -> Sequence[Reading | str]:
-        """Nothing ever comes."""
+        """Return no readings."""
         return ()
 
     def close(self) -> None:
-        """Nothing is open."""
+        """Do nothing, because no line is open."""
 
 
-LISTEN = 0.1  # s that one look at the line lasts
-SILENT = 300.0  # s without a line after which the note says so
+LISTEN = 0.1  # seconds of one receive call
+SILENT = 300.0  # seconds without a line before the status text mentions it
 Open = Callable[[LineSettings], Wire]
 
 
 class GaugeWire:
-    """``app.extras.quality.gauge_wire.Gauge``. The line is opened and closed on its own thread."""
+    """Implementation of ``Gauge`` on a serial line, which its thread opens and closes."""
 
     def __init__(
         self, model: GaugeModel, wire: Open = open_wire, clock: Callable[[], float] = time.monotonic
@@ -143,27 +146,27 @@ class GaugeWire:
         self._heard: queue.SimpleQueue[Reading | str] = queue.SimpleQueue()
         self._ending = threading.Event()
         self._thread: threading.Thread | None = None
-        self._last = 0.0  # when a line came, or listening began
+        self._last = 0.0  # time of the last line, or of the start
         self._count = 0
 
     @property
     def open(self) -> bool:
-        """Whether its line is listened to."""
+        """Whether the line is being received."""
         return self._thread is not None and self._thread.is_alive() and not self._ending.is_set()
 
     @property
     def name(self) -> str:
-        """As the machine file calls it."""
+        """Name in the machine file."""
         return self._model.name
 
     @property
     def unit(self) -> str:
-        """Of lines that do not say theirs."""
+        """Unit of lines that do not state it."""
         return self._model.unit
 
     @property
     def words(self) -> str:
-        """Whether it is listened to, and whether it speaks."""
+        """Status text: whether the gauge is being received, and whether readings arrive."""
         if not self.open:
             return tr("Not listening to the gauge. Press F5 to start.")
         silent = self._clock() - self._last
@@ -177,7 +180,7 @@ class GaugeWire:
         return tr(Message("Listening to the gauge: {count} readings.", count=self._count))
 
     def turn(self) -> str:
-        """Listen, or no more."""
+        """Start or stop receiving."""
         if self.open:
             self.close()
             return ""
@@ -188,14 +191,14 @@ class GaugeWire:
         return ""
 
     def received(self) -> Sequence[Reading | str]:
-        """What has come since the last look."""
+        """Return the readings and messages since the last call."""
         found = []
         while not self._heard.empty():
             found.append(self._heard.get())
         return found
 
     def close(self) -> None:
-        """Listen no more; the thread closes the line."""
+        """Stop receiving. The thread closes the line."""
         self._ending.set()
 
     def _listen(self, ending: threading.Event) -> None:

@@ -1,4 +1,4 @@
-"""``turndesk parts``: counts, times, readings and corrections of the parts that the store knows."""
+"""Command ``turndesk parts``: stored counts, times, readings and corrections of parts."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def add_parser(subparsers: SubParsers) -> None:
-    """Declare the command."""
+    """Declare the options of the command."""
     parser = subparsers.add_parser("parts")
     parser.add_argument("name", nargs="?", metavar="PROGRAM", help="program to show (default: all)")
     form = parser.add_mutually_exclusive_group()
@@ -30,7 +30,7 @@ def add_parser(subparsers: SubParsers) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Writes what is kept; raises CommandError for a program of which nothing is."""
+    """Print the stored data. Raises CommandError for a program without data."""
     from app.cli.store_command import opened_store
 
     with opened_store(read_only=True) as store:
@@ -45,7 +45,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _names(store: Store, wanted: str | None) -> list[str]:
-    """The programs of which anything is kept, or the one that is asked for."""
+    """Return the programs with stored data, or the requested program."""
     from core.store.production import measured_parts, part_cycles
 
     known = {row.program for row in store.runs.read_records()}
@@ -75,7 +75,7 @@ def _data(store: Store, name: str) -> PartsData:
 
 
 def _told(store: Store, names: Sequence[str]) -> dict[str, object]:
-    """Lengths mm, times s and UTC; X of corrections a radius, as the tables of offsets have it."""
+    """Return the JSON object: lengths in mm, times in s and UTC, X of corrections as a radius."""
     from core.store.production import part_cycles, tool_lives
 
     with store.read() as connection:
@@ -109,7 +109,7 @@ def _program(store: Store, name: str) -> dict[str, object]:
 
 
 def _capability(data: PartsData, number: int) -> dict[str, object] | None:
-    """Cp, Cpk, Pp, Ppk of all readings; None while there are too few."""
+    """Return Cp, Cpk, Pp and Ppk of all readings, or None with too few readings."""
     from dataclasses import asdict
 
     from app.extras.quality.parts_data import feature_of
@@ -123,7 +123,7 @@ def _capability(data: PartsData, number: int) -> dict[str, object] | None:
         return None
 
 
-# --- for people and spreadsheets -------------------------------------------------------------------------
+# --- text and CSV output ---------------------------------------------------------------------------------
 
 
 def _write_csv(store: Store, names: Sequence[str]) -> None:
@@ -136,7 +136,7 @@ def _write_csv(store: Store, names: Sequence[str]) -> None:
 
 
 def _lines(store: Store, names: Sequence[str]) -> Iterator[str]:
-    """A line a program, a line a feature."""
+    """Yield one line per program and one per feature."""
     if not names:
         yield "no parts are known yet\n"
     for name in names:

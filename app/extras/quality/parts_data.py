@@ -1,4 +1,4 @@
-"""Measured parts of a program as they are kept: features, readings, cycles, corrections; readings as CSV."""
+"""Stored data of measured parts: features, readings, cycles and corrections; readings as CSV."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ from core.store.production.part_cycles import CorrectionRow, CycleRow, CycleTime
 from core.store.store import Store
 from core.store.store_rows import utc
 
-FEATURE = "quality"  # name of this data in the book
+FEATURE = "quality"  # name of this data in the parts book
 _DAYS = timedelta(days=2)
 
 
 @dataclass(frozen=True, slots=True)
 class PartsData:
-    """Of one program, oldest first; ``corrected``: newest change of an axis."""
+    """Data of one program, oldest first. ``corrected`` is the latest change per offset axis."""
 
     program: str = ""
     features: tuple[FeatureRow, ...] = ()
@@ -34,28 +34,28 @@ class PartsData:
     corrected: dict[tuple[str, int, str], int] = field(default_factory=dict)
     cycles: tuple[CycleRow, ...] = ()
     corrections: tuple[CorrectionRow, ...] = ()
-    day: tuple[CycleTime, ...] = ()  # when all programs ran, as long ago as a shift may be
+    day: tuple[CycleTime, ...] = ()  # cycles of all programs within the longest time of a shift
 
     @property
     def whole_cycles(self) -> tuple[CycleRow, ...]:
-        """Those whose time is that of the program: none that a restart has finished, or somebody given up."""
+        """Cycles with a representative time: complete, and not finished by a restart."""
         return tuple(row for row in self.cycles if row.outcome == COMPLETE and row.seconds > 0.0)
 
     def readings_of(self, feature: int) -> tuple[ReadingRow, ...]:
-        """Readings of a feature in the order in which they were taken."""
+        """Return the readings of a feature in the order of measurement."""
         return tuple(row for row in self.readings if row.feature == feature)
 
     def since_correction(self, row: FeatureRow) -> tuple[ReadingRow, ...]:
-        """Readings of parts that were begun after the last change of what corrects the feature.
+        """Return the readings of parts that were started after the feature's offset was last changed.
 
-        A part of which nobody knows when it was begun counts only where nothing was ever changed.
+        A part with an unknown start counts only if the offset was never changed.
         """
         last = self.corrected.get((row.by_kind, row.number, feature_of(row).axis), 0)
         return tuple(each for each in self.readings_of(row.id) if not last or each.offset_change >= last)
 
 
 def feature_of(row: FeatureRow) -> Feature:
-    """A kept feature as it is reckoned with."""
+    """Return the feature for a stored row."""
     return Feature(
         row.name,
         FeatureKind(row.kind),
@@ -71,7 +71,7 @@ def feature_of(row: FeatureRow) -> Feature:
 
 
 def row_of(feature: Feature, program: str, number: int) -> FeatureRow:
-    """The row that keeps a feature; ``number`` is its id, 0 for a new one."""
+    """Return the stored row for a feature. ``number`` is its id, or 0 for a new feature."""
     return FeatureRow(
         number,
         program,
@@ -89,7 +89,10 @@ def row_of(feature: Feature, program: str, number: int) -> FeatureRow:
 
 
 def parts_data(store: Store, program: str, limit: int = NEWEST) -> PartsData:
-    """What is kept of a program, the newest so many of each; -1: all. Takes its time. Raises StoreError."""
+    """Return the stored data of a program, the latest ``limit`` rows of each kind, or all for -1.
+
+    The call can take a while. Raises StoreError.
+    """
     with store.read() as connection:
         return PartsData(
             program,
@@ -103,7 +106,7 @@ def parts_data(store: Store, program: str, limit: int = NEWEST) -> PartsData:
 
 
 def parts_of(book: PartsBook) -> PartsData:
-    """What the book knows of the program on the desk; nothing until it is read."""
+    """Return the data of the loaded program from the book, empty until it is read."""
     found = book.now.more.get(FEATURE)
     if isinstance(found, PartsData) and found.program == book.now.program:
         return found
@@ -118,7 +121,7 @@ _PER = {"in": MM_PER_INCH, "mm": 1.0}
 
 
 def readings_text(data: PartsData) -> str:
-    """One line a reading, in the order in which they were taken."""
+    """Return the readings as CSV text, one line per reading in the order of measurement."""
     out = io.StringIO()
     table = csv.writer(out)
     table.writerow(HEAD)
@@ -127,7 +130,7 @@ def readings_text(data: PartsData) -> str:
 
 
 def reading_lines(data: PartsData) -> Iterator[tuple[object, ...]]:
-    """The cells of each reading, as ``HEAD`` names them."""
+    """Yield the cells of each reading in the order of ``HEAD``."""
     features = {row.id: row for row in data.features}
     for each in data.readings:
         feature, per = feature_of(features[each.feature]), _PER[each.unit]
@@ -139,7 +142,7 @@ def reading_lines(data: PartsData) -> Iterator[tuple[object, ...]]:
 
 
 def write_readings(data: PartsData, folder: Path) -> Path:
-    """Writes ``PROGRAM-readings.csv`` whole; answers its path. Raises OSError."""
+    """Write ``PROGRAM-readings.csv`` atomically and return its path. Raises OSError."""
     path = folder / f"{Path(data.program).stem}-readings.csv"
     write_in_place(path, readings_text(data).encode())
     return path

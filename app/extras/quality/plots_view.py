@@ -1,4 +1,4 @@
-"""Draws control charts and trends by pyqtgraph; imported when the first of them is opened."""
+"""Control charts and trends drawn with pyqtgraph; imported when the first chart is opened."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ _STYLES = {
     "tolerance": Qt.PenStyle.DotLine,
 }
 _INKS = {"centre": "soft", "limit": "pause", "tolerance": "alarm"}
-_ROOM = 0.08  # of the height, above and below what is drawn
+_ROOM = 0.08  # ratio of the height: margin above and below the curves
 _TITLE = 2.2  # units
-_PLOTS = 2  # of a drawing, mostly
+_PLOTS = 2  # usual number of plots in a drawing
 
 
 class PlotsPane(QWidget):
-    """The plots of one drawing with their titles; drawn anew when it is another one, a size or a theme."""
+    """Pane with the plots of one drawing, redrawn when the drawing, the size or the theme changes."""
 
     part_name = "CHART"
 
@@ -42,11 +42,11 @@ class PlotsPane(QWidget):
         self._u = 0.0
 
     def ahead(self) -> bool:
-        """Make one plot more of those that a drawing may have; whether all are there."""
+        """Create one more plot in advance, and return whether all are created."""
         return self._chart.ready(_PLOTS)
 
     def show_drawing(self, drawing: ChartDrawing) -> None:
-        """Draw it where it is another one than before."""
+        """Draw a drawing if it has changed."""
         look = self.look
         if drawing == self._shown and (self._theme, self._u) == (look.palette.name, look.u):
             return
@@ -67,20 +67,20 @@ class PlotsPane(QWidget):
         self._chart.dress()
         self._chart.share_left(9.0)
         for drawn in self._chart.plots:
-            drawn.layout.activate()  # else a hidden window keeps the room of before
+            drawn.layout.activate()  # Otherwise a hidden window retains the old layout.
         self._lay_out()
 
     def dress(self) -> None:
-        """The theme has changed: what is drawn is drawn anew."""
+        """Redraw the present drawing after a change of theme."""
         if self._shown is not None:
             self.show_drawing(self._shown)
 
     def showEvent(self, _event: QShowEvent) -> None:
-        """What was drawn while it was hidden has no layout: the next frame draws it anew."""
+        """Request a new drawing, because plots drawn while hidden have no layout."""
         self._shown = None
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """All of it is the chart's."""
+        """Fill the widget and redraw after a change of size."""
         self._lay_out()
         self.dress()
 
@@ -128,7 +128,10 @@ class PlotsPane(QWidget):
         drawn.put(pg.InfiniteLine(level.value, angle=0, pen=pen))
 
     def _range(self, drawn: chart.Plot, plot: Plot, across: tuple[float, float]) -> None:
-        """All points and levels, with room for the title; plots stand exactly over one another."""
+        """Set the range to all points and levels with room for the title.
+
+        All plots have the same x range.
+        """
         values = [float(each) for curve in plot.curves for each in curve.y]
         values += [level.value for level in plot.levels]
         low, high = min(values), max(values)
@@ -138,7 +141,7 @@ class PlotsPane(QWidget):
         drawn.vb.setXRange(across[0] - side, across[1] + side, padding=0)
 
     def _title(self, drawn: chart.Plot, words: str) -> None:
-        """In the upper corner, over what is drawn, on a ground of its own: no limit strikes it out."""
+        """Draw the title in the upper corner with a background, so that no limit line crosses it."""
         (left, _), (_, top) = drawn.vb.viewRange()
         ground = self.look.colour("panel")
         title = pg.TextItem(words, color=self.look.colour("text"), anchor=(0.0, 0.0), fill=ground)
@@ -149,7 +152,7 @@ class PlotsPane(QWidget):
 
 
 class BarsPane(QWidget):
-    """Bars below one another, the longest first, each with its name; words where there is nothing to draw."""
+    """Horizontal bars with their names, longest first, or a text if there is nothing to draw."""
 
     def __init__(self, look: Look, parent: QWidget) -> None:
         super().__init__(parent)
@@ -157,7 +160,7 @@ class BarsPane(QWidget):
         self.plot: Plot | None = None
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        """Qt's call to draw."""
+        """Paint the bars."""
         with Painter(self, self.look) as painter:
             painter.setRenderHint(QPainter.RenderHint.Antialiasing)
             room = QRectF(self.rect())

@@ -1,4 +1,4 @@
-"""Measured parts and trends of a desk: put together, given to it; their entry in the special functions."""
+"""Setup of measured parts and trends, and their entry in the special functions."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from app.production.parts_watch import PartsWatch
 from app.special.special_functions import PageFunction, SpecialFunction, SpecialFunctions
 from core.machine.machine_model import Machine
 
-PAGE = "MEASURED PARTS"  # its name in app.screen.page_table
+PAGE = "MEASURED PARTS"  # name of the page in app.screen.page_table
 
 
 class MeasuredPartsFunction(PageFunction):
-    """Features and readings of the program, and what is to be done some time soon."""
+    """Special function with the number of features and readings, and the measurements that are due."""
 
     name = "MEASURED PARTS"
     use = "features, readings, charts, trends"
@@ -27,7 +27,7 @@ class MeasuredPartsFunction(PageFunction):
     way = "Press Enter to open the page, or press W in the main menu."
 
     def facts(self) -> tuple[Row, ...]:
-        """How many there are, and what is due."""
+        """Return the rows with the numbers of features and readings, and the due measurements."""
         watch = self.desk.pages.find(PartsWatch)
         if watch is None or watch.book.locked:
             return (Row((tr("STORED"), watch.book.locked if watch is not None else NOTHING)),)
@@ -39,12 +39,12 @@ class MeasuredPartsFunction(PageFunction):
         )
 
     def prompt(self) -> str:
-        """How the page is opened."""
+        """Return the prompt that names the keys."""
         return "ENTER: OPEN MEASURED PARTS   ESC: BACK TO LIST"
 
 
 def attach_quality(desk: Desk, machine: Machine) -> None:
-    """Give the desk what it measures and remembers of parts."""
+    """Attach measured parts to TurnDesk if production data is available."""
     watch = desk.pages.find(PartsWatch)
     if watch is None:
         return
@@ -55,7 +55,7 @@ def attach_quality(desk: Desk, machine: Machine) -> None:
 
 
 def _sections(desk: Desk, machine: Machine, watch: PartsWatch, plan: SamplePlan) -> Sequence[SpecialFunction]:
-    """Those of the page: the start of the desk is not delayed by loading them."""
+    """Return the sections of the page. Their import is deferred to keep the start fast."""
     from app.extras.quality.sections_desk import sections
 
     return sections(desk, machine, watch, plan)
@@ -65,7 +65,10 @@ Make = Callable[[], Sequence[SpecialFunction]]
 
 
 class QualityFunctions(SpecialFunctions):
-    """As the special functions are; what a gauge sends counts while the section of readings is shown."""
+    """Sections of the page.
+
+    Readings of a gauge count only while the section of readings is displayed.
+    """
 
     __slots__ = ("_made", "_make")
 
@@ -76,27 +79,30 @@ class QualityFunctions(SpecialFunctions):
 
     @property
     def functions(self) -> Sequence[SpecialFunction]:
-        """The sections; the start of the desk does not wait for them."""
+        """Sections, created at the first access to keep the start fast."""
         if not self._made:
             self._made = tuple(self._make())
         return self._made
 
     @functions.setter
     def functions(self, _none: Sequence[SpecialFunction]) -> None:
-        """They are made here and nowhere else."""
+        """Ignore the value, because the sections are created by the getter."""
 
     def look(self) -> None:
-        """Once a frame: of which feature and part a reading is must be seen when it comes."""
+        """Poll the gauge once per frame.
+
+        The feature that is displayed at that time determines the meaning of a reading.
+        """
         for section in self.functions:
             section.listen(seen=section is self.current)
 
     def opened(self) -> None:
-        """The page comes up: what a gauge has sent meanwhile is of nobody knows which part."""
+        """Open the page and discard readings received before, because their part is unknown."""
         super().opened()
         for section in self.functions:
             section.listen(seen=False)
 
     def close(self) -> None:
-        """End what a section has under way; the worker is the book's."""
+        """Finish pending work of the sections. The worker belongs to the parts book."""
         for function in self._made:
             function.close()

@@ -1,4 +1,4 @@
-"""Keys of the JSON that ``turndesk parts`` and ``turndesk shift`` print, for the reference and its tests."""
+"""JSON keys of ``turndesk parts`` and ``turndesk shift``, for the reference and its tests."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""W, measured parts: the list of sections at the left, the chosen one at the right, its chart below."""
+"""Page MEASURED PARTS (W): sections on the left, the displayed section on the right with its chart below."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ if TYPE_CHECKING:
 
 
 def _pane_class() -> type[PlotsPane]:
-    """On a worker: pyqtgraph takes a third of a second."""
+    """Import the chart class on a worker, because importing pyqtgraph takes 0.3 s."""
     from app.extras.quality.plots_view import PlotsPane
 
     return PlotsPane
 
 
 class MeasuredPartsPage(SpecialPage):
-    """As the special functions, and a chart where a section draws one: loaded when the first is drawn."""
+    """Page of measured parts: like the special functions, with a chart that is loaded on first use."""
 
     NAME = "MEASURED PARTS"
     model: QualityFunctions
@@ -36,10 +36,10 @@ class MeasuredPartsPage(SpecialPage):
         self.items.title = self.NAME
         self.chart: PlotsPane | None = None
         self._share = 0.0
-        self._asked = False  # for the chart
+        self._asked = False  # whether the chart was requested
 
     def refresh(self, snapshot: Snapshot, view: MachineStatus, loaded: Loaded) -> None:
-        """Table and chart of this snapshot."""
+        """Update table and chart."""
         super().refresh(snapshot, view, loaded)
         shown = self.model.current
         share = shown.chart_share if isinstance(shown, QualitySection) else 0.0
@@ -52,7 +52,7 @@ class MeasuredPartsPage(SpecialPage):
             self.chart.show_drawing(shown.drawing())
 
     def ahead(self) -> bool:
-        """The sections, then the chart and its plots."""
+        """Create the sections, then the chart and its plots, before the page is first shown."""
         self._ask_pane()
         self.model.worker.poll()
         return not self.model.functions or self.chart is None or not self.chart.ahead()
@@ -68,7 +68,7 @@ class MeasuredPartsPage(SpecialPage):
         self._lay_out()
 
     def dress(self) -> None:
-        """The chart keeps its own colours."""
+        """Apply the present colors to the chart."""
         if self.chart is not None:
             self.chart.dress()
 

@@ -1,4 +1,4 @@
-"""Readings of parts: typed on the number pad or taken from a gauge; the correction that they ask for."""
+"""Readings of parts, typed or from a gauge, and the resulting wear correction."""
 
 from __future__ import annotations
 
@@ -26,25 +26,28 @@ from core.store.production import measured_parts
 from core.store.production.measured_parts import FeatureRow, ReadingRow
 from core.store.store_rows import Kind
 
-CHART = 0.45  # of the height, for the effect of a proposed correction
-FAR = 3.0  # tolerances off: typed wrong, or another part
+CHART = 0.45  # ratio of the height for the chart of a proposed correction
+FAR = 3.0  # tolerances of deviation above which a typing error or another part is likely
 MM = {"mm": 1.0, "in": 25.4}
 
 
 @dataclass(frozen=True, slots=True)
 class NewReading:
-    """A reading that is to be kept."""
+    """Reading that is to be stored."""
 
     feature: FeatureRow
     part: int
-    value: float  # mm
+    value: float  # in mm
     unit: str
     source: str
     gauge: str = ""
 
 
 class ReadingsSection(QualitySection):
-    """A row a feature; what is typed is the size of the marked one at the part that is asked for."""
+    """Section with one row per feature.
+
+    The typed size belongs to the selected feature and the present part.
+    """
 
     name = "READINGS"
     use = "measure a part and see the correction needed"
@@ -53,24 +56,25 @@ class ReadingsSection(QualitySection):
         super().__init__(desk, watch)
         self.folder = folder
         self.gauge = gauge or NoGauge()
-        self._part = 0  # 0: the last that was made
+        self._part = 0  # 0 means the last part that was made
         self.effect = CorrectionEffect(desk)
-        self._last: tuple[Kind, int, str] | None = None  # the last accepted correction: its row, its reason
+        # table, number and reason of the last accepted correction
+        self._last: tuple[Kind, int, str] | None = None
 
     @property
     def count(self) -> int:
-        """Features."""
+        """Number of features."""
         return len(self.data.features)
 
     @property
     def part(self) -> int:
-        """The number of the part that is measured."""
+        """Number of the measured part."""
         return self._part or max(1, self.desk.runs.counter.count)
 
-    # --- what is shown -------------------------------------------------------------------------------
+    # --- display -------------------------------------------------------------------------------------
 
     def sheet(self, _snapshot: Snapshot) -> Sheet:
-        """Of each feature nominal, last reading, deviation from the middle, and whether it is good."""
+        """Return the table with nominal size, last reading, deviation and rating per feature."""
         self.settle()
         mode, feature = self.mode, self.feature
         self.chart_share = CHART if self.effect.stands else 0.0
@@ -109,7 +113,7 @@ class ReadingsSection(QualitySection):
         return self.gauge.words
 
     def keys(self) -> Mapping[str, Key]:
-        """Part number, gauge, file, correction."""
+        """Return the function keys for the part number, gauge, file and correction."""
         correct = {"F8": Key("CORRECT", self.propose), "F4": Key("UNDO", self.undo)}
         return {
             "F2": Key(tr("PART −"), partial(self._step, -1)),
@@ -127,17 +131,17 @@ class ReadingsSection(QualitySection):
             self._part = 0
 
     def prompt(self) -> str:
-        """How to enter a reading."""
+        """Return the prompt for the entry of a reading."""
         return self.missing() or ("TYPE THE MEASURED SIZE AND PRESS ENTER. ESC: BACK TO LIST")
 
     def drawing(self) -> ChartDrawing:
-        """What a proposed correction does to the feature."""
+        """Return the chart of a proposed correction."""
         return self.effect.drawing(self.mode) if self.effect.stands else ChartDrawing()
 
     # --- readings ------------------------------------------------------------------------------------
 
     def take(self, text: str) -> bool:
-        """A typed size of the marked feature. Raises EntryError."""
+        """Store a typed size of the selected feature. Raises EntryError."""
         feature = self.feature
         if feature is None:
             self.desk.say(self.missing())
@@ -147,7 +151,10 @@ class ReadingsSection(QualitySection):
         return self._offer(NewReading(feature, self.part, value, mode.name, "typed"))
 
     def _offer(self, taken: NewReading) -> bool:
-        """Keep it; what no part of this feature can measure is asked about first."""
+        """Store a reading.
+
+        An implausible size requires confirmation. Raises EntryError for a size of 0 or less.
+        """
         row, feature = taken.feature, feature_of(taken.feature)
         if taken.value <= 0.0:
             raise EntryError(
@@ -181,7 +188,7 @@ class ReadingsSection(QualitySection):
         )
 
     def _kept(self, taken: NewReading) -> None:
-        """It is on the disk: say so, and go on to the next feature."""
+        """Report the stored reading and select the next feature."""
         text = tr("{name}, PART {part}: {size} SAVED")
         self.desk.say(
             tr(Message(text, name=taken.feature.name, part=taken.part, size=size(taken.value, self.mode)))
@@ -190,7 +197,7 @@ class ReadingsSection(QualitySection):
             self.marked = (self.marked + 1) % max(1, self.count)
 
     def take_out(self) -> None:
-        """F9: the newest reading of the marked feature counts no more, after asking."""
+        """Remove the latest reading of the selected feature after confirmation (F9)."""
         feature = self.feature
         taken = self.data.readings_of(feature.id) if feature is not None else ()
         if feature is None or not taken:
@@ -219,14 +226,17 @@ class ReadingsSection(QualitySection):
     # --- gauge ---------------------------------------------------------------------------------------
 
     def turn_gauge(self) -> None:
-        """F5: take readings from the gauge, or no more."""
+        """Start or stop receiving readings from the gauge (F5)."""
         self.desk.clear()
         why = self.gauge.turn()
         if why:
             self.desk.say(why)
 
     def listen(self, *, seen: bool) -> None:
-        """Once a frame: what the gauge has sent goes to the marked feature, where that is seen."""
+        """Assign received gauge readings to the selected feature while the section is visible.
+
+        Called once per frame.
+        """
         for found in self.gauge.received():
             if isinstance(found, Reading) and not seen:
                 self.desk.say(tr("GAUGE READING IGNORED. OPEN READINGS, THEN MEASURE AGAIN"))
@@ -249,13 +259,16 @@ class ReadingsSection(QualitySection):
             self.desk.refuse(str(error))
 
     def close(self) -> None:
-        """Let go of the gauge."""
+        """Close the gauge."""
         self.gauge.close()
 
     # --- correction ----------------------------------------------------------------------------------
 
     def propose(self) -> None:
-        """F8: what the readings of the marked feature ask for; Y takes it over."""
+        """Propose a correction from the readings of the selected feature (F8).
+
+        Y applies the correction.
+        """
         feature = self.feature
         if feature is None:
             self.desk.say(self.missing())
@@ -278,14 +291,17 @@ class ReadingsSection(QualitySection):
         self.effect.show(self.desk.notice, found, change, taken)
 
     def _settled(self) -> bool:
-        """Whether what is known is what is kept: a change that is on its way would be proposed once more."""
+        """Return whether all data is stored and loaded.
+
+        This prevents a second proposal of a pending correction.
+        """
         settled = self.watch.book.settled and not self.desk.book.busy
         if not settled:
             self.desk.say(tr("STILL READING STORED DATA. PRESS F8 AGAIN"))
         return settled
 
     def _correct(self, feature: FeatureRow) -> None:
-        """As it is now, not as it was when it was asked."""
+        """Apply the correction, calculated again from the present data."""
         if not self._settled():
             return
         try:
@@ -301,7 +317,7 @@ class ReadingsSection(QualitySection):
         self.desk.done(tr(Message("{words}; APPLIES FROM NEXT PART", words=change.words)))
 
     def undo(self) -> None:
-        """F4: ask whether the last accepted correction is taken back, while no other change came after it."""
+        """Ask whether to undo the last correction (F4), if no later change exists."""
         why = self._undo_barred()
         if not why and self._last is not None:
             kind, number, _reason = self._last
@@ -311,7 +327,7 @@ class ReadingsSection(QualitySection):
             self.desk.say(why)
 
     def _undo_barred(self) -> str:
-        """Why nothing is taken back here; empty when it is."""
+        """Return the reason why the last correction cannot be undone, or an empty string."""
         if self._last is None:
             return tr("NO CORRECTION APPLIED ON THIS PAGE. HISTORY: MAIN MENU, F8/F9")
         kind, _number, reason = self._last
@@ -323,7 +339,7 @@ class ReadingsSection(QualitySection):
     # --- file ----------------------------------------------------------------------------------------
 
     def write_file(self) -> None:
-        """F6: the readings of the program as a file for a spreadsheet; a worker writes it."""
+        """Write the readings of the program as a CSV file on a worker (F6)."""
         if self.missing():
             self.desk.say(self.missing())
             return

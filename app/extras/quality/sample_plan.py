@@ -1,4 +1,4 @@
-"""The sample plan: which features of the part just made are to be measured, and whether parts wait for it."""
+"""Sample plan: the features of finished parts that must be measured, and whether the next part waits."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from core.store.store_errors import StoreError
 
 
 def due(data: PartsData, made: int) -> dict[str, int]:
-    """By feature the part that is to be measured: the last of its plan that was made and not read yet."""
+    """Return the part to measure for each feature: the latest planned part without a reading."""
     found = {}
     for row in data.features:
         planned = made // row.every * row.every if row.every else 0
@@ -24,13 +24,13 @@ def due(data: PartsData, made: int) -> dict[str, int]:
 
 
 def notice(found: dict[str, int]) -> str:
-    """What to measure, for the prompt line; empty where nothing is due."""
+    """Return the prompt text with the features to measure, or an empty string."""
     part, names = _newest(found)
     return tr(Message("MEASURE PART {part}: {names}", part=part, names=names)) if found else ""
 
 
 def bar(found: dict[str, int]) -> str:
-    """Why no other part begins where parts wait for the plan; empty where nothing is due."""
+    """Return the reason why the next part must wait for measurements, or an empty string."""
     part, names = _newest(found)
     return (
         Message("part {part} must be measured before the next part starts: {names}", part=part, names=names)
@@ -40,34 +40,35 @@ def bar(found: dict[str, int]) -> str:
 
 
 def _newest(found: dict[str, int]) -> tuple[int, str]:
-    """The newest of the parts, and the names of what is due of it."""
+    """Return the latest part to measure and the names of its features."""
     part = max(found.values(), default=0)
     return part, ", ".join(name for name, planned in found.items() if planned == part)
 
 
 @dataclass(slots=True)
 class SamplePlan:
-    """What the plan asks for of the program on the desk, and whether its parts wait for it."""
+    """Sample plan of the loaded program, and whether its parts wait for measurements."""
 
     desk: Desk
     watch: PartsWatch
-    _plans: dict[int, dict[str, int]] = field(default_factory=dict)  # by parts made, of ``_planned_of``
+    # measurements by number of parts made, valid for ``_planned_of``
+    _plans: dict[int, dict[str, int]] = field(default_factory=dict)
     _planned_of: object = None
-    _waits: tuple[str, bool] = ("", False)  # whether parts of a program wait for their measuring
+    _waits: tuple[str, bool] = ("", False)  # program, and whether its parts wait for measurements
 
     def bar(self, snapshot: Snapshot) -> str:
-        """Why no other part begins; the part under way counts already."""
+        """Return the reason why the next part must not start. The present part counts as made."""
         if not self.waits:
             return ""
         made = self.desk.runs.counter.count + (1 if snapshot.counts else 0)
         return bar(self._planned(made))
 
     def due(self) -> str:
-        """What to measure; empty: nothing."""
+        """Return the features to measure, or an empty string."""
         return notice(self._planned(self.desk.runs.counter.count))
 
     def _planned(self, made: int) -> dict[str, int]:
-        """What the plan asks for behind so many parts; worked out when something has changed."""
+        """Return the required measurements for a number of parts made, cached until data changes."""
         data = parts_of(self.watch.book)
         if made not in self._plans or self._planned_of is not data:
             kept = self._plans if self._planned_of is data else {}
@@ -76,7 +77,7 @@ class SamplePlan:
 
     @property
     def waits(self) -> bool:
-        """Whether parts of this program wait until the sample plan is done."""
+        """Whether parts of this program wait until the required measurements are done."""
         program = self.watch.program
         if self._waits[0] != program:
             try:
@@ -87,7 +88,7 @@ class SamplePlan:
         return self._waits[1]
 
     def turn_waits(self) -> None:
-        """Parts wait for the plan, or go on. Raises StoreError when it is not kept."""
+        """Turn waiting for measurements on or off. Raises StoreError if the setting cannot be stored."""
         on, program = not self.waits, self.watch.program
         self._waits = program, on
         persistence = self.desk.runs.counter.persistence

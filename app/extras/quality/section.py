@@ -1,4 +1,4 @@
-"""One section of the page of measured parts: its table with keys, and what its chart is to draw."""
+"""Base of the sections of the page MEASURED PARTS: table, keys and chart data."""
 
 from __future__ import annotations
 
@@ -18,13 +18,16 @@ from core.extras.quality.control_charts import Chart, ChartPair, findings
 from core.extras.quality.measured_feature import Proposal
 from core.store.production.measured_parts import FeatureRow
 
-AHEAD = 4.0  # parts behind the last one, for which a correction is drawn
+AHEAD = 4.0  # number of parts after the last one for which a correction is drawn
 FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
 class Curve:
-    """Points over parts; ``number`` chooses its colour; ``dots``: each point is drawn; ``steps``: held on."""
+    """Curve over parts.
+
+    ``number`` selects the color, ``dots`` draws points, ``steps`` draws steps.
+    """
 
     x: FloatArray
     y: FloatArray
@@ -36,7 +39,7 @@ class Curve:
 
 @dataclass(frozen=True, slots=True)
 class Level:
-    """A line across: ``kind`` is centre, limit (of control) or tolerance."""
+    """Horizontal line. ``kind`` is centre, limit (control limit) or tolerance."""
 
     value: float
     name: str
@@ -45,14 +48,14 @@ class Level:
 
 @dataclass(frozen=True, slots=True)
 class Plot:
-    """One plot; ``marks`` are points that a rule has found. Bars stand below one another with their names."""
+    """Plot with curves or bars. ``marks`` are points that violate a rule."""
 
     title: str = ""
     curves: tuple[Curve, ...] = ()
     levels: tuple[Level, ...] = ()
     marks: tuple[tuple[float, float], ...] = ()
     bars: tuple[tuple[str, float], ...] = ()
-    across: str = ""  # what is told along the lower edge
+    across: str = ""  # label of the horizontal axis
 
     @property
     def empty(self) -> bool:
@@ -62,7 +65,7 @@ class Plot:
 
 @dataclass(frozen=True, slots=True)
 class ChartDrawing:
-    """Plots below one another; two of the same ``of`` are the same drawing, and are not drawn again."""
+    """Plots one below the other. Drawings with equal ``of`` are equal and are not drawn again."""
 
     plots: tuple[Plot, ...] = ()
     of: object = field(default=None)
@@ -77,15 +80,16 @@ class ChartDrawing:
 def control_plots(
     pair: ChartPair, parts: Sequence[int], limits: tuple[float, float], names: tuple[str, str], unit: float
 ) -> tuple[Plot, ...]:
-    """Location over spread, in units of ``unit`` mm, over the number of the (last) part of each point.
+    """Return the plots of location and spread over the part numbers, in units of ``unit`` mm.
 
-    The limits of size stand in the upper one where points are single parts: averages are no parts.
+    Each point is at the number of its last part. Size limits are shown in the upper plot only for single
+    parts, because they do not apply to averages.
     """
     location = _plot(names[0], pair.location, _last_parts(parts, pair.size), unit)
     if pair.size == 1:
         tolerance = tuple(Level(limit / unit, "", "tolerance") for limit in limits)
         location = Plot(location.title, location.curves, (*location.levels, *tolerance), location.marks)
-    first = 1 if pair.size == 1 else 0  # a moving range belongs to the later of its two parts
+    first = 1 if pair.size == 1 else 0  # A moving range belongs to the later of its two parts.
     spread = _plot(names[1], pair.spread, _last_parts(parts, pair.size)[first:], unit)
     return location, spread
 
@@ -93,13 +97,14 @@ def control_plots(
 def correction_plot(
     readings: Sequence[tuple[int, float]], found: Proposal, title: str, names: tuple[str, str], unit: float
 ) -> Plot:
-    """Sizes over parts, the mean of those that count, and where a correction brings the parts behind them.
+    """Return the plot of sizes over parts, with the mean and the expected size after a correction.
 
-    Readings of one part stand beside each other; lengths in units of ``unit`` mm.
+    Lengths are in units of ``unit`` mm. Repeated readings of a part are drawn next to each other.
     """
     parts = np.asarray([part for part, _ in readings], dtype=np.float64)
     if (np.diff(parts) <= 0.0).any():
-        parts = np.arange(1.0, len(parts) + 1.0)  # measured twice, or counted anew: by turns
+        # A part was measured twice or the count was reset, so readings are numbered in sequence.
+        parts = np.arange(1.0, len(parts) + 1.0)
     sizes = np.asarray([size for _, size in readings]) / unit
     last, first = parts[-1], parts[-min(found.count, len(parts))]
     now = Curve(np.array([first, last]), np.full(2, found.mean / unit), 1, dots=False, name=names[0])
@@ -137,9 +142,9 @@ NO_FEATURE = "NO FEATURES YET. ADD A FEATURE IN SECTION 1 WITH F2"
 
 
 class QualitySection(FigureFunction):
-    """What all sections share: the book, the program on the desk, its unit, the marked feature."""
+    """Base class of the sections: parts book, loaded program, unit and selected feature."""
 
-    chart_share: float = 0.0  # of the height: what the drawing takes below the table
+    chart_share: float = 0.0  # ratio of the height for the chart below the table
 
     def __init__(self, desk: Desk, watch: PartsWatch) -> None:
         super().__init__(desk)
@@ -147,65 +152,65 @@ class QualitySection(FigureFunction):
 
     @property
     def data(self) -> PartsData:
-        """What is kept of the program on the desk."""
+        """Stored data of the loaded program."""
         return parts_of(self.watch.book)
 
     @property
     def program(self) -> str:
-        """Its name; empty where none is on the desk."""
+        """Name of the loaded program, or an empty string."""
         return self.watch.program
 
     @property
     def of_mill(self) -> bool:
-        """Whether the machine is a mill: no slide's wear corrects a feature there, DL and DR are typed."""
+        """Whether the machine is a mill, where DL and DR replace wear corrections."""
         return self.desk.machine.language == "klartext"
 
     @property
     def mode(self) -> Mode:
-        """The control's unit, in which everything is typed and shown here."""
+        """Unit of the control, which applies to all entries and displays."""
         return Mode(self.desk.snapshot().modal.metric, diameter=True)
 
     @property
     def feature(self) -> FeatureRow | None:
-        """The marked feature."""
+        """Selected feature, or None."""
         rows = self.data.features
         return rows[self.marked] if self.marked < len(rows) else None
 
     def drawing(self) -> ChartDrawing:
-        """What is drawn below the table."""
+        """Return the chart below the table."""
         return ChartDrawing()
 
     def typed(self, key: str) -> bool:
-        """Arrows move the mark, whatever is typed; the rest is the entry's."""
+        """Handle a key: arrows move the selection, and other keys edit the entry."""
         return self.moves(key) or super().typed(key)
 
     def settle(self) -> None:
-        """The mark stays within the table."""
+        """Limit the selection to the rows of the table."""
         self.marked = max(0, min(self.marked, self.count - 1))
 
     def missing(self) -> str:
-        """What must be there first; empty when it is."""
+        """Return the missing precondition of this section, or an empty string."""
         if not self.program:
             return NO_PROGRAM
         return self.watch.book.locked or ("" if self.data.features else NO_FEATURE)
 
 
 def size(mm: float, mode: Mode) -> str:
-    """A measured size: a ten thousandth of an inch and half of it, or a thousandth of a millimetre."""
+    """Return a size with a resolution of 0.001 mm or .00001 in."""
     return fixed(mm, 3) if mode.metric else fixed(mm / mode.unit, 5)
 
 
 def signed_size(mm: float, mode: Mode) -> str:
-    """A deviation with its sign."""
+    """Return a deviation with its sign."""
     text = size(mm, mode)
     return text if not text.strip("0.") or text[0] not in "0123456789." else f"+{text}"
 
 
 def typed_length(value: float, mode: Mode) -> float:
-    """A typed length in mm."""
+    """Convert a typed length to mm."""
     return to_mm(value, mode.metric)
 
 
 def mark_of(row: FeatureRow) -> str:
-    """Ø of a diameter."""
+    """Return the diameter sign for a diameter, or an empty string."""
     return "Ø " if row.kind == "diameter" else ""

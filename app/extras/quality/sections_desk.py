@@ -1,4 +1,4 @@
-"""The sections of the page of measured parts, put together; loaded once the desk has started."""
+"""Creation of the sections of the page MEASURED PARTS; imported after the start of TurnDesk."""
 
 from __future__ import annotations
 
@@ -19,10 +19,11 @@ from core.machine.machine_model import Machine
 
 
 def sections(desk: Desk, machine: Machine, watch: PartsWatch, plan: SamplePlan) -> Sequence[SpecialFunction]:
-    """Features, readings, charts, tool life (of a lathe) and trends, in the order of the page."""
+    """Return the sections in the order of the page; tool life only for a lathe."""
     model = machine.hardware.table(GaugeModel)
     gauge = GaugeWire(model) if model is not None else None
-    lives = () if machine.kind == "mill" else (ToolLifeFunction(desk, watch),)  # columns of its tool table
+    # a mill has tool life in its tool table
+    lives = () if machine.kind == "mill" else (ToolLifeFunction(desk, watch),)
     return (
         FeaturesSection(desk, watch, plan),
         ReadingsSection(desk, watch, data_folder() / "parts", gauge),

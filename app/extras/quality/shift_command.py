@@ -1,4 +1,4 @@
-"""``turndesk shift``: what was made in a shift, how long it stood and why; as text, JSON or HTML."""
+"""Command ``turndesk shift``: shift report with parts, stops and reasons as text, JSON or HTML."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def add_parser(subparsers: SubParsers) -> None:
-    """Declare the command."""
+    """Declare the options of the command."""
     parser = subparsers.add_parser("shift")
     parser.add_argument(
         "--back",
@@ -43,7 +43,7 @@ def add_parser(subparsers: SubParsers) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Writes the report; raises CommandError with one sentence."""
+    """Write the report. Raises CommandError."""
     from app.extras.quality.shift_figures import shift_figures
 
     if args.metric and not args.report:
@@ -116,7 +116,7 @@ def _text(found: ShiftFigures) -> str:
 
 
 def _told(found: ShiftFigures) -> dict[str, object]:
-    """Lengths mm, times s and UTC, X of offsets a radius."""
+    """Return the JSON object: lengths in mm, times in s and UTC, X of offsets as a radius."""
     first, last = found.shift.utc
     share = found.availability
     return {

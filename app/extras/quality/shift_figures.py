@@ -1,6 +1,6 @@
-"""The figures of a shift, out of what the store keeps; and when a shift begins and ends.
+"""Results of a shift from stored data, and the start and end of a shift.
 
-The rows are those of the trends and of ``turndesk parts``: nothing is counted a second time.
+The rows are the same as those of the trends and of ``turndesk parts``. Nothing is counted again.
 """
 
 from __future__ import annotations
@@ -27,36 +27,36 @@ from core.store.store import Store
 from core.store.store_rows import Change, EventRow, Kind, utc
 
 USUAL = (6, 14)
-SETTING = "shift"  # first hour and last
-MOST_DAYS = 62  # of one report
+SETTING = "shift"  # setting with the first and last hour
+MOST_DAYS = 62  # maximum length of a report
 _FORMS = ("%Y-%m-%d %H:%M", "%Y-%m-%dT%H:%M", "%Y-%m-%d")
 
 
 class Shift(NamedTuple):
-    """From ``start`` to ``end``, seconds of UTC; they are as long as they really were."""
+    """Period from ``start`` to ``end`` in seconds of UTC, including changes of the local clock."""
 
     start: float
     end: float
 
     @property
     def utc(self) -> tuple[str, str]:
-        """Both as the store has times."""
+        """Start and end in the time format of the store."""
         first, last = (utc(datetime.fromtimestamp(each, UTC)) for each in self)
         return first, last
 
     @property
     def clock_moved(self) -> float:
-        """Seconds by which the clock on the wall was put forward within it; back: less than 0."""
+        """Seconds by which the local clock was set forward during the shift, negative if it was set back."""
         first, last = (datetime.fromtimestamp(each).astimezone().utcoffset() for each in self)
         return ((last or timedelta()) - (first or timedelta())).total_seconds()
 
 
 class ShiftTimesError(CodedError, ValueError):
-    """Times, as typed, that are not the times of a report."""
+    """Error for invalid start or end times of a report."""
 
 
 def hours_of(kept: object) -> tuple[int, int]:
-    """The hours of a shift as they are kept; else the usual ones."""
+    """Return the stored hours of a shift, or the default hours."""
     match kept:
         case [int(first), int(last)] if 0 <= first < 24 and 0 <= last <= 24:
             return first, last
@@ -65,9 +65,9 @@ def hours_of(kept: object) -> tuple[int, int]:
 
 
 def shift_of(hours: tuple[int, int], now: datetime, back: int = 0) -> Shift:
-    """The shift that is on or has ended last; ``back``: so many shifts before that.
+    """Return the present or last shift, or the shift ``back`` shifts earlier.
 
-    Its ends are hours of the wall clock: a night in which that is put back lasts an hour longer.
+    Start and end are hours of the local clock. A night in which the clock is set back is one hour longer.
     """
     wall = now.astimezone().replace(tzinfo=None)
     begins = wall.replace(hour=hours[0], minute=0, second=0, microsecond=0)
@@ -79,7 +79,10 @@ def shift_of(hours: tuple[int, int], now: datetime, back: int = 0) -> Shift:
 
 
 def moment_of(text: str) -> float:
-    """A moment as it is typed, by the wall clock: ``2026-11-23 06:00`` or a day. Raises ShiftTimesError."""
+    """Return the seconds of a typed local time such as ``2026-11-23 06:00`` or a day.
+
+    Raises ShiftTimesError.
+    """
     for form in _FORMS:
         try:
             return datetime.strptime(text.strip(), form).timestamp()
@@ -91,7 +94,7 @@ def moment_of(text: str) -> float:
 
 
 def between(start: str, end: str) -> Shift:
-    """From one typed moment to another. Raises ShiftTimesError."""
+    """Return the period between two typed times. Raises ShiftTimesError."""
     shift = Shift(moment_of(start), moment_of(end))
     if shift.end <= shift.start:
         raise ShiftTimesError(
@@ -105,12 +108,12 @@ def between(start: str, end: str) -> Shift:
 
 
 ALARMS = frozenset({"alarm", "estop"})
-_ALL = 1_000_000  # changes of offsets
-_SET_BACK = 1.0  # s by which a clock is late at least when it was set back
+_ALL = 1_000_000  # maximum number of changes of offsets
+_SET_BACK = 1.0  # seconds of backward jump from which the clock counts as set back
 
 
 class ProgramFigures(NamedTuple):
-    """Of one program: parts that were counted, cycles without one by how they ended, times of whole ones."""
+    """Results of one program: counted parts, cycles without a part by outcome, and complete cycle times."""
 
     program: str
     parts: int
@@ -120,7 +123,10 @@ class ProgramFigures(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class ShiftFigures:
-    """A shift as it is reported; ``until``: its end, or now while it is on (seconds of UTC)."""
+    """Results of a shift.
+
+    ``until`` is its end, or the present time while the shift runs, in seconds of UTC.
+    """
 
     shift: Shift
     until: float
@@ -139,29 +145,29 @@ class ShiftFigures:
 
     @property
     def parts(self) -> int:
-        """Of all programs."""
+        """Number of parts of all programs."""
         return sum(each.parts for each in self.programs)
 
     @property
     def stopped(self) -> float:
-        """Seconds of all stops within the shift."""
+        """Duration of all stops within the shift in seconds."""
         return sum(each.seconds for each in self.stood)
 
     @property
     def untold(self) -> float:
-        """Seconds of which nothing is kept: the control was off, or nobody had started a first part."""
+        """Duration without stored data in seconds, because the control was off or no part was started."""
         if self.availability is None:
             return 0.0
         return max(0.0, self.availability.planned - self.availability.producing - self.stopped)
 
 
 def stamp(at: str) -> float:
-    """A time of the store in seconds of UTC."""
+    """Return a time of the store in seconds of UTC."""
     return datetime.fromisoformat(at).timestamp()
 
 
 def span_of(row: CycleRow | CycleTime, now: float) -> Span | None:
-    """When a cycle ran: from its beginning for its seconds; of one under way nobody knows more than now."""
+    """Return the span of a cycle from its start for its duration, or None if the cycle has not ended."""
     start = stamp(row.started)
     if row.ended is None or start > now:
         return None
@@ -169,17 +175,17 @@ def span_of(row: CycleRow | CycleTime, now: float) -> Span | None:
 
 
 def spans_of(rows: Iterable[CycleRow | CycleTime], now: float) -> list[Span]:
-    """Of several cycles."""
+    """Return the spans of all ended cycles."""
     return [span for row in rows if (span := span_of(row, now)) is not None]
 
 
 def stops_of(rows: Iterable[StopRow]) -> list[Stop]:
-    """Stops as they are reckoned with."""
+    """Return the stops for the calculation of reasons and availability."""
     return [Stop(row.reason, stamp(row.at), row.seconds) for row in rows]
 
 
 def shift_figures(store: Store, shift: Shift, now: float, tools: Kind = Kind.TOOL) -> ShiftFigures:
-    """Of a shift; on a worker. Raises StoreError."""
+    """Return the results of a shift; runs on a worker. Raises StoreError."""
     since, end = shift.utc
     until = max(shift.start, min(shift.end, now))
     with store.read() as connection:
@@ -211,7 +217,7 @@ def shift_figures(store: Store, shift: Shift, now: float, tools: Kind = Kind.TOO
 
 
 def _programs(ended: Sequence[CycleRow], cut_off: Sequence[CycleRow]) -> tuple[ProgramFigures, ...]:
-    """A part is that of the shift in which it was finished."""
+    """Return the results by program. A part belongs to the shift in which it was finished."""
     found = []
     for name in dict.fromkeys(row.program for row in (*ended, *cut_off)):
         rows = [row for row in ended if row.program == name]
@@ -226,19 +232,22 @@ def _programs(ended: Sequence[CycleRow], cut_off: Sequence[CycleRow]) -> tuple[P
 
 
 def _cut_off(cycles: Sequence[CycleRow], *, on: bool) -> list[CycleRow]:
-    """Cycles whose end was never told; the last of a shift that is still ``on`` may be under way."""
+    """Return cycles without a stored end.
+
+    The last cycle of a shift that is ``on`` may still run.
+    """
     known = cycles[:-1] if on else cycles
     return [row for row in known if row.ended is None]
 
 
 def _within(stops: Iterable[Stop], start: float, end: float) -> list[Stop]:
-    """What of each lies in the shift."""
+    """Return the stops limited to a period."""
     clipped = [(each.reason, max(each.start, start), min(each.start + each.seconds, end)) for each in stops]
     return [Stop(reason, a, b - a) for reason, a, b in clipped if b > a]
 
 
 def _notes(shift: Shift, until: float, now: float, cycles: Sequence[CycleRow]) -> Iterable[str]:
-    """What a reader must know of the times."""
+    """Yield remarks about the times of the report."""
     if now < shift.start:
         yield tr("The shift has not started.")
     elif until < shift.end:

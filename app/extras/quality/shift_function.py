@@ -1,4 +1,4 @@
-"""The shift report in the list of special functions, F10: its figures, another shift, where it is written."""
+"""Shift report in the list of special functions (F10): results, selection of the shift, and saving."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ from core.executor.snapshot import Snapshot
 from core.message import Message
 from core.store.store import Store
 
-_OLDEST = 366  # shifts
+_OLDEST = 366  # maximum number of shifts back
 
 
 class ShiftReport(SpecialFunction):
-    """Made on the worker when it is opened, and every minute while it is shown."""
+    """Special function for the shift report, updated on a worker when it opens and every minute."""
 
     name = "SHIFT REPORT"
     use = "parts, times, stops and alarms, for printing"
@@ -39,11 +39,11 @@ class ShiftReport(SpecialFunction):
         self.found: ShiftFigures | None = None
         self.trouble = ""
         self.places: tuple[Place, ...] = ()
-        self._asked: tuple[int, int] | None = None  # shift and minute that were asked for
+        self._asked: tuple[int, int] | None = None  # shift and minute of the last request
 
     @property
     def count(self) -> int:
-        """The places, where one is to be chosen."""
+        """Number of places for saving, while they are listed."""
         return len(self.places)
 
     def _store(self) -> Store | None:
@@ -51,7 +51,7 @@ class ShiftReport(SpecialFunction):
         return watch.book.store if watch is not None else None
 
     def sheet(self, _snapshot: Snapshot) -> Sheet:
-        """The figures on top of the report, or the places."""
+        """Return the table of the main results or of the places."""
         self._make()
         if self.places:
             return self._sheet_of_places()
@@ -85,7 +85,7 @@ class ShiftReport(SpecialFunction):
         self.found, self.trouble = None, why
 
     def keys(self) -> Mapping[str, Key]:
-        """Earlier, later, written."""
+        """Return the function keys for the selection of a shift and for saving."""
         if self.places:
             return {"F4": Key("REFRESH", self.look)}
         return {
@@ -103,20 +103,20 @@ class ShiftReport(SpecialFunction):
             self.back, self.found = back, None
 
     def opened(self) -> None:
-        """Of now."""
+        """Show the present shift when the function opens."""
         self.back, self._asked, self.places = 0, None, ()
 
     def left(self) -> None:
-        """The places go."""
+        """Close the list of places when the function closes."""
         self.places = ()
 
     def escape(self) -> bool:
-        """The list of places closes."""
+        """Close the list of places. Return False if it was not open."""
         shut, self.places = bool(self.places), ()
         return shut
 
     def look(self) -> None:
-        """Look what is plugged in; the answer comes with a later frame."""
+        """List the places for saving. The result arrives in a later frame."""
         self.desk.clear()
         if self.found is None:
             self.desk.say("REPORT IS NOT READY YET. WAIT A MOMENT")
@@ -127,7 +127,7 @@ class ShiftReport(SpecialFunction):
         self.places, self.marked = places, 0
 
     def act(self) -> bool:
-        """Return on a place writes it there."""
+        """Save the report to the selected place."""
         if not self.places or self.found is None:
             return False
         place = self.places[min(self.marked, len(self.places) - 1)]
@@ -141,14 +141,14 @@ class ShiftReport(SpecialFunction):
         self.desk.done(tr(Message("{name} SAVED. IF YOU USED A USB STICK, YOU CAN REMOVE IT NOW", name=name)))
 
     def prompt(self) -> str:
-        """What the keys do."""
+        """Return the prompt for the present keys."""
         if self.places:
             return "ENTER: SAVE REPORT HERE   F4: RESCAN FOR USB STICKS"
         return "F2, F3: OTHER SHIFT   F6: SAVE REPORT AS HTML   ESC: BACK"
 
 
 def _rows(found: ShiftFigures) -> list[tuple[str, str]]:
-    """Those of the page, then a row a program and a row a reason."""
+    """Return the main results, then one row per program and per reason."""
     rows = facts(found)
     for each in found.programs:
         mean = f", {sum(each.times) / len(each.times):.1f} s" if each.times else ""
@@ -158,13 +158,11 @@ def _rows(found: ShiftFigures) -> list[tuple[str, str]]:
 
 
 def _made(store: Store, desk: Desk, back: int) -> ShiftFigures:
-    """On the worker. Raises StoreError."""
+    """Calculate the results on the worker. Raises StoreError."""
     now = datetime.now().astimezone()
     watch = desk.pages.find(PartsWatch)
     assert watch is not None
-    store.write(
-        lambda _connection: None
-    ).exception()  # what was posted before is in it, where the disk takes it
+    store.write(lambda _connection: None).exception()  # waits until all earlier changes are stored
     shift = shift_of(hours_of(store.settings.read_setting(SETTING)), now, back)
     return shift_figures(store, shift, now.timestamp(), watch.book.tools)
 
@@ -174,7 +172,7 @@ def _places(folder: Path, plugged: Sequence[Stick]) -> tuple[Place, ...]:
 
 
 def _write(found: ShiftFigures, machine: str, folder: Path, *, metric: bool) -> str:
-    """On the worker: old or new at every moment. Raises FileError."""
+    """Write the report atomically on the worker and return its file name. Raises FileError."""
     made = datetime.now().strftime("%Y-%m-%d %H:%M")
     name = f"shift-{datetime.fromtimestamp(found.shift.start).strftime('%Y-%m-%d-%H%M')}.html"
     try:

@@ -1,4 +1,4 @@
-"""The shift report as one HTML page: nothing is loaded from anywhere, and it prints on A4 and Letter."""
+"""Shift report as a self-contained HTML page that prints on A4 and Letter."""
 
 from __future__ import annotations
 
@@ -17,21 +17,24 @@ from core.message import Message
 from core.store.production.measured_parts import FeatureRow, ReadingRow
 from core.store.store_rows import Change, Kind, SecondaryRow, ToolRow
 
-_WIDE, _HIGH = 900, 64  # of the time line
-_MOST = 500  # rows of a table
+_WIDE, _HIGH = 900, 64  # size of the time line
+_MOST = 500  # maximum number of table rows
 _MM_PER_INCH = 25.4
 _LETTER = {Kind.TOOL: "T", Kind.SECONDARY: "D", Kind.ZERO: "G", Kind.SHAPE: "T", Kind.MILL_TOOL: "T"}
 
 
 def title_of(found: ShiftFigures, machine: str) -> str:
-    """From when to when, by the clock on the wall."""
+    """Return the title with start and end in local time."""
     first, last = (datetime.fromtimestamp(each).strftime("%Y-%m-%d %H:%M") for each in found.shift)
     of = f"{machine}: " if machine else ""
     return of + tr(Message("shift from {first} to {last}", first=first, last=last))
 
 
 def shift_html(found: ShiftFigures, machine: str, made: str, *, metric: bool) -> str:
-    """The whole page; lengths in mm where ``metric``, else in inch, X of tools a diameter."""
+    """Return the HTML page of the shift report.
+
+    Lengths are in mm if ``metric`` is set and otherwise in inches, with X of tools as a diameter.
+    """
     body = "".join(
         f"<h2>{escape(head)}</h2>{text}" if head else text for head, text in _sections(found, metric=metric)
     )
@@ -39,7 +42,7 @@ def shift_html(found: ShiftFigures, machine: str, made: str, *, metric: bool) ->
 
 
 def facts(found: ShiftFigures) -> list[tuple[str, str]]:
-    """What stands on top: parts, availability, stops, alarms, readings."""
+    """Return the main results: parts, availability, stops, alarms and readings."""
     rows = [(tr("Parts"), str(found.parts))]
     share = found.availability
     if share is not None:
@@ -169,7 +172,7 @@ def _change(row: Change, *, metric: bool) -> tuple[str, ...]:
 
 
 def _side(row: object, *, metric: bool) -> str:
-    """What an offset was; a shape is not spelt out."""
+    """Return the values of an offset row as text."""
     if row is None:
         return tr("not set")
     if isinstance(row, ToolRow):
@@ -199,7 +202,7 @@ def _size(mm: float, *, metric: bool) -> str:
 
 
 def _time_line(found: ShiftFigures) -> str:
-    """The shift from left to right: cycles, stops, alarms, and the hours below."""
+    """Return the time line as SVG: cycles, stops and alarms, with the hours below."""
     start, length = found.shift.start, found.shift.end - found.shift.start
 
     def x(moment: float) -> float:

@@ -1,4 +1,4 @@
-"""The proposed wear correction of a feature: what it does to the part, and taken over as a typed one."""
+"""Proposed wear correction of a feature: its effect on the part, and its application."""
 
 from __future__ import annotations
 
@@ -24,11 +24,14 @@ from core.message import Message
 from core.store.production.measured_parts import FeatureRow
 from core.store.store_rows import FIELDS, Kind, SecondaryRow, ToolRow, Value
 
-RESOLUTION = {True: 0.001, False: 0.0001 * 25.4}  # mm: what a correction is rounded to, metric and inch
+RESOLUTION = {True: 0.001, False: 0.0001 * 25.4}  # rounding of a correction in mm, for metric and inch
 
 
 def proposal(data: PartsData, row: FeatureRow, mode: Mode) -> Proposal:
-    """What the readings since the last correction ask for. Raises QualityError."""
+    """Return the correction that the readings since the last correction require.
+
+    Raises QualityError.
+    """
     feature = feature_of(row)
     sizes = [each.value for each in data.since_correction(row)]
     if not sizes and data.readings_of(row.id):
@@ -45,17 +48,17 @@ def proposal(data: PartsData, row: FeatureRow, mode: Mode) -> Proposal:
 
 @dataclass(frozen=True, slots=True)
 class Correction:
-    """A change of one field of one offset: what to save and what the operator reads of it."""
+    """Change of one field of one offset, with the values to store and the text for the operator."""
 
     kind: Kind
     number: int
     values: dict[str, Value]
-    why: str  # for the history
-    words: str  # ``T3 WEAR X −.0006: SPIGOT .5012 → .5006``
+    why: str  # reason for the history
+    words: str  # for example ``T3 WEAR X −.0006: SPIGOT .5012 → .5006``
 
 
 def correction(found: Proposal, desk: Desk, mode: Mode) -> Correction:
-    """The proposal as an entry of the table of offsets. Raises EntryError with what is in the way."""
+    """Return the proposal as a change of the offset table. Raises EntryError with the obstacle."""
     feature, book = found.feature, desk.book
     why_not = book.locked or refusal(desk.snapshot(), correction=True)
     if why_not:
@@ -90,14 +93,17 @@ def correction(found: Proposal, desk: Desk, mode: Mode) -> Correction:
 
 
 def _tool_value(name: str, row: object, found: Proposal, mode: Mode, number: int) -> Value:
-    """As F2 of the tool table adds what is typed."""
+    """Return the new wear value, added as F2 of the tool table adds an entry."""
     if not isinstance(row, ToolRow):
         raise EntryError(tr(Message("NO OFFSETS SET FOR T{number}", number=number)))
     return value_added(name, row, fixed(found.change / mode.unit, 10), mode)
 
 
 def _secondary_value(name: str, row: object, found: Proposal, mode: Mode) -> Value:
-    """A D offset is a radius in X; one that was never set is 0."""
+    """Return the new value of a D offset (X as a radius).
+
+    An offset that is not set counts as 0.
+    """
     before = row if isinstance(row, SecondaryRow) else SecondaryRow()
     value = added(getattr(before, name), found.offset_change / mode.unit, mode.metric)
     field = FIELDS[Kind.SECONDARY][name]
@@ -107,28 +113,31 @@ def _secondary_value(name: str, row: object, found: Proposal, mode: Mode) -> Val
     return value
 
 
-SHOWN = 25  # newest readings that are drawn
+SHOWN = 25  # number of latest readings in the chart
 
 
 @dataclass(slots=True)
 class CorrectionEffect:
-    """Stands as long as the question does. The part is made both ways on the worker of the offset pages."""
+    """Display of a proposed correction while its question is open.
+
+    The worker of the offset pages simulates the part with the old and new offsets.
+    """
 
     desk: Desk
     question: str = ""
     found: Proposal | None = None
-    _readings: tuple[tuple[int, float], ...] = ()  # part and size, mm
+    _readings: tuple[tuple[int, float], ...] = ()  # part number and size in mm
     _drawn: tuple[object, ChartDrawing] = field(default=(None, ChartDrawing()))
 
     @property
     def stands(self) -> bool:
-        """Whether its question is still the one on the prompt line."""
+        """Whether the question of the correction is still on the prompt line."""
         return bool(self.question) and self.desk.notice == self.question
 
     def show(
         self, question: str, found: Proposal, change: Correction, readings: tuple[tuple[int, float], ...]
     ) -> None:
-        """From now on; the worker makes the part before and after."""
+        """Show a proposal, and let the worker simulate the part before and after the correction."""
         again = (question, found, readings) == (self.question, self.found, self._readings)
         self.question, self.found, self._readings = question, found, readings
         effect, job = self._effect, self.desk.session.now.job
@@ -152,14 +161,14 @@ class CorrectionEffect:
         return before, Tables(tool_offsets(tools), secondary_offsets(secondary))
 
     def sheet(self, mode: Mode) -> Sheet | None:
-        """Every diameter and shoulder before and after; None where no part can be made of the program."""
+        """Return the table of diameters and shoulders before and after, or None without a simulated part."""
         effect = self._effect
         if effect is None or effect.busy or effect.trouble or effect.part is None:
             return None
         return part_table(effect.part, mode)
 
     def words(self) -> str:
-        """How it stands with the part."""
+        """Return the status of the simulation as text."""
         effect = self._effect
         if effect is None or effect.compare is None or self.desk.session.now.job is None:
             return ""
@@ -172,7 +181,7 @@ class CorrectionEffect:
         )
 
     def drawing(self, mode: Mode) -> ChartDrawing:
-        """The readings between their limits, their mean, and what the next parts will measure."""
+        """Return the chart of the readings, their mean and the expected size of the next parts."""
         found = self.found
         if found is None or not self._readings:
             return ChartDrawing()

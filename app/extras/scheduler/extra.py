@@ -1,4 +1,4 @@
-"""Registers proofs on other computers."""
+"""Registration of proofs on other computers."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from app.compose.extra import Extra
 
 
 class ProofsElsewhere(Extra):
-    """The option --scheduler of ``turndesk prove``."""
+    """Optional feature with the option --scheduler of ``turndesk prove``."""
 
     proof_workers = "app.extras.scheduler.proof_scheduler.Scheduler"
 

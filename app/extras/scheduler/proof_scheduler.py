@@ -1,6 +1,6 @@
-"""``prove --scheduler``: the same units of work, given to a dask.distributed scheduler and its workers.
+"""Option ``prove --scheduler``: work units for a dask.distributed scheduler and its workers.
 
-TurnDesk itself must be installed where the workers run, in the same version; programs and machine are sent.
+The workers need the same version of TurnDesk. Programs and machine are sent to them.
 """
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ from app.desk.command_errors import CommandError
 from core.message import Message
 
 _ADDRESS = re.compile(r"(?:tcp://|tls://)?(\[[0-9A-Fa-f:]+\]|[\w.-]+):(\d{1,5})")
-_ANSWER = 10.0  # s to wait for the scheduler
-_AHEAD = 256  # units that the scheduler has at once; workers may join while they are proved
+_ANSWER = 10.0  # seconds to wait for the scheduler
+_AHEAD = 256  # units that the scheduler has at once; workers can join during the proofs
 
 
 class Scheduler:
-    """Workers of a scheduler. Raises CommandError when it cannot be reached."""
+    """Workers of a scheduler. Raises CommandError if the scheduler cannot be reached."""
 
     ahead = _AHEAD
 
@@ -39,7 +39,7 @@ class Scheduler:
                 "--scheduler needs dask.distributed, which is not installed; install turndesk[scheduler]",
                 "no-dask",
             ) from error
-        logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what it has to say is told by us
+        logging.getLogger("distributed").setLevel(logging.CRITICAL)  # TurnDesk reports its errors.
         self.killed: type[BaseException] = distributed.scheduler.KilledWorker
         try:
             self._client = distributed.Client(address, timeout=_ANSWER)
@@ -55,12 +55,12 @@ class Scheduler:
             sys.stderr.write(f"turndesk: {address} has no workers yet; waiting for one\n")
 
     def open(self, _jobs: int | None = None) -> Executor:
-        """All workers that the scheduler has and gets."""
+        """Return an executor for all present and future workers of the scheduler."""
         executor: Executor = self._client.get_executor(pure=False)
         return executor
 
     def stop(self, executor: Executor | None, *, done: bool) -> None:
-        """Take back what is not proved yet, and leave the scheduler."""
+        """Cancel units that are not proved yet, and disconnect from the scheduler."""
         if executor is not None:
             executor.shutdown(wait=done)
         self._client.close()

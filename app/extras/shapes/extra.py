@@ -1,4 +1,4 @@
-"""Registers the shapes and calculators of the editor."""
+"""Registration of the shapes and calculators of the editor."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class ShapesAndCalculators(Extra):
-    """Shift+F3 and Shift+F4 in the editor, and ``turndesk shapes``."""
+    """Optional feature with the shapes and calculators of the editor and ``turndesk shapes``."""
 
     commands = {
         "shapes": Subcommand("setup", "make a program from the shapes that a file defines"),

@@ -1,4 +1,4 @@
-"""The form of one shape: what is typed, what it comes to, what is wrong; and forms that features add."""
+"""Form of one shape: entries, calculated values and errors; also the base of forms from other features."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ from core.sketch import Sketch
 COLUMNS = ("X", "Z", "C", "R", "A")
 """Of a point: diameter, Z, chamfer, radius, arc (+ by G02, − by G03)."""
 _PARTS = ("x", "z", "chamfer", "radius", "arc")
-_NAMES = frozenset("0123456789./#-MX")  # that names of sizes are typed with
+_NAMES = frozenset("0123456789./#-MX")  # characters for the names of sizes
 _LONGEST = 24
 
 
 class Cell(NamedTuple):
-    """What is shown of a field: label, figure, whether it was typed, what is wrong with it."""
+    """Field for display: label, value, whether it was typed, and its error."""
 
     word: str
     label: str
@@ -40,9 +40,10 @@ class Cell(NamedTuple):
 
 @dataclass(slots=True)
 class ShapeForm:
-    """``typed`` has texts by field, ``rows`` texts by column; ``marked`` counts fields, then points.
+    """Form of a shape. ``typed`` contains texts by field, and ``rows`` texts by column of each point.
 
-    ``instead``: the piece of the text that it was opened from.
+    ``marked`` is the index of the selected field or, after the fields, of the selected point. ``instead`` is
+    the piece of the text from which the form was opened.
     """
 
     shape: Shape
@@ -52,12 +53,12 @@ class ShapeForm:
     rows: list[dict[str, str]] = field(default_factory=list)
     marked: int = 0
     column: int = 0
-    afresh: bool = True  # the next character begins the entry anew
+    afresh: bool = True  # the next character replaces the entry
     one: Filled = field(init=False)
     troubles: dict[str, str] = field(default_factory=dict)
     lines: list[str] = field(default_factory=list)
-    worked: int = 0  # how often it was worked out
-    words: tuple[str, ...] = ()  # what is to be said of the lines
+    worked: int = 0  # number of calculations
+    words: tuple[str, ...] = ()  # remarks about the lines
 
     def __post_init__(self) -> None:
         if self.instead is not None:
@@ -73,7 +74,7 @@ class ShapeForm:
         self.work()
 
     def _take(self, one: Filled) -> None:
-        """Everything that the text says counts as typed."""
+        """Enter all values of a piece of the text as typed entries."""
         for word, value in one.values.items():
             self.typed[word] = value if isinstance(value, str) else plain(value, 6)
         for row in one.rows:
@@ -82,16 +83,16 @@ class ShapeForm:
             self.rows.append({c: plain(v, 6) for c, v in keep.items()})
 
     def _first(self) -> int:
-        """Where to begin: at the first field for which nothing is proposed, else at the points."""
+        """Return the first field without a proposed value, or else the second point of a contour."""
         for place, each in enumerate(self.fields):
             if self.one.values.get(each.word) is None:
                 return place
         return len(self.fields) + 1 if self.shape.contour else 0
 
-    # --- what it comes to ----------------------------------------------------------------------------
+    # --- calculation ---------------------------------------------------------------------------------
 
     def work(self) -> None:
-        """Everything anew from what is typed."""
+        """Calculate everything from the entries."""
         self.worked += 1
         self.troubles = {}
         values = {word: value for word in self.typed if (value := self._value(word)) is not None}
@@ -137,36 +138,36 @@ class ShapeForm:
         found = {c: self._number(word, said[c]) for c in COLUMNS if said.get(c)}
         return Row(found.get("X"), found.get("Z"), *(found.get(c) or 0.0 for c in ("C", "R", "A")))
 
-    # --- what is shown -------------------------------------------------------------------------------
+    # --- display -------------------------------------------------------------------------------------
 
     @property
     def fields(self) -> tuple[Field, ...]:
-        """Those that exist now."""
+        """Fields that apply to the present choices."""
         return self.one.fields if hasattr(self, "one") else self.shape.fields
 
     @property
     def count(self) -> int:
-        """Of fields and points, an empty one behind the last."""
+        """Number of fields and points, including an empty point at the end."""
         return len(self.fields) + (len(self.rows) + 1 if self.shape.contour else 0)
 
     @property
     def field(self) -> Field | None:
-        """The marked one; None on a point."""
+        """Selected field, or None if a point is selected."""
         return self.fields[self.marked] if self.marked < len(self.fields) else None
 
     @property
     def point(self) -> int:
-        """The number of the marked point, from 0; -1 on a field."""
+        """Index of the selected point from 0, or -1 if a field is selected."""
         return self.marked - len(self.fields) if self.marked >= len(self.fields) else -1
 
     @property
     def word(self) -> str:
-        """That of the marked field or point."""
+        """Word of the selected field or point."""
         here = self.field
         return here.word if here is not None else row_word(self.point + 1)
 
     def cells(self) -> list[Cell]:
-        """All fields."""
+        """Return all fields for display."""
         return [
             Cell(
                 each.word,
@@ -180,7 +181,7 @@ class ShapeForm:
         ]
 
     def figure(self, each: Field) -> str:
-        """What stands in a field: as typed, else what is proposed."""
+        """Return the text of a field: the entry, or else the proposed value."""
         if each.word in self.typed:
             return self.typed[each.word]
         value = self.one.values.get(each.word)
@@ -189,16 +190,16 @@ class ShapeForm:
         return value if isinstance(value, str) else plain(value, 6)
 
     def shown(self, each: Field) -> str:
-        """The same as an operator reads it: a choice in his language, names and sizes as they are."""
+        """Return the text of a field for the operator, with translated choices."""
         said = self.figure(each)
         return shown_choice(each, said) if self.is_word(each, said) else said
 
     def is_word(self, each: Field, choice: str) -> bool:
-        """Whether a choice is a word of ours, and no name or size."""
+        """Return whether a choice is a translatable word instead of a name or a size."""
         return choice in each.choices
 
     def dimension(self, word: str) -> str:
-        """The figure of a dimension of the drawing."""
+        """Return the value of a dimension of the drawing, or an empty string."""
         if word.startswith("#"):
             number = int(word[1:]) - 1
             return word if number < len(self.rows) else ""
@@ -206,7 +207,7 @@ class ShapeForm:
         return self.shown(known) if known is not None and known in self.fields else ""
 
     def choices(self, each: Field) -> tuple[str, ...]:
-        """What a field is chosen from; none where it is typed."""
+        """Return the choices of a field, or an empty tuple if the field is typed."""
         if each.word == "CLASS":
             return class_choices(self.one.values)
         if each.word == "SIZE":
@@ -215,31 +216,31 @@ class ShapeForm:
 
     @property
     def trouble(self) -> str:
-        """What is wrong where the mark stands, else what is wrong first."""
+        """Error of the selected field or point, or else the first error."""
         return self.troubles.get(self.word) or next(iter(self.troubles.values()), "")
 
     @property
     def sketch(self) -> Sketch:
-        """The drawing whose dimensions are the fields."""
+        """Drawing whose dimensions are the fields."""
         return self.shape.sketch(self.one)
 
     @property
     def waits(self) -> bool:
-        """Whether the lines are still to come."""
+        """Whether the lines are still being calculated."""
         return False
 
     # --- keys ----------------------------------------------------------------------------------------
 
     def touch_at(self, point: tuple[float, float]) -> None:
-        """The pointer on the drawing, beside all figures."""
+        """Handle a touch on the drawing outside its dimensions."""
 
     def go(self, place: int, column: int = 0) -> None:
-        """Mark another field or point."""
+        """Select a field or point by index."""
         self.marked = max(0, min(place, self.count - 1))
         self.column, self.afresh = column, True
 
     def go_to(self, word: str) -> None:
-        """Mark the field or the point of this word, as a finger on the drawing does."""
+        """Select the field or point of a word."""
         if word.startswith("#"):
             self.go(len(self.fields) + int(word[1:]) - 1)
             return
@@ -248,7 +249,7 @@ class ShapeForm:
                 self.go(place)
 
     def takes(self, key: str) -> bool:
-        """Whether a character is text where the mark stands."""
+        """Return whether a character is part of an entry at the selection."""
         if len(key) != 1:
             return False
         here = self.field
@@ -261,7 +262,7 @@ class ShapeForm:
         return key in CHARACTERS
 
     def typed_key(self, key: str) -> bool:
-        """A key; False when it means nothing here."""
+        """Handle a key. Return False if it has no function here."""
         moves = {"Up": -1, "Down": 1, "Enter": 1, "Page up": -8, "Page down": 8}
         if key in moves:
             self.go(self.marked + moves[key])
@@ -296,7 +297,7 @@ class ShapeForm:
             self.afresh = False
 
     def _pick(self, here: Field, key: str) -> None:
-        """The next choice that begins with a letter; Delete takes the proposal again."""
+        """Select the next choice that begins with a letter. Delete restores the proposed choice."""
         choices, now = self.choices(here), self.figure(here)
         if key in {"Back", "Delete"}:
             self.typed.pop(here.word, None)
@@ -307,12 +308,16 @@ class ShapeForm:
         self._set(here.word, next(each for each in order if self._begins(here, each, key)))
 
     def _begins(self, here: Field, choice: str, key: str) -> bool:
-        """Whether a choice begins with a letter as it is shown."""
+        """Return whether the displayed text of a choice begins with a letter."""
         said = shown_choice(here, choice) if self.is_word(here, choice) else choice
         return said.upper().startswith(key.upper())
 
     def _write_point(self, key: str) -> None:
-        """A letter leads to its column, figures are written there; the empty point behind the last begins."""
+        """Handle a key on a point.
+
+        A letter selects its column, and digits edit the value. The empty point at the end becomes a new
+        point.
+        """
         if key.upper() in COLUMNS:
             self.column, self.afresh = COLUMNS.index(key.upper()), True
             return
@@ -327,7 +332,7 @@ class ShapeForm:
         self._work_at(self.point)
 
     def _work_at(self, point: int) -> None:
-        """Calculate again with the mark on a point: the fields above it depend on the points."""
+        """Calculate again and keep the selection on a point, because the fields depend on the points."""
         self.work()
         self.marked = len(self.fields) + point
 
@@ -340,20 +345,20 @@ class ShapeForm:
         self.marked = next((n for n, each in enumerate(self.fields) if each.word == word), self.marked)
 
     def insert_point(self) -> None:
-        """An empty point before the marked one."""
+        """Insert an empty point before the selected point."""
         if self.point >= 0:
             self.rows.insert(self.point, {})
             self._work_at(self.point)
 
     def drop_point(self) -> None:
-        """Take the marked point out."""
+        """Delete the selected point."""
         if 0 <= self.point < len(self.rows):
             del self.rows[self.point]
             self._work_at(self.point)
 
 
 def shown_choice(each: Field, choice: str) -> str:
-    """A choice in the operator's language, which may call it otherwise beside another label."""
+    """Return the translated text of a choice, or the choice itself without a translation."""
     known = choice_text(each, choice)
     said = tr(known)
     return choice if said == known else said
@@ -364,26 +369,32 @@ Show = Callable[[ShapeForm], str | None]
 
 
 class AddedForm(ABC):
-    """One form of the list, with what it works out beside the screen. ``key`` opens it."""
+    """Form that another feature adds to the list; calculates on a worker, and ``key`` opens it."""
 
     key: str
     shape: Shape
 
     @abstractmethod
     def open_form(self, setting: Setting, before: tuple[str, ...], wanted: Path | None) -> ShapeForm:
-        """Return a new form; ``before`` are the lines in front, ``wanted`` is the file to begin with."""
+        """Return a new form.
+
+        ``before`` contains the preceding lines, ``wanted`` is the file to open.
+        """
 
     @abstractmethod
     def makes_of(self, name: str) -> bool:
-        """Return whether this form makes a program of a file of this name."""
+        """Return whether this form makes a program from a file with this name."""
 
     @abstractmethod
     def work(self, form: ShapeForm, show: Show, tell: Callable[[str], None]) -> None:
-        """Work out what has been typed; ``tell`` is told why that is impossible."""
+        """Calculate the form on a worker.
+
+        ``tell`` is called with a reason if that is not possible.
+        """
 
     @abstractmethod
     def cancel(self, form: ShapeForm) -> None:
-        """Stop working."""
+        """Cancel the calculation."""
 
     @abstractmethod
     def keys(self, form: ShapeForm, show: Show) -> Mapping[int, Key]:
@@ -391,19 +402,19 @@ class AddedForm(ABC):
 
     @abstractmethod
     def prompt(self, form: ShapeForm) -> str:
-        """Return what the prompt line says."""
+        """Return the text of the prompt line."""
 
     @abstractmethod
     def poll(self) -> None:
-        """Take up what the workers have found; called once a frame."""
+        """Process the results of the workers; called once per frame."""
 
     @abstractmethod
     def close(self) -> None:
-        """End the workers."""
+        """Stop the workers."""
 
 
 def words_of(shapes: Iterable[Shape]) -> list[str]:
-    """Return the names of shapes and of their fields: many are single words."""
+    """Return the names of shapes, fields and choices for the check of translations."""
     shapes = tuple(shapes)
     fields = [field for shape in shapes for field in shape.fields]
     labels = {field.label for field in fields if len(field.label) > 1}
@@ -412,7 +423,10 @@ def words_of(shapes: Iterable[Shape]) -> list[str]:
 
 
 def _in_words(field: Field) -> tuple[str, ...]:
-    """The choices that are words: series and classes of threads have names that all languages use."""
+    """Return the choices that are translatable words.
+
+    Thread series and classes have international names.
+    """
     if field.word == "SERIES":
         return (Series.OWN.value,)
     return () if field.word in {"CLASS", "SIZE"} else field.choices

@@ -1,4 +1,4 @@
-"""Shapes from a file: steps with the fields of the forms, one behind the other, as the page writes them."""
+"""Shapes from a file: steps with the fields of the forms, written as in the editor."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from core.language.source import Dialect
 from core.message import Message, nearest
 
 KIND, POINTS = "kind", "points"
-_KEYS = {"KIND": "edge_kind"}  # the field of EDGE TURN that would be called as the step's own
+_KEYS = {"KIND": "edge_kind"}  # The field KIND of EDGE TURN would conflict with the key of the step.
 
 Step = Mapping[str, object]
 
 
 class StepError(Exception):
-    """Steps that make no program; each mistake names its step and its key."""
+    """Error for invalid steps. Each message names the step and the key."""
 
     def __init__(self, mistakes: Sequence[str]) -> None:
         super().__init__("; ".join(mistakes))
@@ -30,7 +30,10 @@ class StepError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Written:
-    """The program; ``kinds`` are the steps, ``words`` what is to be said of their lines."""
+    """Generated program.
+
+    ``kinds`` are the kinds of the steps, and ``words`` are remarks about the lines.
+    """
 
     lines: tuple[str, ...]
     kinds: tuple[str, ...]
@@ -38,17 +41,17 @@ class Written:
 
 
 def kinds_of(dialect: Dialect) -> dict[str, Shape]:
-    """The shapes by the name that a step has for them."""
+    """Return the shapes of a language by the kind of their step."""
     return {shape.name.lower(): shape for shape in SHAPES_OF[dialect].values()}
 
 
 def keys_of(shape: Shape) -> dict[str, str]:
-    """By the keys of a step the words of its fields; a contour has points besides."""
+    """Return the words of a shape's fields by the key of the step."""
     return {_KEYS.get(each.word, each.word.lower()): each.word for each in shape.fields}
 
 
 def written(steps: Sequence[Step], new: Setting) -> Written:
-    """The program of these steps, as the forms write them. Raises StepError."""
+    """Return the program of the steps, as the forms write it. Raises StepError."""
     shapes = [_shape(number, step, new.dialect) for number, step in enumerate(steps, 1)]
     mistakes = [text for number, step in enumerate(steps, 1) for text in _strange(number, step, shapes)]
     if mistakes := [*(each for each in shapes if isinstance(each, str)), *mistakes]:
@@ -79,7 +82,7 @@ def written(steps: Sequence[Step], new: Setting) -> Written:
 
 
 def _shape(number: int, step: Step, dialect: Dialect) -> Shape | str:
-    """The shape of a step, else what is wrong with its kind."""
+    """Return the shape of a step, or an error message about its kind."""
     kinds = kinds_of(dialect)
     kind = step.get(KIND)
     if not isinstance(kind, str):
@@ -97,7 +100,7 @@ def _shape(number: int, step: Step, dialect: Dialect) -> Shape | str:
 
 
 def _strange(number: int, step: Step, shapes: Sequence[Shape | str]) -> list[str]:
-    """Keys that its shape has not, and values that are neither figures nor words."""
+    """Return error messages about unknown keys and invalid values of a step."""
     shape = shapes[number - 1]
     if isinstance(shape, str):
         return []
@@ -121,7 +124,7 @@ def _strange(number: int, step: Step, shapes: Sequence[Shape | str]) -> list[str
 
 
 def _form(number: int, step: Step, shape: Shape, setting: Setting) -> ShapeForm:
-    """The form with what the step says typed into it. Raises StepError with what the form refuses."""
+    """Return the form with the values of a step. Raises StepError if the form rejects them."""
     form = ShapeForm(shape, setting)
     where = Message("step {number}, {shape}", number=number, shape=shape.name.lower())
     for key, word in keys_of(shape).items():
@@ -151,7 +154,7 @@ def _form(number: int, step: Step, shape: Shape, setting: Setting) -> ShapeForm:
 
 
 def _rows(where: str, points: object) -> list[dict[str, str]]:
-    """Points as the form has them: x, z, and chamfer c, radius r or arc a."""
+    """Return the entries of points: x, z, and chamfer c, radius r or arc a. Raises StepError."""
     if not isinstance(points, list) or not all(isinstance(each, dict) for each in points):
         raise StepError(
             [
@@ -183,5 +186,5 @@ def _text(value: object) -> str:
 
 
 def _key(shape: Shape, word: str) -> str:
-    """A field as a step calls it; a row of points keeps its number."""
+    """Return the key of a field in a step, or ``point`` with a number."""
     return next((key for key, own in keys_of(shape).items() if own == word), f"point {word.lstrip('#')}")

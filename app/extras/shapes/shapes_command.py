@@ -1,4 +1,4 @@
-"""``turndesk shapes FORM.toml --out part.nc``: the forms of the editor as a file; keys of its JSON."""
+"""Command ``turndesk shapes FORM.toml --out part.nc``: forms of the editor as a file; keys of its JSON."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ turndesk shapes --list names all kinds and their keys.
 
 
 def add_parser(subparsers: SubParsers) -> None:
-    """Declare the command."""
+    """Declare the options of the command."""
     parser = subparsers.add_parser(
         "shapes",
         description=_ABOUT,
@@ -72,7 +72,7 @@ def add_parser(subparsers: SubParsers) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Write the program and prove it; 1 when it would have errors. Raises CommandError."""
+    """Write the program and prove it. Return 1 if it has errors. Raises CommandError."""
     from app.compose.machine.machine_setup import read_machine
 
     machine = read_machine(args.machine)
@@ -94,7 +94,10 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _language(out: str | None, machine: Machine) -> Dialect:
-    """By the name of the program, without one that of the machine."""
+    """Return the language of the output file name, or else of the machine.
+
+    Raises CommandError for Klartext.
+    """
     said = Dialect(machine.language) if out is None else dialect_of(Path(out).name)
     if said is Dialect.KLARTEXT:
         raise CommandError(
@@ -193,11 +196,11 @@ def _list(dialect: Dialect, *, as_json: bool) -> int:
     return EXIT_OK
 
 
-# --- what a command has made
+# --- output ----------------
 
 
 def may_write(args: argparse.Namespace) -> str:
-    """Return who may write ``--out``, empty without one. Raises CommandError."""
+    """Return the user who may write ``--out``, or an empty string without it. Raises CommandError."""
     if args.out is None:
         return ""
     if Path(args.out).exists():
@@ -213,7 +216,7 @@ def may_write(args: argparse.Namespace) -> str:
 
 
 def write_made(args: argparse.Namespace, text: str, who: str) -> None:
-    """Write ``--out``, which must not exist yet. Raises CommandError."""
+    """Write ``--out``, which must not exist. Raises CommandError."""
     from app.programs.whole_file import FileError, write_new
 
     with as_command_error(FileError):

@@ -1,4 +1,4 @@
-"""What shapes are told of the machine and of the sheets of its tools."""
+"""Data of the machine and its tools for shapes."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _USUAL = (15, 16)
 
 
 def shapes_of(desk: Desk, machine: Machine) -> Shapes:
-    """The shapes of the desk; the tools are those of the moment in which a form is opened."""
+    """Return the shapes model. The tools are read again each time a form opens."""
     found = Shapes(lambda: shop_of(machine, shapes_at_hand()), Setting(metric=not machine.inch))
     for extra in extras().values():
         extra.extend(found, desk, machine)
@@ -26,7 +26,7 @@ def shapes_of(desk: Desk, machine: Machine) -> Shapes:
 
 
 def shop_of(machine: Machine, tools: Mapping[int, ToolShape]) -> Shop:
-    """What proposals and refusals of a shape follow."""
+    """Return the machine and tool data on which proposals and limits of a shape depend."""
     by_name = {axis.name: axis for axis in machine.axes}
     z, c = by_name.get("Z"), by_name.get("C")
     return Shop(
@@ -50,13 +50,13 @@ def _travel(axis: Axis | None) -> float:
 
 
 def _chuck(machine: Machine) -> tuple[int, int] | None:
-    """The M codes that open and close the chuck; None where the machine file binds none to it."""
+    """Return the M codes that open and close the chuck, or None if the machine file does not define them."""
     codes = {on: code for code, (output, on) in sorted(machine.m_codes.items()) if output == "collet"}
     return (codes[False], codes[True]) if len(codes) == 2 else None
 
 
 def _live(machine: Machine) -> tuple[int, int]:
-    """The M codes that switch an output on and off that is called after a live tool; the first of them."""
+    """Return the first M codes that switch the live tool on and off, found by the name of the output."""
     for code, (output, state) in sorted(machine.m_codes.items()):
         if state and _LIVE.search(output):
             off = [other for other, (name, on) in machine.m_codes.items() if name == output and not on]

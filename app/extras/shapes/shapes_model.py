@@ -1,4 +1,4 @@
-"""Shapes on the text of the editor: the list, the form, and the text with what the form writes. No Qt."""
+"""Model of the shapes in the editor without Qt: the list, the form, and the text with its lines."""
 
 from __future__ import annotations
 
@@ -31,24 +31,24 @@ from core.message import Message
 
 
 def written_in(name: str) -> bool:
-    """Whether a program of this name takes shapes: their lines are OmniTurn or SINUMERIK."""
+    """Return whether shapes can be written into a program of this name: OmniTurn and SINUMERIK only."""
     return dialect_of(name) in SHAPES_OF
 
 
 @dataclass(slots=True)
 class Shapes(PanelModel):
-    """``fetch`` tells what machine and tools say; it reads the store, so it is asked on a worker.
+    """Model of the shapes panel. ``fetch`` reads machine and tool data from the store on a worker.
 
-    ``text`` is the program with what the form writes; ``at`` the line, from 0, before which a new shape is
-    written. ``number`` counts what is worth proving.
+    ``text`` is the program with the lines of the form. ``at`` is the line, from 0, before which a new shape
+    is written. ``number`` counts the texts to prove.
     """
 
     fetch: Callable[[], Shop] = Shop
     new: Setting = field(default_factory=Setting)
     worker: Latest = field(default_factory=lambda: Latest("editing-shapes"))
-    added: tuple[AddedForm, ...] = ()  # forms of other features, the last ones of the list
-    table: Mapping[str, Shape] = field(default_factory=lambda: SHAPES)  # of the list: shapes, or calculators
-    wanted: Path | None = None  # a file that the next added form opens
+    added: tuple[AddedForm, ...] = ()  # forms of other features, at the end of the list
+    table: Mapping[str, Shape] = field(default_factory=lambda: SHAPES)  # shapes or calculators of the list
+    wanted: Path | None = None  # file that the next added form opens
     shop: Shop = field(default_factory=Shop)
     lines: list[str] = field(default_factory=list)
     at: int = 0
@@ -59,28 +59,29 @@ class Shapes(PanelModel):
     asked: Callable[[], None] | None = None
     text: str = ""
     number: int = 0
-    written: int = 0  # counts texts that are to stand in the editor
-    padded: bool = False  # the number pad is drawn
+    written: int = 0  # counts the texts to put into the editor
+    padded: bool = False  # the number pad is shown
     _typed: dict[str, dict[str, str]] = field(default_factory=dict)
 
     def close(self) -> None:
-        """End the workers."""
+        """Stop the workers."""
         self.worker.close()
         for each in self.added:
             each.close()
 
     def look(self) -> None:
-        """Once a frame: take up what the workers have fetched and found."""
+        """Process the results of the workers; called once per frame."""
         self.worker.poll()
         for each in self.added:
             each.poll()
 
-    # --- coming in -----------------------------------------------------------------------------------
+    # --- opening -------------------------------------------------------------------------------------
 
     def open(self, name: str, text: str, line: int, *, helpers: bool = False) -> str:
-        """Shapes of this text; the cursor stands on ``line``, from 1. Answers why not, else nothing.
+        """Open the shapes for a text with the cursor on ``line``, from 1.
 
-        ``helpers``: list calculators and templates instead, and open no piece of the text.
+        Returns a reason if that is not possible, or an empty string. ``helpers`` lists calculators and
+        templates instead, and does not open a piece of the text.
         """
         if not written_in(name):
             return tr("SHAPES WORK ONLY IN OMNITURN AND SINUMERIK PROGRAMS")
@@ -101,7 +102,7 @@ class Shapes(PanelModel):
         return ""
 
     def _tell_unreadable(self, line: int) -> None:
-        """Lines that a form has written, and none can open any more."""
+        """Report lines of a form that can no longer be read."""
         found = unreadable(self.lines, line, self.new.dialect) if self.of_shapes else None
         if found is not None and line < len(self.lines):
             at, shape = found
@@ -110,17 +111,17 @@ class Shapes(PanelModel):
 
     @property
     def of_shapes(self) -> bool:
-        """Whether the list is that of shapes, not of calculators and templates."""
+        """Whether the list contains shapes instead of calculators and templates."""
         return all(self.table is not each for each in HELPERS_OF.values())
 
     @property
     def keys_of_list(self) -> tuple[str, ...]:
-        """Those that open a form of the list."""
+        """Keys that open the forms of the list."""
         return tuple(self.table)
 
     @property
     def listed(self) -> list[Piece]:
-        """The pieces that the list offers behind the forms."""
+        """Pieces of the program that follow the forms in the list."""
         return self.pieces if self.of_shapes else []
 
     def _take(self, text: str) -> None:
@@ -141,11 +142,14 @@ class Shapes(PanelModel):
         self.notice = tr(Message("TOOL DATA CANNOT BE READ: {why}", why=why))
 
     def piece_at(self, line: int) -> Piece | None:
-        """The piece that this line, from 0, belongs to."""
+        """Return the piece that contains a line, counted from 0, or None."""
         return next((each for each in self.pieces if each.first <= line < each.behind), None)
 
     def _place(self, line: int) -> int:
-        """Where a new shape goes: behind the piece of the cursor, and before the end of the program."""
+        """Return the line for a new shape.
+
+        The line is after the piece at the cursor and before the end of the program.
+        """
         here = self.piece_at(line)
         at = here.behind if here is not None else min(line + 1, len(self.lines))
         ends = [n for n, each in enumerate(self.lines) if ends_program(each, self.new.dialect)]
@@ -156,7 +160,7 @@ class Shapes(PanelModel):
                 return max(min(at, end), begin + 1)
         return at
 
-    # --- the list ------------------------------------------------------------------------------------
+    # --- list ----------------------------------------------------------------------------------------
 
     @property
     def listing(self) -> bool:
@@ -164,11 +168,11 @@ class Shapes(PanelModel):
         return self.form is None
 
     def choose(self, place: int) -> None:
-        """Mark a shape of the list, or a piece of the program behind them."""
+        """Select a shape of the list or a piece of the program."""
         self.marked = max(0, min(place, len(self.table) + len(self.listed) - 1))
 
     def open_marked(self) -> None:
-        """The form of the marked shape, or of the marked piece."""
+        """Open the form of the selected shape or piece."""
         keys = self.keys_of_list
         if self.marked < len(keys):
             self.open_shape(keys[self.marked])
@@ -176,7 +180,7 @@ class Shapes(PanelModel):
             self._open_piece(self.listed[self.marked - len(keys)])
 
     def open_shape(self, key: str) -> None:
-        """A new shape."""
+        """Open the form of a new shape."""
         self.notice = ""
         shape = self.table[key]
         self.marked = self.keys_of_list.index(key)
@@ -187,9 +191,9 @@ class Shapes(PanelModel):
                 self._open_piece(head)
                 return
         elif not shape.noted:
-            pass  # no piece of a program: it needs no head
+            pass  # a calculator, which does not need a head
         elif self._adder_of(shape) is not None and not self.lines:
-            self.at = 0  # it writes a head of its own
+            self.at = 0  # the form writes a head
         elif not begun(self.lines, self.new.dialect):
             self.notice = tr("FIRST PRESS N AND FILL IN THE PROGRAM HEADER (HEAD)")
             return
@@ -198,13 +202,14 @@ class Shapes(PanelModel):
         if adder is None:
             self.form = ShapeForm(shape, setting)
         else:
-            self.padded = False  # its drawing is picked from: on a small screen the pad has its place
+            # The drawing is used for selection; on a small screen the pad would cover it.
+            self.padded = False
             wanted, self.wanted = self.wanted, None
             self.form = adder.open_form(setting, tuple(self.lines[: self.at]), wanted)
         self._preview()
 
     def open_file(self, file: Path) -> None:
-        """The form of the feature that makes a program of this file."""
+        """Open the form of the feature that makes a program from this file."""
         for each in self.added:
             if each.makes_of(file.name):
                 self.wanted = file
@@ -215,11 +220,11 @@ class Shapes(PanelModel):
 
     @property
     def _adder(self) -> AddedForm | None:
-        """Who has added the open form; None for a shape."""
+        """Form object that the open form belongs to, or None for a shape."""
         return self._adder_of(self.form.shape) if self.form is not None else None
 
     def _open_piece(self, piece: Piece) -> None:
-        """A piece of the program; of one that somebody has changed by hand it is said."""
+        """Open the form of a piece, and report changes made by hand."""
         self.notice, self.asked = "", None
         if piece.taken:
             words = ", ".join(each.label for each in piece.filled.fields if each.word in piece.taken)
@@ -232,10 +237,10 @@ class Shapes(PanelModel):
         self.form = ShapeForm(piece.filled.shape, piece.setting, piece)
         self._preview()
 
-    # --- the form ------------------------------------------------------------------------------------
+    # --- form ----------------------------------------------------------------------------------------
 
     def keys(self) -> dict[int, Key]:
-        """The function keys."""
+        """Return the function keys."""
         pad = Key("KEYPAD", self.turn_pad)
         if self.form is None:
             return {2: Key("OPEN", self.open_marked), 9: pad}
@@ -251,11 +256,11 @@ class Shapes(PanelModel):
         return found
 
     def turn_pad(self) -> None:
-        """Show the number pad, or take it away."""
+        """Show or hide the number pad."""
         self.padded = not self.padded
 
     def typed(self, key: str) -> bool:
-        """A key that is text or moves the mark; False when it means nothing here."""
+        """Handle a key. Return False if it has no function here."""
         if self.form is not None:
             return self._typed_in_form(self.form, key)
         if key.upper() in self.table:
@@ -279,13 +284,13 @@ class Shapes(PanelModel):
         return True
 
     def takes(self, key: str) -> bool:
-        """Whether a character is text here."""
+        """Return whether a character is part of an entry."""
         if self.form is not None:
             return self.form.takes(key)
         return len(key) == 1 and key.upper() in self.table
 
     def touch(self, word: str) -> None:
-        """A finger on a field, a point or a dimension; on the marked choice it turns it."""
+        """Select the touched field, point or dimension. A second touch selects the next choice."""
         form = self.form
         if form is None:
             return
@@ -296,30 +301,30 @@ class Shapes(PanelModel):
         self._preview()
 
     def touch_at(self, point: tuple[float, float]) -> None:
-        """A finger on the drawing, beside its figures."""
+        """Handle a touch on the drawing outside its dimensions."""
         if self.form is not None:
             self.form.touch_at(point)
             self._preview()
 
     def touch_cell(self, number: int, column: int) -> None:
-        """A finger on a cell of a point."""
+        """Select the touched cell of a point."""
         if self.form is not None:
             self.form.go(len(self.form.fields) + number, column)
 
     def insert_point(self) -> None:
-        """F3."""
+        """Insert a point (F3)."""
         if self.form is not None:
             self.form.insert_point()
             self._preview()
 
     def drop_point(self) -> None:
-        """F4."""
+        """Delete the selected point (F4)."""
         if self.form is not None:
             self.form.drop_point()
             self._preview()
 
     def escape(self) -> bool:
-        """A question, then the form, is taken back; False on the list."""
+        """Cancel the question or the form. Return False on the list."""
         if self.asked is not None:
             self.asked, self.notice = None, ""
         elif self.notice:
@@ -333,17 +338,17 @@ class Shapes(PanelModel):
         return True
 
     def to_list(self) -> None:
-        """From the form to the list: what was typed and not written is dropped."""
+        """Return to the list and discard unwritten entries."""
         self.asked, self.notice, self.form = None, "", None
         self._show("\n".join(self.lines) + "\n" if self.lines else "")
 
     def write(self) -> None:
-        """F2: into the text, and back to the list; asks where something written by hand would go."""
+        """Write the form into the text (F2). Replacing lines edited by hand requires confirmation."""
         form = self.form
         if form is None:
             return
         if form.waits:
-            return  # the prompt says so
+            return  # the prompt gives the reason
         if form.troubles:
             self.notice = ""
             self._to_trouble(form)
@@ -356,7 +361,7 @@ class Shapes(PanelModel):
             self._write()
 
     def answer(self) -> None:
-        """F6: yes."""
+        """Confirm the pending question (F6)."""
         asked, self.asked = self.asked, None
         if asked is not None:
             asked()
@@ -385,7 +390,7 @@ class Shapes(PanelModel):
         self.marked = 0 if not self.pieces else max(1, self.marked)
 
     def delete(self) -> None:
-        """F5: the piece out of the text; asked first."""
+        """Delete the piece from the text after confirmation (F5)."""
         form = self.form
         if form is None or form.instead is None:
             return
@@ -409,14 +414,14 @@ class Shapes(PanelModel):
 
     @property
     def line(self) -> int:
-        """The line, from 1, up to which the path is shown: the last of the form, or before the place."""
+        """Line, from 1, up to which the path is shown: the end of the form, or the insertion line."""
         form = self.form
         if form is None:
             return self.at
         return (form.instead.first if form.instead is not None else self.at) + len(form.lines)
 
     def _preview(self) -> None:
-        """The text with what the form writes; as it was where the form is not complete."""
+        """Show the text with the lines of the form, or the unchanged text while the form is incomplete."""
         form = self.form
         if form is None:
             return
@@ -429,7 +434,7 @@ class Shapes(PanelModel):
         self._show("\n".join(text) + "\n")
 
     def _shown_of(self, form: ShapeForm) -> str | None:
-        """Show what a form has worked out beside the screen; the text, None where the form has gone."""
+        """Show a calculated form and return the text, or None if the form is closed."""
         if self.form is not form:
             return None
         self._preview()
@@ -444,7 +449,7 @@ class Shapes(PanelModel):
             self.number += 1
 
     def prompt(self) -> str:
-        """What the keys do here."""
+        """Return the prompt for the present keys."""
         if self.notice:
             return self.notice
         if self.form is None and not self.of_shapes:

@@ -1,4 +1,4 @@
-"""The form of a shape and its drawing in the place of the editor's text, and the list of shapes."""
+"""Shapes panel in place of the editor's text: list of shapes, form and drawing."""
 
 from __future__ import annotations
 
@@ -23,19 +23,22 @@ from app.screen.panel import Panel, Shown
 from app.screen.sheet_panel import RowPanel
 from core.extras.shapes.contour import row_word
 
-ROW = 5.2  # units: at least a finger's height
-_LABEL = 0.56  # of the width
-_SHARE = 0.56  # of the width that the fields take
-_PAD = 26.0  # units: height of the number pad, where fingers do not need more
-_TURN = "◂"  # before a choice: it is turned and not typed, so no bar stands behind it
-_UNSAID = "?"  # where something has to be typed
-_SMALL = 1.6  # units: a label that would have to be smaller takes two lines
-_DRAWN = 12.0  # units: a drawing that is lower shows nothing
+ROW = 5.2  # units: height of a row, at least a fingertip
+_LABEL = 0.56  # ratio of the width
+_SHARE = 0.56  # ratio of the width for the fields
+_PAD = 26.0  # units: height of the number pad, unless touch needs more
+_TURN = "◂"  # sign before a choice, which is selected instead of typed and has no text cursor
+_UNSAID = "?"  # sign for a required value
+_SMALL = 1.6  # units: smallest font of a one-line label
+_DRAWN = 12.0  # units: minimum useful height of the drawing
 
 
 @dataclass(frozen=True, slots=True)
 class _Line:
-    """One row: a shape, a piece or a field; ``cells`` of a point. ``tone`` is the ink of its figure."""
+    """Row with a shape, a piece, a field or the ``cells`` of a point.
+
+    ``tone`` is the color of its value.
+    """
 
     label: str
     figure: str = ""
@@ -45,7 +48,7 @@ class _Line:
 
 
 class RowsPanel(RowPanel):
-    """Rows with a mark that stays in sight; a finger marks one, or what stands in it."""
+    """List with a selected row that remains visible. A touch selects a row or a cell."""
 
     margin = 1
     shown: Shown[tuple[_Line, ...]] = Shown(())
@@ -75,7 +78,7 @@ class RowsPanel(RowPanel):
             self._cells(painter, room, line, number, marked=marked)
         else:
             self._words(painter, room, line, marked=marked)
-        # The first place that holds a point is taken: the row goes after its cells.
+        # The first matching touch target is used, so the row follows its cells.
         self.place(box, partial(self._choose, number, -1), kind="row", on=marked)
 
     def _words(self, painter: Painter, room: QRectF, line: _Line, *, marked: bool) -> None:
@@ -85,7 +88,7 @@ class RowsPanel(RowPanel):
         self._figure(painter, figure, line.figure, line.tone, marked=marked and self.typing)
 
     def _label(self, painter: Painter, box: QRectF, line: _Line, *, marked: bool) -> None:
-        """In two lines where one would be too small to be read, or cut."""
+        """Draw the label in two lines if one line would be too small or cut off."""
         label = tr(line.label)
         room = box.adjusted(0, 0, -0.6 * self.look.u, 0)
         cut = label.rfind(" ", 0, 2 + len(label) // 2 + 1)
@@ -109,7 +112,7 @@ class RowsPanel(RowPanel):
             painter.write(box, figure, 2.1, tone, at=RIGHT, raw=True, bold=tone != "soft")
 
     def _cells(self, painter: Painter, room: QRectF, line: _Line, number: int, *, marked: bool) -> None:
-        """Number and figures of a point."""
+        """Draw the number and the values of a point."""
         u = self.look.u
         first = QRectF(room.x(), room.y(), 2.4 * u, room.height())
         painter.write(first, line.label, 1.8, line.tone if line.tone == "alarm" else "soft", raw=True)
@@ -121,22 +124,22 @@ class RowsPanel(RowPanel):
             inner = box.adjusted(0.2 * u, 0, -0.2 * u, 0)
             if figure or here:
                 self._figure(painter, inner, figure, line.tone, marked=here and self.typing)
-            elif marked:  # what may be typed here
+            elif marked:  # the columns that can be typed
                 painter.write(inner, COLUMNS[column], 1.7, "soft", at=CENTRE, raw=True, bold=False)
 
 
 class LinesPanel(Panel):
-    """The lines that the form writes, or what is wrong."""
+    """Lines that the form writes, or its error."""
 
     title = "LINES"
     lines: Shown[tuple[str, ...]] = Shown(())
     trouble = Shown("")
     words: Shown[tuple[str, ...]] = Shown(())
 
-    _page: Shown[int] = Shown(0)  # of what is said, where it is longer than its place
+    _page: Shown[int] = Shown(0)  # displayed page of remarks that are longer than the panel
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
-        """A finger goes on in what is longer than its place, and behind its end to the beginning."""
+        """Show the next page of long remarks. The first page follows the last."""
         self._page += 1
         event.accept()
 
@@ -147,7 +150,7 @@ class LinesPanel(Panel):
             self._trouble(painter, room)
             return
         room = self._say(painter, room)
-        many = int(room.height() / high)  # none where what is said takes the whole place
+        many = int(room.height() / high)  # 0 if the remarks fill the panel
         for place, line in enumerate(self.lines[:many]):
             more = place == many - 1 and len(self.lines) > many
             box = QRectF(room.x(), room.y() + place * high, room.width(), high)
@@ -162,7 +165,7 @@ class LinesPanel(Panel):
             )
 
     def _say(self, painter: Painter, room: QRectF) -> QRectF:
-        """What is to be said of the lines, above them; the room that is left."""
+        """Draw the remarks above the lines and return the remaining area."""
         if not self.words:
             return room
         painter.setFont(self.look.font(1.8, bold=True))
@@ -177,7 +180,7 @@ class LinesPanel(Panel):
         return room.adjusted(0, room.height(), 0, 0)
 
     def _say_page(self, painter: Painter, room: QRectF, flags: Qt.TextFlag, text: str) -> None:
-        """As many whole lines as fit, of the page that is turned to; its number stands below."""
+        """Draw one page of the remarks with whole lines, and the page number below."""
         line = painter.fontMetrics().lineSpacing()
         lines = max(1, int((room.height() - 2.0 * self.look.u) / line))
         whole = painter.boundingRect(QRectF(0, 0, room.width(), 0), flags, text).height()
@@ -197,7 +200,10 @@ class LinesPanel(Panel):
 
 
 class ShapesView(EditorPanel):
-    """Rows at the left, drawing and lines at the right; the number pad takes the lines' place."""
+    """Shapes panel: rows on the left, drawing and lines on the right.
+
+    The number pad replaces the lines.
+    """
 
     part_name = "SHAPES"
     KEYS = ("Shapes", "Calculators")
@@ -214,16 +220,16 @@ class ShapesView(EditorPanel):
         self._seen: tuple[object, ...] = ()
 
     def head_keys(self, name: str) -> Sequence[HeadKey]:
-        """The list of shapes, where the language of the program has some, and that of calculators."""
+        """Return the keys for shapes, if the program supports them, and for calculators."""
         calculators = HeadKey(tr("CALCULATOR ⇧F4"), "Calculators")
         return (HeadKey(tr("SHAPES ⇧F3"), "Shapes"), calculators) if written_in(name) else (calculators,)
 
     def open_at(self, key: str, name: str, text: str, line: int) -> str:
-        """Shapes, or calculators and templates."""
+        """Open the shapes or the calculators."""
         return self.model.open(name, text, line, helpers=key == "Calculators")
 
     def refresh(self) -> None:
-        """Once a frame: what the model says now, where it says something else than before."""
+        """Update the panel if the model has changed; called once per frame."""
         model = self.model
         form = model.form
         now: tuple[object, ...] = (
@@ -248,7 +254,7 @@ class ShapesView(EditorPanel):
             self._show_form(form)
         self.lines.setVisible(not model.padded)
         self.pad.setVisible(model.padded)
-        self.sketch.setVisible(True)  # unless the pad needs its room
+        self.sketch.setVisible(True)  # hidden later if the pad needs the space
         self.lay_out()
 
     def _show_list(self) -> None:
@@ -297,11 +303,11 @@ class ShapesView(EditorPanel):
             model.touch_cell(row - len(form.fields), max(0, column))
 
     def sizeHint(self) -> QSize:
-        """None of its own."""
+        """Return an empty size, because the page determines the size."""
         return QSize()
 
     def lay_out(self) -> None:
-        """Everything in its place."""
+        """Arrange all parts."""
         u = self.look.u
         gap, left = max(4, round(0.7 * u)), round(_SHARE * self.width())
         right, x = self.width() - left - gap, left + gap
@@ -312,19 +318,22 @@ class ShapesView(EditorPanel):
             part.setGeometry(x, self.height() - low, right, low)
 
     def _pad_height(self) -> int:
-        """A finger's keys first; what is left is the drawing's, or the pad's too where it shows nothing."""
+        """Return the height of the pad.
+
+        The drawing is hidden if its remaining height is too small.
+        """
         high = max(self.pad.least, round(min(_PAD * self.look.u, 0.6 * self.height())))
         drawn = self.height() - high >= _DRAWN * self.look.u
         self.sketch.setVisible(drawn)
         return high if drawn else self.height()
 
     def resizeEvent(self, _event: object) -> None:
-        """In the new unit."""
+        """Lay out the panel again after a change of size."""
         self.lay_out()
 
 
 def _shapes_of(desk: Desk) -> Shapes:
-    """Those of the desk; one that was put together without gets some, which know no machine."""
+    """Return the shapes model of TurnDesk, or a new one without machine data."""
     found = desk.pages.find(Shapes)
     if found is None:
         found = Shapes()

@@ -1,4 +1,4 @@
-"""Registers the sharing of programs with other machines."""
+"""Registration of program sharing with other machines."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class Sharing(Extra):
-    """The page SHARED PROGRAMS, ``turndesk share``, and [sharing] of the machine file."""
+    """Optional feature with the page SHARED PROGRAMS, ``turndesk share`` and the table [sharing]."""
 
     commands = {
         "share": Subcommand("jobs", "share programs with other controls: publish, take, compare"),

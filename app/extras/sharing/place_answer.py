@@ -1,4 +1,4 @@
-"""The wait of a command for a place of shared programs: a dead network drive may never answer."""
+"""Wait of a command for the shared location, which may never respond on a dead network drive."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from core.extras.sharing.shared_place import Cause, SharedPlace
 from core.message import Message
 
 T = TypeVar("T")
-_TOLD_AFTER = 30.0  # s, as on the desk; a slow place may take longer and answer yet
-_DEAD_AFTER = 300.0  # s in which not one byte of a folder came: a script would wait for it for ever
-_OPEN = (  # a pipe in its place is told by who reads it
+_TOLD_AFTER = 30.0  # seconds, as on the operator screen; a slow location can still respond later
+_DEAD_AFTER = 300.0  # seconds without data from a folder after which a script stops waiting
+_OPEN = (  # a pipe in its place is reported by its reader
     "import os, sys; os.read(os.open(sys.argv[1], os.O_RDONLY | getattr(os, 'O_NONBLOCK', 0)), 1)"
 )
 
 
 def answered(place: SharedPlace, work: Callable[[], T], told_after: float = _TOLD_AFTER) -> T:
-    """What ``work`` gives, or raises; a place that keeps it waiting is named on stderr.
+    """Return the result of ``work``, or raise its exception. A slow location is reported on stderr.
 
-    The work has a thread of its own: a call that hangs in the system sees no Ctrl+C, this wait does. What
-    hangs then is left behind, and ends with the process.
+    The work runs in a separate thread, because Ctrl+C cannot interrupt a hanging system call. A hanging
+    thread ends with the process.
     """
     if isinstance(place, SharedFolder):
         _wait_for_folder(place, told_after)
@@ -37,16 +37,16 @@ def answered(place: SharedPlace, work: Callable[[], T], told_after: float = _TOL
 
 
 def _wait_for_folder(place: SharedFolder, told_after: float) -> None:
-    """Until its mark was opened, or refused, by a process of its own. Raises SharingError.
+    """Wait until a separate process has opened the marker file of the folder. Raises SharingError.
 
-    What hangs in a dead FUSE drive outlives SIGKILL, and as a thread it would keep the whole command: a
-    process is left behind instead. Opened, because what a look at names finds may be kept on this side.
+    A call that hangs in a dead FUSE drive survives SIGKILL and, as a thread, would block the whole command. A
+    separate process can be left running instead. The file is opened, because names can come from a cache.
     """
     opening = subprocess.Popen(
         [sys.executable, "-I", "-S", "-c", _OPEN, str(place.mark)],
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
-        start_new_session=True,  # no Ctrl+C there: it has nothing to say
+        start_new_session=True,  # without Ctrl+C, because the process has nothing to report
     )
     try:
         opening.wait(told_after)

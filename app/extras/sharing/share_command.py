@@ -1,4 +1,4 @@
-"""``turndesk share``: programs shared with other desks: newer, publish, take, compare; its JSON keys."""
+"""Command ``turndesk share``: status, publish, take and compare shared programs; its JSON keys."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def add_parser(subparsers: SubParsers) -> None:
-    """The subcommand with its actions."""
+    """Declare the actions and options of the command."""
     parser = subparsers.add_parser("share")
     actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
     begin = actions.add_parser(
@@ -61,7 +61,7 @@ def add_parser(subparsers: SubParsers) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Does what ``args`` asks; raises CommandError with one sentence."""
+    """Execute the action. Raises CommandError."""
     from app.compose.machine.machine_setup import read_machine
     from app.extras.sharing.place_answer import answered
     from app.extras.sharing.sharing import TakeError
@@ -88,14 +88,14 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _acts(args: argparse.Namespace) -> tuple[Act, ...]:
-    """What it changes, of the table of levels; nothing: it only looks."""
+    """Return the permissions that the action needs, or an empty tuple if it only reads."""
     if args.action in _LOOKING:
         return ()
     alone = args.action == "begin" or getattr(args, "claim", False)
     return (Act.SHARED_PLACE,) if alone else (Act.PROGRAMS,)
 
 
-# --- the actions -----------------------------------------------------------------------------------------
+# --- actions ---------------------------------------------------------------------------------------------
 
 
 def _begin(sharing: Sharing, args: argparse.Namespace) -> int:
@@ -206,7 +206,7 @@ _ACTIONS = {
     "keep": _keep,
 }
 _LOOKING = frozenset({"status", "compare"})
-_READING = _LOOKING | {"begin"}  # the store, beside a desk that runs
+_READING = _LOOKING | {"begin"}  # the store is opened read-only while TurnDesk runs
 
 
 def _looked(sharing: Sharing) -> Shared:
@@ -268,7 +268,7 @@ def _chosen(shared: Shared, args: argparse.Namespace) -> SharedVersion:
     return family.elsewhere[0]
 
 
-# --- how it is told --------------------------------------------------------------------------------------
+# --- output ----------------------------------------------------------------------------------------------
 
 
 def _say(args: argparse.Namespace, words: str, values: dict[str, object]) -> None:
@@ -276,7 +276,7 @@ def _say(args: argparse.Namespace, words: str, values: dict[str, object]) -> Non
 
 
 def told(sharing: Sharing, shared: Shared) -> dict[str, object]:
-    """All that is known, for scripts."""
+    """Return all known data for scripts."""
     return {
         "place": sharing.place.name,
         "desk": sharing.desk,

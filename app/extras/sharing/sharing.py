@@ -1,7 +1,8 @@
-"""Programs of this desk shared with others: publishing what is here, learning what is there, taking it.
+"""Sharing of programs with other machines: publishing local versions, reading and using others.
 
-The store of this machine is the truth: every version is kept in it before anybody else hears of it, and
-what a place away cannot take waits there. Nothing of another desk comes into the program folder unasked.
+The store of this machine is authoritative: every version is stored before it is published, and versions wait
+in the store while the location is not available. Versions of other machines are never copied to the program
+folder without a request.
 """
 
 from __future__ import annotations
@@ -29,11 +30,14 @@ from core.store.store import Store
 from core.store.store_errors import StoreError
 from core.store.store_rows import utc_now
 
-_PATIENCE = 2.0  # s that closing waits for a look: one that hangs in a dead network drive is left behind
+_PATIENCE = 2.0  # seconds that closing waits; a thread that hangs in a dead network drive is abandoned
 
 
 class SharingThread:
-    """``heard`` is told, on this thread, of what each look has found; ``every``: s between two looks."""
+    """Thread that synchronizes every ``every`` seconds.
+
+    It calls ``heard`` with each result.
+    """
 
     def __init__(
         self,
@@ -45,23 +49,23 @@ class SharingThread:
         self._sharing, self._every, self._heard = sharing, every, heard
         self._wake, self._closing = threading.Event(), threading.Event()
         self._thread = threading.Thread(target=self._repeat, name="sharing", daemon=True)
-        self._now, self._since = now, -1.0  # when the look that is under way began; under 0: none is
+        self._now, self._since = now, -1.0  # start time of the present synchronization, or negative
 
     def start(self) -> None:
-        """Once."""
+        """Start the thread; to be called once."""
         self._thread.start()
 
     def look_now(self) -> None:
-        """From any thread; it waits for nothing."""
+        """Start a synchronization now; callable from any thread, without waiting."""
         self._wake.set()
 
     def silent_for(self) -> float:
-        """How many seconds a look has waited for the place: a dead network drive may never answer."""
+        """Return how long the present synchronization has waited for the location, in seconds."""
         since = self._since
         return self._now() - since if since >= 0.0 else 0.0
 
     def close(self) -> None:
-        """What is under way is left behind: it is taken up again when the desk starts anew."""
+        """Stop the thread. Unfinished work is repeated after the next start of TurnDesk."""
         self._closing.set()
         self._wake.set()
         if self._thread.is_alive():
@@ -82,29 +86,39 @@ _AT_ONCE, _BYTES_AT_ONCE = 200, 8 * 2**20  # versions that are published togethe
 
 
 class TakeError(CodedError):
-    """A version was not taken, and the program is as it was; the sentence says why."""
+    """Error for a version that was not copied.
+
+    The program is unchanged, and the message states the reason.
+    """
 
 
 @dataclass(frozen=True, slots=True)
 class Shared:
-    """All that is known after a look, one immutable object. ``trouble``: why the place was of no use."""
+    """Immutable result of a synchronization.
+
+    ``trouble`` is the reason why the location was not usable.
+    """
 
     families: Mapping[str, Family] = field(default_factory=dict)
-    states: Mapping[str, str] = field(default_factory=dict)  # how each stands, see ``Family.state``
-    holders: Mapping[str, tuple[str, ...]] = field(default_factory=dict)  # desks that have a version, by id
+    states: Mapping[str, str] = field(default_factory=dict)  # state of each family, see ``Family.state``
+    # machines that have a version, by id
+    holders: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     desks: tuple[DeskState, ...] = ()
     strays: tuple[str, ...] = ()
     refused: Mapping[str, str] = field(default_factory=dict)  # files of this machine that are not shared
-    waiting: int = 0  # versions that the place does not have yet
+    waiting: int = 0  # versions that are not published yet
     trouble: str = ""
 
     def who_has(self, version: str) -> tuple[str, ...]:
-        """The desks that have this version in their program folder, by name."""
+        """Return the names of the machines that have this version in their program folder."""
         return self.holders.get(version, ())
 
 
 class Sharing:
-    """``look`` and all that takes or keeps wait for disk and network: they are called on workers only."""
+    """Sharing of programs.
+
+    Methods can wait for disk and network, and are called on workers only.
+    """
 
     def __init__(
         self, place: SharedPlace, desk: str, home: str, folder: Path, store: Callable[[], Store]
@@ -112,12 +126,15 @@ class Sharing:
         self.place, self.desk, self.home = place, desk, home
         self.now = Shared()
         self._files, self._store = FilesOfMachine(folder), store
-        self._lock = threading.Lock()  # one pass, or one taking, at a time
+        self._lock = threading.Lock()  # for one synchronization or change at a time
 
-    # --- a pass ----------------------------------------------------------------------------------------
+    # --- synchronization -------------------------------------------------------------------------------
 
     def look(self, *, settled: bool = False) -> Shared:
-        """Learn, keep what has changed here, publish. What is in the way stands in ``trouble``."""
+        """Read other versions, store local changes and publish them.
+
+        An error is set in ``trouble``.
+        """
         with self._lock:
             found, trouble = None, ""
             try:
@@ -130,12 +147,12 @@ class Sharing:
                 if found is not None:
                     trouble = self._publish(store, found)
                 self._tell(store, found, trouble)
-            except StoreError as error:  # a restore may close this store at any moment
+            except StoreError as error:  # a restore can close the store at any time
                 self.now = replace(self.now, trouble=str(error))
             return self.now
 
     def peek(self) -> Shared:
-        """What a look would find; nothing is kept of it, here or there. Raises StoreError."""
+        """Return what a synchronization would find, without storing anything. Raises StoreError."""
         with self._lock:
             store, found, trouble = self._store(), None, ""
             fresh: Sequence[SharedVersion] = ()
@@ -162,7 +179,7 @@ class Sharing:
         return found
 
     def _note(self, store: Store, *, settled: bool) -> None:
-        """What the files hold now becomes versions; a program that is gone is not here any more."""
+        """Store the present files as versions, and mark programs whose file is gone."""
         files = self._files.look(settled=settled)
         store.write(partial(self._noted, files)).result()
 
@@ -183,7 +200,7 @@ class Sharing:
             try:
                 text = input_bytes(file.path, MOST_BYTES)
             except OSError:
-                return  # it has gone between two looks
+                return  # the file was deleted in the meantime
             follows = (family.here,) if here is not None else ()
             version = new_version(file.name, text, follows, self.desk, utc_now(), "saved")
             program_records.save(connection, file.name, text, "shared")
@@ -191,7 +208,7 @@ class Sharing:
         shared_versions.set_here(connection, key_of(file.name), version.id)
 
     def _publish(self, store: Store, found: Found) -> str:
-        """Why it was not done; empty: the place has all that there is."""
+        """Publish local versions, and return an error or an empty string."""
         others = [each for each in found.desks if each.home != self.home]
         if any(key_of(each.desk) == key_of(self.desk) for each in others):
             return str(Cause.NAME_TAKEN.error(self.place.name, self.desk))
@@ -252,16 +269,19 @@ class Sharing:
         refused = dict(self._files.refused)
         self.now = Shared(families, states, _holders(desks), desks, strays, refused, waiting, trouble)
 
-    # --- what the operator asks for --------------------------------------------------------------------
+    # --- requests of the operator ----------------------------------------------------------------------
 
     def text(self, version: SharedVersion) -> bytes:
-        """Of the store where it is kept, else of the place. Raises SharingError and StoreError."""
+        """Return the text of a version from the store, or else from the location.
+
+        Raises SharingError and StoreError.
+        """
         with self._store().read() as connection:
             text = shared_versions.text_of(connection, version.text)
         return self.place.text(version) if text is None else text
 
     def text_here(self, key: str) -> bytes:
-        """What this machine has of a program; empty: nothing. Raises StoreError."""
+        """Return the local text of a program, or empty bytes. Raises StoreError."""
         family = self.now.families.get(key, Family())
         here = family.versions.get(family.here)
         if here is None:
@@ -270,10 +290,11 @@ class Sharing:
             return shared_versions.text_of(connection, here.text) or b""
 
     def take(self, version: SharedVersion) -> str:
-        """The version into the program folder; answers the file's name. What was there stays a version.
+        """Copy a version into the program folder and return the file name.
 
-        Where both were changed, what comes of it follows both: every desk sees that it is settled.
-        Raises TakeError, SharingError and StoreError; the program is then as it was.
+        The previous text remains a version. If both sides have changed the program, the new version follows
+        both, so that other machines see the conflict as resolved. Raises TakeError, SharingError and
+        StoreError. The program is then unchanged.
         """
         text = self.text(version)
         with self._lock:
@@ -298,13 +319,13 @@ class Sharing:
             except FileError as error:
                 store.write(lambda c: shared_versions.withdraw(c, taken)).result()
                 raise TakeError(str(error), error_code(error)) from error
-            # Behind the file: a power cut between them leaves a text that the next look knows.
+            # After the file, because the next synchronization recognizes its text after a power failure.
             store.write(lambda c: shared_versions.set_here(c, version.key, taken.id)).result()
             self._tell(store, None, self.now.trouble)
             return name
 
     def keep(self, key: str) -> None:
-        """What is here stands against all that was changed elsewhere. Raises TakeError and StoreError."""
+        """Resolve a conflict in favor of the local version. Raises TakeError and StoreError."""
         with self._lock:
             store = self._store()
             self._note(store, settled=False)
@@ -331,7 +352,10 @@ class Sharing:
             self._tell(store, None, self.now.trouble)
 
     def _free_name(self, version: SharedVersion) -> str:
-        """Of the file here that has the name in any letters; else that of the version. Raises TakeError."""
+        """Return the name of the local file that differs only in case, or else the version's name.
+
+        Raises TakeError.
+        """
         names = [each for each in self._files.refused if key_of(each) == version.key]
         if names:
             raise TakeError(
@@ -369,13 +393,13 @@ def _kept(version: SharedVersion, connection: sqlite3.Connection) -> None:
     shared_versions.set_here(connection, version.key, version.id)
 
 
-_Stamp = tuple[int, int]  # time of the last change in nanoseconds, bytes
-_GRAIN = 2_000_000_000  # ns: a file that has just been written may change once more and keep its time
+_Stamp = tuple[int, int]  # time of the last change in nanoseconds, size in bytes
+_GRAIN = 2_000_000_000  # ns: a file that was just written can change again without a new time
 
 
 @dataclass(frozen=True, slots=True)
 class SharedFile:
-    """One program file; ``digest`` is SHA-256 of what it holds."""
+    """Program file with the SHA-256 of its content."""
 
     name: str
     path: Path
@@ -384,18 +408,21 @@ class SharedFile:
 
 @dataclass(slots=True)
 class FilesOfMachine:
-    """The operator's folder. A file is read again only when its time or size has changed."""
+    """Files of the operator's folder.
+
+    A file is read again only after a change of time or size.
+    """
 
     folder: Path
-    refused: Mapping[str, str] = field(default_factory=dict)  # why a file is not shared, by its name
-    present: frozenset[str] = frozenset()  # keys of all files of the last look, shared or not
+    refused: Mapping[str, str] = field(default_factory=dict)  # reason why a file is not shared, by file name
+    present: frozenset[str] = frozenset()  # keys of all files of the last scan, shared or not
     _read: dict[str, tuple[_Stamp, str]] = field(default_factory=dict)
     _seen: dict[str, _Stamp] = field(default_factory=dict)
 
     def look(self, *, settled: bool) -> dict[str, SharedFile]:
-        """Files by the key of their program.
+        """Return the files by the key of their program.
 
-        ``settled``: what is being written is left for the next look, when it has stopped changing.
+        With ``settled``, a file that is still being written is left for the next scan.
         """
         found, refused, stamps = dict[str, SharedFile](), dict[str, str](), dict[str, _Stamp]()
         names = [path.name for path in _program_files(self.folder)]

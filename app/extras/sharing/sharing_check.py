@@ -1,4 +1,4 @@
-"""The row of ``turndesk machine check`` for the place of shared programs."""
+"""Row of ``turndesk machine check`` for the shared location."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from core.machine.machine_model import Machine
 
 
 def check_sharing(machine: Machine, answers: Answers) -> None:
-    """Add whether the place of shared programs answers and is set up."""
+    """Add a row that shows whether the shared location responds and is set up."""
     table = machine.hardware.table(SharingTable)
     if table is None:
         return

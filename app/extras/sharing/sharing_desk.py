@@ -1,4 +1,4 @@
-"""Sharing of programs put together: the place that the machine file names, and this desk's own id."""
+"""Setup of program sharing: the shared location of the machine file, and the identity of this machine."""
 
 from __future__ import annotations
 
@@ -26,11 +26,15 @@ if TYPE_CHECKING:
     from app.extras.sharing.sharing_model import SharingModel
     from core.extras.sharing.shared_place import SharedPlace
 
-HOME_FILE = "sharing-id"  # beside the store and not in it: a setup or a backup of another desk has another
+# not in the store, so that another machine with a copied setup or backup gets its own id
+HOME_FILE = "sharing-id"
 
 
 def sharing_of(machine: Machine, store: Callable[[], Store]) -> Sharing | None:
-    """None: the machine file has no [sharing]. Raises CommandError where the data folder takes no file."""
+    """Return the sharing of a machine, or None without [sharing].
+
+    Raises CommandError if the id cannot be stored.
+    """
     table = machine.hardware.table(SharingTable)
     if table is None:
         return None
@@ -41,7 +45,7 @@ def sharing_of(machine: Machine, store: Callable[[], Store]) -> Sharing | None:
 
 
 def attach_sharing(desk: Desk, machine: Machine, journal: Journal | None) -> None:
-    """The desk has its page; without a store, or without [sharing], it says why nothing is shared."""
+    """Attach the page. Without a store or [sharing], the page states why nothing is shared."""
     sharing = None
     if journal is not None:
         try:
@@ -58,9 +62,9 @@ def _model(desk: Desk, sharing: Sharing | None) -> SharingModel:
 
 
 def start_sharing(desk: Desk, journal: Journal) -> Callable[[], None] | None:
-    """Start to publish and to look for new versions; return a function that ends it.
+    """Start the synchronization thread, and return a function that stops it.
 
-    None: the machine file has no [sharing], or the place cannot be used.
+    Returns None without [sharing] or if the location cannot be used.
     """
     table = desk.machine.model.hardware.table(SharingTable) if desk.machine.model is not None else None
     if table is None:
@@ -80,7 +84,7 @@ def start_sharing(desk: Desk, journal: Journal) -> Callable[[], None] | None:
 
 @dataclass(slots=True)
 class Heard:
-    """What a look has found, on the sharing thread: each thing is told once."""
+    """Handler of synchronization results on the sharing thread. Each message is reported once."""
 
     desk: Desk
     journal: Journal
@@ -88,7 +92,7 @@ class Heard:
     _told: frozenset[str] = frozenset()
 
     def hear(self, shared: Shared) -> None:
-        """Trouble to the log; that the program on the desk is newer elsewhere to the prompt line."""
+        """Log an error, and report on the prompt line that the loaded program is newer on another machine."""
         if shared.trouble and shared.trouble != self._trouble:
             self.journal.hear(Event(self.desk.snapshot().t, "warning", shared.trouble))
         self._trouble = shared.trouble
@@ -101,11 +105,11 @@ class Heard:
             self._told |= fresh
             who = next(each.desk for each in family.elsewhere if each.id in fresh)
             text = tr(Message("{name} WAS CHANGED ON {machine}. F1, X: SHOW CHANGES", name=name, machine=who))
-            self.desk.hear(Event(self.desk.snapshot().t, "shared", text))  # said with the next frame
+            self.desk.hear(Event(self.desk.snapshot().t, "shared", text))  # shown with the next frame
 
 
 def place_of(table: SharingTable) -> SharedPlace:
-    """The place; nothing is opened yet."""
+    """Return the shared location without opening it."""
     if table.postgresql:
         from core.extras.sharing.shared_database import SharedDatabase
 
@@ -116,7 +120,7 @@ def place_of(table: SharingTable) -> SharedPlace:
 
 
 def home_of(folder: Path) -> str:
-    """What tells this desk from all others; made once. Raises CommandError."""
+    """Return the unique id of this machine, created once. Raises CommandError."""
     from core.extras.sharing.version_record import is_home
 
     path = folder / HOME_FILE
@@ -132,6 +136,6 @@ def home_of(folder: Path) -> str:
 
 
 def claim(folder: Path, home: str) -> str:
-    """This desk goes on as the one of this id."""
+    """Store an id as that of this machine, and return it."""
     write_in_place(folder / HOME_FILE, f"{home}\n".encode())
     return home

@@ -1,4 +1,4 @@
-"""The page of shared programs: what is newer elsewhere, whose, on which machine; taken when asked. No Qt."""
+"""Model of the page SHARED PROGRAMS without Qt: newer versions, their authors and machines."""
 
 from __future__ import annotations
 
@@ -35,20 +35,20 @@ _STATES = {
     "same": ("UP TO DATE", Tone.RUN),
 }
 _ORDER = tuple(_STATES)
-_WIDE = 110  # letters of a note
-_PATIENCE = 30.0  # s: a place that takes longer is told
+_WIDE = 110  # characters of a note
+_PATIENCE = 30.0  # seconds after which a slow location is reported
 
 
 @dataclass(slots=True)
 class VersionsElsewhere(VersionHistory):
-    """The newest versions of a program on other desks; ``changes`` lead from what is here to the marked."""
+    """Newest versions on other machines. ``changes`` are the differences from the local text."""
 
     def heading(self) -> str:
-        """What the lines of the comparison are."""
+        """Return the heading of the comparison."""
         return "CHANGES IF YOU USE THE SELECTED VERSION"
 
     def words(self) -> str:
-        """What is to be said of the marked version."""
+        """Return the status of the selected version as text."""
         if self.trouble:
             return self.trouble
         if not self.rows:
@@ -58,30 +58,30 @@ class VersionsElsewhere(VersionHistory):
         return "" if self.changes else "SAME TEXT AS ON THIS CONTROL"
 
     def between(self, marked: str, now: str) -> tuple[str, str]:
-        """From the text here to the marked one."""
+        """Return the local text and the text of the selected version."""
         return now, marked
 
 
 @dataclass(slots=True)
 class NewestElsewhere:
-    """What ``VersionsElsewhere`` reads: the versions of the last look, numbered from 1."""
+    """Archive for ``VersionsElsewhere``: the versions of the last synchronization, numbered from 1."""
 
     sharing: Sharing
 
     def of(self, key: str) -> Sequence[SharedVersion]:
-        """Those that this machine does not have."""
+        """Return the versions that this machine does not have."""
         return self.sharing.now.families.get(key, Family()).elsewhere
 
     def versions(self, name: str) -> Sequence[VersionRow]:
-        """With the desk that made each, and the desks that have it."""
+        """Return the versions with their author and the machines that have them."""
         return [self._row(number, each) for number, each in enumerate(self.of(name), 1)]
 
     def text_of(self, name: str, version: int) -> bytes:
-        """Raises SharingError and StoreError."""
+        """Return the text of a version. Raises SharingError and StoreError."""
         return self.sharing.text(self.of(name)[version - 1])
 
     def save_version(self, _name: str, _text: bytes, _why: str) -> int:
-        """Nothing is kept from here."""
+        """Store nothing and return 0."""
         return 0
 
     def _row(self, number: int, version: SharedVersion) -> VersionRow:
@@ -96,9 +96,9 @@ class NewestElsewhere:
 
 @dataclass(slots=True)
 class SharingModel:
-    """``sharing`` None: the machine file names no place. ``look_now`` wakes the thread that looks.
+    """Model of the page. ``sharing`` is None without a location, ``look_now`` wakes the sharing thread.
 
-    ``silent_for``: the seconds that it has waited for the place.
+    ``silent_for`` returns how long the thread has waited for the location, in seconds.
     """
 
     desk: Desk
@@ -108,23 +108,24 @@ class SharingModel:
     marked: int = 0
     worker: Latest = field(default_factory=lambda: Latest("sharing-page"))
     elsewhere: VersionsElsewhere = field(init=False)
-    _seen: tuple[object, str] = (None, "")  # what the comparison was made of
-    _of: tuple[Shared | None, tuple[tuple[str, Family], ...], tuple[Row, ...]] = (None, (), ())  # as sorted
+    _seen: tuple[object, str] = (None, "")  # program and state of the comparison
+    # sorted state
+    _of: tuple[Shared | None, tuple[tuple[str, Family], ...], tuple[Row, ...]] = (None, (), ())
 
     def __post_init__(self) -> None:
         archive = NewestElsewhere(self.sharing) if self.sharing is not None else NoArchive()
         self.elsewhere = VersionsElsewhere(archive, self.worker)
 
-    # --- what is shown -------------------------------------------------------------------------------
+    # --- display -------------------------------------------------------------------------------------
 
     @property
     def shared(self) -> Shared:
-        """What the last look has found."""
+        """Result of the last synchronization."""
         return self.sharing.now if self.sharing is not None else Shared()
 
     @property
     def programs(self) -> tuple[tuple[str, Family], ...]:
-        """What wants a hand first, then by name."""
+        """Shared programs, with those that need a decision first, then by name."""
         shared = self.shared
         if shared is not self._of[0]:
             states = shared.states
@@ -135,20 +136,20 @@ class SharingModel:
 
     @property
     def program(self) -> tuple[str, Family] | None:
-        """The marked one, with its key."""
+        """Selected program with its key, or None."""
         programs = self.programs
         return programs[self.marked] if self.marked < len(programs) else None
 
     @property
     def version(self) -> SharedVersion | None:
-        """The marked version of another desk."""
+        """Selected version of another machine, or None."""
         here, number = self.program, self.elsewhere.number
         if here is None or self.elsewhere.name != here[0] or not 0 < number <= len(here[1].elsewhere):
             return None
         return here[1].elsewhere[number - 1]
 
     def look(self) -> None:
-        """Once a frame: the answers of the worker; another program, or another look, is compared anew."""
+        """Process results of the worker, and compare again after a change; called once per frame."""
         self.worker.poll()
         self.marked = max(0, min(self.marked, len(self.shared.families) - 1))
         key = self.program[0] if self.program is not None else ""
@@ -164,7 +165,7 @@ class SharingModel:
         )
 
     def sheet(self) -> Sheet:
-        """Programs, how each stands, whose is the newest elsewhere, where it is."""
+        """Return the table of programs with state, author, time and machines of the newest version."""
         rows = self._of[2] if self.programs else ()
         notes = wrap(self._silence() or tr(self.shared.trouble), _WIDE)
         notes += [f"{name}: {why}" for name, why in list(self.shared.refused.items())[:2]]
@@ -190,7 +191,7 @@ class SharingModel:
         )
 
     def _silence(self) -> str:
-        """That the place does not answer: a look waits for it, and so would all that is asked for now."""
+        """Return a message if the location has not responded for a long time, or an empty string."""
         seconds = self.silent_for()
         if self.sharing is None or seconds < _PATIENCE:
             return ""
@@ -209,7 +210,7 @@ class SharingModel:
         return Row(((here or shown).program, words, shown.desk, saved, on), state != "same", tone)
 
     def prompt(self) -> str:
-        """What the keys do now."""
+        """Return the prompt for the present keys."""
         if self.sharing is None:
             return NO_PLACE
         if self.version is None:
@@ -221,7 +222,7 @@ class SharingModel:
     # --- keys ----------------------------------------------------------------------------------------
 
     def keys(self) -> Mapping[str, Key]:
-        """Function keys of this moment."""
+        """Return the present function keys."""
         return {
             "F2": Key("USE", self.take, barred=self.version is None or self.program is None),
             "F3": Key("KEEP", self.keep, barred=not self._both),
@@ -230,7 +231,10 @@ class SharingModel:
         }
 
     def take(self) -> None:
-        """The marked version into the program folder; asked first where a program is replaced."""
+        """Copy the selected version into the program folder.
+
+        Replacing a program requires confirmation.
+        """
         version, here = self.version, self.program
         if version is None or here is None:
             self.desk.say(MARK_ONE if here is None else "NO OTHER CONTROL HAS A NEWER VERSION")
@@ -247,7 +251,7 @@ class SharingModel:
             self._take(version)
 
     def _take(self, version: SharedVersion) -> None:
-        # It was started meanwhile, or the level has fallen back.
+        # The program was started or the access level has expired in the meantime.
         why = self._in_use(version.key) or self.desk.access.refusal(Act.PROGRAMS)
         if why or self.sharing is None:
             self.desk.say(why)
@@ -265,12 +269,12 @@ class SharingModel:
 
     @property
     def _both(self) -> bool:
-        """Whether the marked program was changed here and on another desk."""
+        """Whether the selected program was changed both here and on another machine."""
         here = self.program
         return here is not None and self.shared.states.get(here[0]) == "both"
 
     def keep(self) -> None:
-        """What is here stands against what was changed elsewhere, after asking."""
+        """Keep the local version instead of changes on other machines, after confirmation."""
         here = self.program
         if here is None or not self._both:
             self.desk.say("NO DECISION NEEDED: NO OTHER CONTROL HAS CHANGED THIS PROGRAM")
@@ -294,7 +298,7 @@ class SharingModel:
             self.desk.say(self._silence() or BUSY)
             return
 
-        who = self.desk.access.who  # who has asked, though another signs in meanwhile
+        who = self.desk.access.who  # the user of the request, even if another user signs in
 
         def done(_answer: object) -> None:
             self.desk.done(words)
@@ -304,7 +308,7 @@ class SharingModel:
         self.worker.queue(work, done, self.desk.refuse)
 
     def _in_use(self, key: str) -> str:
-        """Why a program stays as it is; empty when it may be replaced."""
+        """Return the reason why a program must not be replaced now, or an empty string."""
         snapshot, loaded = self.desk.snapshot(), self.desk.session.now
         if snapshot.interrupted is not None and key_of(snapshot.interrupted.program) == key:
             words = tr("{name} WAS INTERRUPTED. FINISH OR CANCEL THE RUN FIRST")
@@ -318,14 +322,14 @@ class SharingModel:
         return ""
 
     def next_version(self) -> None:
-        """Where several desks have changed it: the next of their versions."""
+        """Select the next version if several machines have changed the program."""
         count = len(self.elsewhere.rows)
         if count:
             self.desk.clear()
             self.elsewhere.mark((self.elsewhere.marked + 1) % count)
 
     def ask_for_a_look(self) -> None:
-        """Now, and not with the next look."""
+        """Start a synchronization now."""
         if self.sharing is None:
             self.desk.say(NO_PLACE)
         elif self._silence():
@@ -335,7 +339,7 @@ class SharingModel:
             self.look_now()
 
     def typed(self, key: str) -> bool:
-        """Arrows mark programs, Return takes."""
+        """Handle a key: arrows select a program, and Enter takes the selected version."""
         if key in STEPS and self.programs:
             self.choose(self.marked + STEPS[key])
         elif key == "Enter":
@@ -345,28 +349,28 @@ class SharingModel:
         return True
 
     def takes(self, _key: str) -> bool:
-        """Nothing is typed here."""
+        """Return False, because this page has no entry."""
         return False
 
     def choose(self, row: int) -> None:
-        """Mark a program."""
+        """Select a program."""
         self.desk.clear()
         self.marked = max(0, min(len(self.programs) - 1, row))
 
     def opened(self) -> None:
-        """The page comes up: what is new is looked for."""
+        """Start a synchronization when the page opens."""
         self.look_now()
 
     def escape(self) -> bool:
-        """One step back; False when the page may be left."""
+        """Go back one step. Return False if the page can close."""
         if not self.desk.notice:
             return False
         self.desk.clear()
         return True
 
     def leave(self) -> None:
-        """Nothing is half done."""
+        """Do nothing, because there is nothing to cancel."""
 
     def close(self) -> None:
-        """The worker ends; what was taken is taken."""
+        """Stop the worker after pending changes are finished."""
         self.worker.close()

@@ -1,4 +1,4 @@
-"""X, SHARED: programs and how they stand above, what taking the marked version would change below."""
+"""Page SHARED PROGRAMS (X): programs above, changes by the selected version below."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from app.screen.page_base import Host, KeyActions
 from app.screen.sheet_panel import ListPage, SheetPanel
 from core.executor.snapshot import Snapshot
 
-LIST = 0.5  # share of the height
+LIST = 0.5  # ratio of the height
 
 
 class SharedProgramsPage(ListPage):
-    """The model decides; this shows it and hands the keys on."""
+    """Page SHARED PROGRAMS: shows its model and passes the keys to it."""
 
     NAME = "SHARED PROGRAMS"
     model: SharingModel
@@ -34,15 +34,15 @@ class SharedProgramsPage(ListPage):
         self.versions.show()
 
     def page_keys(self) -> Mapping[str, Key]:
-        """Return those of the model."""
+        """Return the function keys of the model."""
         return self.model.keys()
 
     def labels(self) -> tuple[str, ...]:
-        """Those of the model, and looking further down in the comparison."""
+        """Return the labels of the model and of scrolling."""
         return self.labels_of({"F6": "UP", "F8": "DOWN"}, self.page_keys())
 
     def key_actions(self) -> KeyActions:
-        """The function keys."""
+        """Return the actions of the function keys."""
         keys = self.page_keys()
         scroll = {"F6": partial(self._scroll, -1), "F8": partial(self._scroll, 1)}
         return {**scroll, **{name: partial(self._do, name) for name in keys}}
@@ -57,13 +57,13 @@ class SharedProgramsPage(ListPage):
         self.model.choose(row)
 
     def refresh(self, _snapshot: Snapshot, _view: MachineStatus, _loaded: Loaded) -> None:
-        """List and comparison of this moment."""
+        """Update list and comparison."""
         self.model.look()
         self.table.show_sheet(self.model.sheet())
         self.versions.refresh()
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """List over comparison."""
+        """Arrange the list above the comparison."""
         gap = max(4, round(0.7 * self.look.u))
         high = round(LIST * (self.height() - gap))
         self.table.setGeometry(0, 0, self.width(), high)

@@ -1,4 +1,4 @@
-"""Alarms on the screen: an alarm or the message of a stop over the path view, and the log of alarms."""
+"""Alarms on the screen: the notice over the path view, and the log of alarms."""
 
 from __future__ import annotations
 
@@ -21,12 +21,13 @@ from core.message import Message, join_messages
 
 WRAP = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
 WORDS = int(Qt.TextFlag.TextWordWrap.value)
-_RECORD = 12.0  # units: the key of its record
-_HIGH, _WHEN, _FOOT = 7.0, 17.0, 6.8  # units: an entry, its column of times, the row of keys
+_RECORD = 12.0  # Units: width of the key that opens a recording.
+# Units: height of an entry, width of the time column, height of the key row.
+_HIGH, _WHEN, _FOOT = 7.0, 17.0, 6.8
 
 
 class Notice(Panel):
-    """Alarms with causes, remedy and line, the first one large; or the message of M00/M01."""
+    """A notice with the active alarms, the first one large, or with the message of M00 or M01."""
 
     message, _go_on = Shown(""), Shown("")
     _alarms: Shown[tuple[Alarm, ...]] = Shown(())
@@ -36,7 +37,7 @@ class Notice(Panel):
         self.hide()
 
     def show_notice(self, message: str, go_on: str, alarms: tuple[Alarm, ...] = ()) -> None:
-        """An alarm goes before a message; with neither the notice is gone."""
+        """Show the alarms, or else the message. Hide the notice if there is neither."""
         self.message, self._go_on, self._alarms = message, go_on, alarms
         self.setVisible(bool(message or alarms))
 
@@ -65,7 +66,7 @@ class Notice(Panel):
         painter.write(foot, self._go_on, 2.2, "accent")
 
     def _draw_alarm(self, painter: Painter, alarm: Alarm, *more: Alarm) -> None:
-        """What came first is the cause of what came behind it more often than not."""
+        """Draw the first alarm large and the others in one line. The first often caused the others."""
         parts = [
             Message("ALARM {number}: {alarms}", number=alarm.number, alarms=alarm.text),
             *([Message("LINE {line}", line=alarm.line)] if alarm.line else []),
@@ -83,7 +84,7 @@ class Notice(Panel):
             self._labelled(painter, box, label, text)
 
     def _draw_more(self, painter: Painter, room: QRectF, more: tuple[Alarm, ...]) -> QRectF:
-        """The others in one line at the foot; the room that is left."""
+        """Draw the other alarms in one line at the bottom, and return the rectangle that remains."""
         u = self.look.u
         foot = QRectF(room.x(), room.bottom() - 2.6 * u, room.width(), 2.6 * u)
         text = Message(
@@ -98,7 +99,7 @@ class Notice(Panel):
         self._wrapped(painter, room.adjusted(0, 2.1 * u, 0, 0), text, 2.3)
 
     def _wrapped(self, painter: Painter, room: QRectF, text: str, size: float) -> None:
-        """Text in words, from ``size`` down as far as needed so that all of it is there."""
+        """Draw a wrapped text, not larger than ``size``, and small enough to fit."""
         painter.setPen(self.look.colour("text"))
         while True:
             painter.setFont(self.look.font(size, bold=True))
@@ -111,9 +112,9 @@ class Notice(Panel):
 
 
 class AlarmList(RowPanel):
-    """Every alarm, E-stop and stop, newest on top: when, what, why, what to do.
+    """All alarms, E-stops and stops, newest first, with time, cause and remedy.
 
-    Scrolling keeps the mark in sight: what is opened by a key is what the operator sees.
+    The selected entry stays visible while scrolling, so that a key opens an entry that the operator sees.
     """
 
     title = "ALARMS AND STOPS  ·  ESC: CLOSE  ·  CTRL+ARROWS: SELECT  ·  SHIFT+F10: SHOW SCOPE RECORD"
@@ -121,31 +122,31 @@ class AlarmList(RowPanel):
     marked = Shown(0)
 
     def __init__(self, look: Look, open_record: Callable[[str], None], parent: QWidget) -> None:
-        """``open_record`` shows what was recorded before an entry, by the name of the file."""
+        """Create the list. ``open_record`` opens the recording of an entry by its file name."""
         super().__init__(look, parent)
         self._open = open_record
         self.entries: tuple[LoggedStop, ...] = ()
         self.hide()
 
     def show_entries(self, entries: Sequence[LoggedStop]) -> None:
-        """The log as it stands."""
+        """Show these entries, and select the newest if the list has changed."""
         if entries is not self.entries:
             self.entries = tuple(entries)
             self.top = self.marked = 0
             self.update()
 
     def scroll_by(self, rows: int) -> None:
-        """Show older ones, or newer ones."""
+        """Scroll to older entries, or to newer ones with a negative number."""
         super().scroll_by(rows)
         self.mark(max(self.top, min(self.marked, self.top + self.rows - 1)))
 
     def mark(self, number: int) -> None:
-        """Mark an entry, from 0 for the newest; the first and the last are the ends."""
+        """Select an entry, counted from 0 for the newest. The number is limited to the list."""
         self.marked = max(0, min(number, len(self.entries) - 1))
 
     @property
     def record(self) -> str:
-        """The name of the marked entry's record; empty: it has none."""
+        """The name of the selected entry's recording. Empty without a recording."""
         return self.entries[self.marked].record if self.marked < len(self.entries) else ""
 
     def draw(self, painter: Painter) -> None:
@@ -190,7 +191,7 @@ class AlarmList(RowPanel):
             painter.write(QRectF(left, row.y() + y * u, wide, 2.1 * u), text, 1.8, ink, bold=False)
 
     def _pages(self, painter: Painter, foot: QRectF) -> None:
-        """Two places for a finger, where there is more than fits."""
+        """Draw two touch keys that scroll to newer and older entries, if there are any."""
         u = self.look.u
         for number, (label, by) in enumerate((("NEWER", -self.rows), ("OLDER", self.rows))):
             possible = self.top > 0 if by < 0 else self.top + self.rows < len(self.entries)

@@ -1,11 +1,11 @@
-"""The keyboard: every key passes here before anything else sees it, with the time when it went down.
+"""Event filter for all keys and touches, which handles stop keys and late presses.
 
-Two keys act everywhere, with any modifier, lock and layout: Pause holds the feed, Scroll Lock is the E-stop.
-H, Space and E do the same where no caret is visible. Esc holds while something moves, unless the page uses
-Esc for something else. Of all other keys this knows which are really down: a repeat is no press, and a key
-held while the keyboard was elsewhere is dead until it is let go. A press that waited behind a stall of the
-screen is carried out in its order, and starts nothing (``app.desk.late_presses``). After an answer that was
-dropped for that, the rest of the burst is dropped too: it relied on the answer.
+Pause starts feed hold and Scroll Lock is the E-stop, with any modifier, lock and keyboard layout. H, Space
+and E do the same if no caret is visible. Esc starts feed hold while the machine moves, unless the page uses
+Esc. The filter tracks which other keys are really down. A repeat is not a press. A key that was pressed while
+another window had the keyboard is dead until its release. A press that waited during a stall of the screen is
+executed in order but starts nothing (``app.desk.late_presses``). If an answer is dropped for this reason, the
+presses that follow without a pause are also dropped, because they relied on the answer.
 """
 
 from __future__ import annotations
@@ -33,41 +33,43 @@ from app.desk.stop_keys.stop_records import BY_ESC, Focus, StopKind, press_numbe
 from app.desk.stop_keys.watched_keys import OpenLine, WatchedKeys
 from app.screen.window.x_server import XServer, x_server
 
-STALL = 0.3  # s without a frame: whatever waited behind it starts nothing
-FRAMES = 2  # that must have been shown since, before anything starts
-PAUSE = 1.0  # s without a press that end a burst of which an answer was dropped
-_WRAPPED = 1e5  # s: further off than this the 32 bits of the stamps have run over
-_DRIFT = 1e-3  # of the time passed: how much two clocks may go apart
+STALL = 0.3  # Seconds without a frame. A press that waited during a longer stall starts nothing.
+FRAMES = 2  # Frames that must be shown after a stall before a press may start something.
+PAUSE = 1.0  # Seconds without a press that end a sequence of presses with a dropped answer.
+_WRAPPED = 1e5  # Seconds: a larger difference means that the 32-bit time stamps have overflowed.
+_DRIFT = 1e-3  # Maximum drift between two clocks, as a fraction of the elapsed time.
 
 
 class EventTimes:
-    """``clock`` is monotonic, seconds."""
+    """Times of input events on the screen's clock, and stalls of the screen.
+
+    ``clock`` is monotonic, in seconds.
+    """
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self.clock = clock
-        self.touched = self.clock()  # when somebody last did something, a key or a finger
-        self.woken: Callable[[], None] = lambda: None  # called then
-        self.stalled = 0.0  # s that the last stall took
+        self.touched = self.clock()  # Time of the last key press or touch.
+        self.woken: Callable[[], None] = lambda: None  # Called at each key press or touch.
+        self.stalled = 0.0  # Duration of the last stall in seconds.
         self._alive: float | None = None
-        self._behind = float("-inf")  # the end of the last stall
-        self._dropped = float(
-            "-inf"
-        )  # when an answer that was dropped, or a press that relied on it, was made
-        self._frames = FRAMES  # shown since
-        self._offsets: dict[str, tuple[float, float]] = {}  # of whose clock: offset, and when it was seen
+        self._behind = float("-inf")  # End of the last stall.
+        self._dropped = float("-inf")  # Time of the last dropped answer or of a press that relied on it.
+        self._frames = FRAMES  # Frames that were shown since the last stall.
+        # By clock: offset, and time when the offset was determined.
+        self._offsets: dict[str, tuple[float, float]] = {}
 
     @property
     def known(self) -> bool:
-        """Whether what is to be seen has been shown since the last stall."""
+        """Whether the operator has seen the present screen since the last stall."""
         return self._frames >= FRAMES
 
     def frame(self) -> None:
-        """A frame is shown."""
+        """Note that a frame is shown."""
         self._lives(self.clock())
         self._frames += 1
 
     def alive(self) -> None:
-        """The screen does something; called before an event is judged."""
+        """Note an input event, before its time is checked."""
         self.touched = self.clock()
         self._lives(self.touched)
         self.woken()
@@ -78,9 +80,9 @@ class EventTimes:
         self._alive = now
 
     def at(self, stamp: int, whose: str = "") -> float:
-        """When it happened, seconds of our clock; an event without a stamp happens now.
+        """Return the time of an event in seconds of the screen's clock. An event without a stamp happens now.
 
-        ``whose`` clock counts the stamps: events of one clock alone are compared.
+        ``stamp`` is in ms of the clock ``whose``. Each clock has its own offset.
         """
         now = self.clock()
         if not stamp:
@@ -94,33 +96,33 @@ class EventTimes:
         return min(now, stamp / 1000 + offset)
 
     def late(self, stamp: int, whose: str = "") -> bool:
-        """Whether it waited behind a stall, of the screen or on its way here."""
+        """Return whether an event waited during a stall of the screen or on its path to the screen."""
         if not stamp:
             return False
         at = self.at(stamp, whose)
         return at <= self._behind or not self.known or self.clock() - at > STALL
 
     def drop(self, stamp: int, whose: str = "") -> None:
-        """Note that an answer was dropped: what follows relies on it."""
+        """Note that an answer was dropped, so that the presses that follow are dropped, too."""
         self._dropped = max(self._dropped, self.at(stamp, whose))
 
     def relies_on_dropped(self, stamp: int, whose: str = "") -> bool:
-        """Return whether a press follows one that was dropped: in the same stall, or without a pause."""
+        """Return whether a press follows a dropped answer in the same stall or without a pause of 1 s."""
         at = self.at(stamp, whose)
         same_stall = self._behind - self.stalled < self._dropped and at <= self._behind
         return same_stall or at - self._dropped < PAUSE
 
     def delay(self, stamp: int, whose: str = "") -> float:
-        """Return how long a press waited, or the stall that it waited behind took, in seconds."""
+        """Return how long a press waited in seconds, or the duration of the stall in which it waited."""
         at = self.at(stamp, whose)
         return self.stalled if at <= self._behind else self.clock() - at
 
 
 Key = Qt.Key
-TOGETHER = 2  # ms: a press so soon after its own release is a repeat
-# X's codes of the keys of a PC, whatever a layout makes of them: Pause and Scroll Lock, and the letters.
+TOGETHER = 2  # Milliseconds: a press this soon after the release of the same key is a repeat.
+# X key codes of Pause, Scroll Lock and the letters on a PC keyboard, which do not depend on the layout.
 _STOPS = {127: "hold", 78: "estop"}
-_PC = frozenset({"xcb", "wayland"})  # there a key's code is X's
+_PC = frozenset({"xcb", "wayland"})  # Platforms on which the scan code is an X key code.
 _LETTERS = dict(
     zip((*range(24, 34), *range(38, 47), *range(52, 59)), "QWERTYUIOPASDFGHJKLZXCVBNM", strict=True)
 )
@@ -135,18 +137,18 @@ _WRITE = frozenset(
 _PRESSES = frozenset(
     {QEvent.Type.MouseButtonPress, QEvent.Type.MouseButtonDblClick, QEvent.Type.TouchBegin, QEvent.Type.Wheel}
 )
-_SHIFTS = frozenset({50, 62})  # codes of both
+_SHIFTS = frozenset({50, 62})  # Key codes of both Shift keys.
 _KEYS = frozenset({QEvent.Type.KeyPress, QEvent.Type.KeyRelease})
 
 
 class Stops(Protocol):
-    """A stop of the machine; ``press`` is the number of the press."""
+    """A function that stops the machine. ``press`` is the number of the key press."""
 
     def __call__(self, *, press: int) -> None: ...
 
 
 class Behind(Protocol):
-    """What the keyboard does at once, and what it asks of the window behind it."""
+    """Interface of the main window as the keyboard uses it."""
 
     def hold(self, by: str = "", press: int = 0) -> None: ...
 
@@ -172,7 +174,7 @@ class Behind(Protocol):
 
 
 def letter_of(event: QKeyEvent) -> str:
-    """The letter of a key as its layout has it; of one that writes no Latin letter, that of its place."""
+    """Return the letter of a key in its layout, or on a PC keyboard if the layout has no Latin letters."""
     key = event.key()
     if Key.Key_A <= key <= Key.Key_Z:
         return chr(key)
@@ -182,70 +184,78 @@ def letter_of(event: QKeyEvent) -> str:
 
 
 def key_of(event: QKeyEvent) -> int:
-    """The key, of a layout without Latin letters by its place."""
+    """Return Qt's code of a key, with the Latin letter of its place in a layout without Latin letters."""
     letter = letter_of(event)
     return ord(letter) if letter else event.key()
 
 
 class Keyboard(QObject):
-    """A filter on the windows of the application; see the module."""
+    """The event filter on the windows of the application. See the module's docstring."""
 
     def __init__(self, behind: Behind, times: EventTimes) -> None:
         super().__init__()
         self._behind, self.times = behind, times
         self._server: XServer | None = None
         self._watched: WatchedKeys | None = None
-        self._down: dict[int, int] = {}  # codes of what is down, and the key that it was
-        self._dead: set[int] = set()  # of these: pressed for something else, or nobody knows when
-        self._stops: set[int] = set()  # of these: what stops the machine as long as it is held
-        self._shifts: set[int] = set()  # codes of those that are down, in the order of the events
-        self._up: dict[int, int] = {}  # the stamp of the last release
-        self._known_up: dict[int, float] = {}  # when the server said so of a key whose release is on its way
+        self._down: dict[int, int] = {}  # Scan codes of the keys that are down, with their key values.
+        # Keys that are down but ignored: pressed for another purpose or at an unknown time.
+        self._dead: set[int] = set()
+        self._stops: set[int] = set()  # Stop keys that are down.
+        self._shifts: set[int] = set()  # Codes of the Shift keys that are down, according to the events.
+        self._up: dict[int, int] = {}  # Time stamp of the last release, by key.
+        # Time when the X server reported a key as up before its release event arrived.
+        self._known_up: dict[int, float] = {}
         self._sending = False
-        self._stamp = 0  # of the event that is handled now
-        self._whose = ""  # clock counts it
-        self._late = False  # it waited behind a stall
+        self._stamp = 0  # Time stamp of the event that is being handled.
+        self._whose = ""  # Clock of that time stamp.
+        self._late = False  # The event waited during a stall.
 
     def watch(self, window: QWindow) -> None:
-        """From now on see what this window gets."""
+        """Filter the events of this window from now on."""
         window.removeEventFilter(self)
         window.installEventFilter(self)
         if self._server is None:
             self._server = x_server()
 
     def watch_stops(self, open_line: OpenLine) -> WatchedKeys | None:
-        """Start the key watcher, where an X server and a control of its own process are there."""
+        """Start the key watcher, or return None if the key watcher is not possible.
+
+        The key watcher needs an X server and a control in a separate process.
+        """
         line = open_line() if QGuiApplication.platformName() == "xcb" else None
         self._watched = WatchedKeys(line) if line is not None else None
         return self._watched
 
     @property
     def delay(self) -> float:
-        """How long what is handled now waited, or the stall behind which it waited took; seconds."""
+        """The time in seconds that the present event waited, or the duration of the stall."""
         return self.times.delay(self._stamp, self._whose)
 
     @property
     def now(self) -> float:
-        """When what is handled now has happened; monotonic seconds."""
+        """The time of the present event in monotonic seconds."""
         return self.times.at(self._stamp, self._whose)
 
-    # --- what is down --------------------------------------------------------------------------------
+    # --- pressed keys --------------------------------------------------------------------------------
 
     def alone(self, event: QKeyEvent) -> bool:
-        """Whether no other key is down than the one of this event, and modifiers."""
+        """Return whether no key is down except the key of this event and modifiers."""
         return not {key for code, key in self._down.items() if code != code_of(event)} - _MODIFIERS
 
     def stop_held(self) -> bool:
-        """Whether a key that stops the machine is still down: nothing starts meanwhile."""
+        """Return whether a stop key is still down, so that nothing may start."""
         self._stops &= self._down.keys()
         return bool(self._stops)
 
     def away(self) -> None:
-        """The keyboard is elsewhere, or the page is another: what is down is dead until it was let go."""
+        """Ignore the pressed keys until they are released, because the window or page has changed."""
         self._dead |= self._down.keys()
 
     def back(self) -> None:
-        """The keyboard is here again: what is down now was pressed elsewhere."""
+        """Read which keys are down after the window has got the keyboard.
+
+        They were pressed elsewhere, and are ignored until they are released.
+        """
         if self._server is None:
             return
         held = self._server.keys()
@@ -253,7 +263,10 @@ class Keyboard(QObject):
         self._dead = set(held)
 
     def look(self) -> None:
-        """Once a frame: what the server knows to be up has come up, even where its release was lost."""
+        """Process stops of the key watcher and key releases that were lost; called once a frame.
+
+        The X server reports which keys are really down.
+        """
         self._stamp = 0
         windows = QGuiApplication.topLevelWindows()
         if self._watched is not None:
@@ -262,18 +275,18 @@ class Keyboard(QObject):
             if any(stop.kind is StopKind.ESTOP for stop in self._watched.news()):
                 self._behind.estop_sent()
         for window in windows if len(windows) > 1 else ():
-            window.installEventFilter(self)  # a menu or a dialog has the keyboard for itself
+            window.installEventFilter(self)  # A menu or a dialog has its own window for key events.
         if self._server is None or not self._down:
             return
         for code in self._down.keys() - self._server.keys():
             key, dead = self._down.pop(code, None), code in self._dead
             self._dead.discard(code)
             self._known_up[code] = self.times.clock()
-            if key is not None and not dead:  # handling one looks again
+            if key is not None and not dead:  # Handling a release may call this method again.
                 self._send(QKeyEvent(QEvent.Type.KeyRelease, key, Qt.KeyboardModifier.NoModifier))
 
     def button_held(self) -> bool:
-        """Whether a button of the mouse is really down still."""
+        """Return whether a mouse button is really still down."""
         if self._server is None:
             return QApplication.mouseButtons() is not Qt.MouseButton.NoButton
         return self._server.buttons()
@@ -281,7 +294,7 @@ class Keyboard(QObject):
     # --- Qt's calls ----------------------------------------------------------------------------------
 
     def eventFilter(self, _watched: QObject, event: QEvent) -> bool:
-        """Whether an event goes no further."""
+        """Return whether an event is handled here and must not be passed on."""
         kind = event.type()
         if kind in _PRESSES or kind in _KEYS:
             self._behind.used()
@@ -297,14 +310,14 @@ class Keyboard(QObject):
         return pressed and self._pressed_on_screen(event)
 
     def _take_up(self, event: QInputEvent) -> None:
-        """Note when an event happened, and whether it is late."""
+        """Note the time of an event, and whether it is late."""
         self.times.alive()
         self._stamp, self._whose = event.timestamp(), _clock_of(event)
         self._late = self.times.late(self._stamp, self._whose)
         self._behind.judge(late=self._late)
 
     def _pressed_on_screen(self, event: QInputEvent) -> bool:
-        """Return whether a press of the mouse or a finger goes no further."""
+        """Return whether a mouse press or touch must not be passed on."""
         if self._behind.stops_at(event):
             return False
         if self._relies_on_dropped():
@@ -313,7 +326,7 @@ class Keyboard(QObject):
             starting = Starting.TOUCH
         else:
             return False
-        event.setAccepted(True)  # or Qt makes a mouse button of the finger
+        event.setAccepted(True)  # Otherwise Qt sends the touch again as a mouse event.
         return self._forget(starting)
 
     def _key(self, event: QKeyEvent) -> bool:
@@ -336,7 +349,7 @@ class Keyboard(QObject):
         if self._overtaken(code) and (self._late or not self._writes(event)):
             return True
         repeat = self._repeats(event, code)
-        if code in self._dead or (repeat and self._late):  # nobody has seen what it repeated
+        if code in self._dead or (repeat and self._late):  # The original press was not seen.
             return True
         if self._relies_on_dropped():
             self._dead.add(code)
@@ -346,7 +359,10 @@ class Keyboard(QObject):
         return self._latched(event) and self._send(_like(event, repeat=repeat, shift=False))
 
     def _overtaken(self, code: int) -> bool:
-        """Whether a press was made before the server said that its key is up: a repeat, late on its way."""
+        """Return whether a press is older than the X server's report that its key is up.
+
+        Such a press is a delayed repeat.
+        """
         said = self._known_up.get(code)
         if said is None or not self._stamp:
             return False
@@ -356,7 +372,7 @@ class Keyboard(QObject):
         return False
 
     def _latched(self, event: QKeyEvent) -> bool:
-        """Whether Shift is locked or sticks: for a key that writes nothing only a held Shift is one."""
+        """Return whether Shift is locked or sticky and not pressed. Keys without text ignore such a Shift."""
         shift = event.modifiers() & Qt.KeyboardModifier.ShiftModifier
         if self._server is None or not shift or event.text():
             return False
@@ -373,25 +389,28 @@ class Keyboard(QObject):
         return dead and event.key() not in _MODIFIERS
 
     def _repeats(self, event: QKeyEvent, code: int) -> bool:
-        """Note a press; whether it only repeats one. Under X Qt's flag tells nothing."""
+        """Record a press, and return whether it is only a repeat.
+
+        Under X, Qt's repeat flag is not reliable.
+        """
         if code in self._down:
             if not event.isAutoRepeat() and self._server is None:
-                self._dead.discard(code)  # its release was somebody else's to see
+                self._dead.discard(code)  # Another window got its release event.
                 return False
             return True
         self._down[code] = event.key()
         if event.isAutoRepeat() or self._paired(code):
-            self._dead.add(code)  # nobody has seen it go down
+            self._dead.add(code)  # The press itself was not seen.
             return True
         return False
 
     def _paired(self, code: int) -> bool:
-        """Whether a press belongs to the release before it: of a server that makes repeats so."""
+        """Return whether a press and the release before it are a repeat, as some X servers send them."""
         tells = self._server is not None and self._server.tells_repeats
         return not tells and bool(self._stamp) and abs(self._stamp - self._up.get(code, -1000)) <= TOGETHER
 
     def _stop_of(self, event: QKeyEvent) -> Stops | None:
-        """What a key does that stops the machine, whatever else is so; None for any other key."""
+        """Return the stop function of a key, or None if the key does not stop the machine."""
         place = _STOPS.get(event.nativeScanCode(), "") if QApplication.platformName() in _PC else ""
         key, letter = event.key(), letter_of(event)
         if key == Key.Key_ScrollLock or place == "estop" or self._stops_by(letter == "E"):
@@ -408,14 +427,14 @@ class Keyboard(QObject):
         return self._watched is not None and self._watched.was_sent(press)
 
     def _stops_by(self, key_of_stop: bool) -> bool:
-        """Return whether a character stops the machine; where a caret is visible every character is text."""
+        """Return whether a character stops the machine. If a caret is visible, every character is text."""
         return key_of_stop and not self._behind.has_field()
 
     def _relies_on_dropped(self) -> bool:
         return self.times.relies_on_dropped(self._stamp, self._whose)
 
     def answer_dropped(self) -> None:
-        """The press that is handled now was an answer, and was dropped."""
+        """Note that the present press was an answer to a question and was dropped."""
         self.times.drop(self._stamp, self._whose)
 
     def _forget(self, starting: Starting) -> bool:
@@ -425,14 +444,14 @@ class Keyboard(QObject):
         return True
 
     def _writes(self, event: QKeyEvent) -> bool:
-        """Whether a key only writes, where it goes."""
+        """Return whether a key only enters or edits text."""
         text = event.text()
         if len(text) == 1 and text.isprintable():
             return self._behind.is_text(text)
         return event.key() in _WRITE and _field() is not None
 
     def _send_repeat(self, event: QKeyEvent) -> bool:
-        """On as what it is. A stock field repeats what writes, and nothing that acts."""
+        """Send a key as a repeat. In a standard field, only editing keys repeat."""
         field = _field()
         if field is not None and not (event.key() in _WRITE or self._writes(event) or _breaks(field, event)):
             return True
@@ -450,7 +469,7 @@ class Keyboard(QObject):
 
 
 def _like(event: QKeyEvent, *, repeat: bool, shift: bool) -> QKeyEvent:
-    """The same key, as what it is."""
+    """Return a copy of a key event, with its repeat flag set and with or without Shift."""
     modifiers = event.modifiers()
     if not shift:
         modifiers &= ~Qt.KeyboardModifier.ShiftModifier
@@ -459,21 +478,21 @@ def _like(event: QKeyEvent, *, repeat: bool, shift: bool) -> QKeyEvent:
 
 
 def code_of(event: QKeyEvent) -> int:
-    """Which key it is, whatever modifiers make of it."""
+    """Return the scan code of a key, which does not depend on modifiers."""
     return event.nativeScanCode() or event.key()
 
 
 def _clock_of(event: QInputEvent) -> str:
-    """Whose clock counts the stamp of an event: fingers may be read by another than keys and mouse."""
+    """Return the name of the clock of an event's time stamp. Touches may use a different clock."""
     return "touch" if event.deviceType() is QInputDevice.DeviceType.TouchScreen else ""
 
 
 def _field() -> QWidget | None:
-    """The stock field that has the keyboard."""
+    """Return the standard text field that has the keyboard, or None."""
     at = QApplication.focusWidget()
     return at if isinstance(at, QLineEdit | QPlainTextEdit) and shiboken6.isValid(at) else None
 
 
 def _breaks(field: QWidget, event: QKeyEvent) -> bool:
-    """Return breaks a line where there are lines."""
+    """Return whether the key inserts a line break or tab in a field with several lines."""
     return isinstance(field, QPlainTextEdit) and event.key() in {Key.Key_Return, Key.Key_Enter, Key.Key_Tab}

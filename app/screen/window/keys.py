@@ -1,6 +1,6 @@
-"""Which key does what on the Automatic page. One table, so that the screen and its tests agree.
+"""The table of keys and their functions, shared by the screen and its tests.
 
-Bare arrows do nothing here: on the Jog page they move slides, and no page gives them a lighter meaning.
+Bare arrow keys have no function on the Automatic page, because they move axes on the Jog page.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ NONE = Qt.KeyboardModifier.NoModifier
 
 PALMS = {Key.Key_F11: "left", Key.Key_F12: "right"}
 
-# What a key with these modifiers is called; keypad and shift are told apart only where it matters.
+# Name of a key with these modifiers. Keypad and Shift are distinguished only where necessary.
 NAMES: dict[tuple[int, Qt.KeyboardModifier], str] = {
     **{(Key(Key.Key_F1 + n), NONE): f"F{n + 1}" for n in range(10)},
     (Key.Key_S, NONE): "S",
@@ -67,19 +67,19 @@ REPEATING = frozenset(
     {"+", "-", ",", ".", "Zoom in", "Zoom out", "Page up", "Page down"}
     | {"Pan left", "Pan right", "Pan up", "Pan down", "Step back", "Step forward"}
 )
-# What stops the machine does so with any modifier.
+# Stop keys work with any modifier.
 _STOPS = {Key.Key_H: "H", Key.Key_Space: "H", Key.Key_E: "E"}
 STOP_LETTERS = frozenset(_STOPS.values())
-NO = "No"  # N while a question is asked, and its target: it never does anything
+NO = "No"  # N while a question is open, and its touch target. It only closes the question.
 OF_AUTOMATIC = frozenset({"A", "C", "O", "P", "S", "/"})
 """Keys that change how a cycle runs: keys of the Automatic page alone."""
-ANSWER = "Yes"  # what the key that means yes does, and its target on the prompt line
-# Signs that stand on shifted keys on one keyboard and on bare ones on another.
+ANSWER = "Yes"  # The key that means yes, and its touch target on the prompt line.
+# Signs that need Shift on some keyboards and not on others.
 _SIGNS = {Key.Key_Slash, Key.Key_Plus, Key.Key_Minus, Key.Key_Comma, Key.Key_Period}
 
 
 def name_of(key: int, modifiers: Qt.KeyboardModifier) -> str:
-    """What was pressed; empty when it means nothing here."""
+    """Return the name of a pressed key. Empty if the key has no function."""
     held = modifiers & (CTRL | SHIFT | Qt.KeyboardModifier.AltModifier | Qt.KeyboardModifier.MetaModifier)
     if key in _STOPS:
         return _STOPS[Key(key)]
@@ -101,12 +101,12 @@ _TYPED = {
     Key.Key_PageUp: "Page up",
     Key.Key_PageDown: "Page down",
 }
-# These may repeat by being held.
+# These keys may repeat while they are held down.
 TYPED_AGAIN = frozenset({"Back", "Up", "Down", "Left", "Right", "Page up", "Page down"})
 
 
 def typed_of(event: QKeyEvent) -> str:
-    """What a page may take as text: one character, or the name of an editing key; empty for anything else."""
+    """Return a key as text input: one character, or the name of an editing key. Empty for any other key."""
     held = event.modifiers() & (CTRL | Qt.KeyboardModifier.AltModifier | Qt.KeyboardModifier.MetaModifier)
     if held:
         return ""

@@ -1,4 +1,4 @@
-"""The main window: takes the keys, polls the snapshot once a frame, and lets go of everything it holds."""
+"""The main window: handles keys, polls the snapshot once a frame, and releases keys that are held down."""
 
 from __future__ import annotations
 
@@ -45,16 +45,16 @@ from app.screen.window.window_frame import Face, Frame
 from app.screen.window_layout import LEAST
 from core.message import Message
 
-FRAME_MS = 16  # at most 60 pictures a second
-SOON_MS = 48  # the same at rest, once nobody has touched anything of late, and something new was to be shown
-REST_MS = 96  # the same where nothing was: what changes at rest rings
-UNTOUCHED = 2.0  # s
+FRAME_MS = 16  # Maximum 60 frames per second.
+SOON_MS = 48  # Interval at rest without recent input, if something new was shown.
+REST_MS = 96  # Interval if nothing new was shown. A change at rest wakes the window.
+UNTOUCHED = 2.0  # Seconds.
 START_SIZE = (1280, 720)
-TITLE_BAR = 60  # pixels: what a window manager takes of the height
+TITLE_BAR = 60  # Pixels that the title bar of a window manager uses.
 
 
 def fill_screen(window: QWidget, *, frameless: bool = False) -> None:
-    """The whole screen; the geometry is set too, as without a window manager nobody else does it."""
+    """Show a window on the whole screen. The geometry is set too, in case there is no window manager."""
     if frameless:
         window.setWindowFlag(Qt.WindowType.FramelessWindowHint)
     screen = window.screen()
@@ -64,15 +64,15 @@ def fill_screen(window: QWidget, *, frameless: bool = False) -> None:
 
 
 class MainWindow(QWidget):
-    """One page at a time; without a desk yet it shows that it is starting."""
+    """The main window, with one page at a time. Without a model, it shows that TurnDesk is starting."""
 
-    stirred = Signal()  # from any thread: the machine has changed
+    stirred = Signal()  # The machine has changed. Any thread may emit this signal.
 
     def __init__(self, look: Look, closed: Callable[[], None] = lambda: None) -> None:
         super().__init__()
         self._closed = closed
-        self._meant = False  # to leave, whatever is lost by it
-        self._untaken = ""  # what was said of the last character that an entry did not take
+        self._meant = False  # The operator confirmed closing although data will be lost.
+        self._untaken = ""  # Message about the last character that an input field rejected.
         self.look = look
         self.frame: Frame | None = None
         self.ahead: PagesAhead | None = None
@@ -81,22 +81,24 @@ class MainWindow(QWidget):
         self.times.woken = self._wake
         self.stirred.connect(self._wake, Qt.ConnectionType.QueuedConnection)
         self.keyboard = Keyboard(self, self.times)
-        self._page = ""  # that has the keyboard
-        self._faces: deque[tuple[float, Face]] = deque(maxlen=32)  # that were shown, and since when
+        self._page = ""  # The page that has the keyboard.
+        # Screen states that were shown, with their start times.
+        self._faces: deque[tuple[float, Face]] = deque(maxlen=32)
         self._timer = QTimer(self)
         self._timer.setTimerType(Qt.TimerType.PreciseTimer)
         self._timer.timeout.connect(self._tick)
         self.setWindowTitle("TurnDesk")
         self.setMinimumSize(*LEAST)
         self.setWindowIcon(QIcon(str(files("resources") / "desktop" / "turndesk.svg")))
-        self.kiosk = False  # nothing but the desk is to be seen, and nobody closes it
-        self._full: bool | None = None  # as it is shown now; None: as it was opened
+        self.kiosk = False  # Only TurnDesk is visible, and the operator cannot close it.
+        self._full: bool | None = None  # Whether the window is full screen now; None: as it was opened.
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
 
     def open_desk(self, desk: Desk) -> None:
-        """Put the desk on the screen and begin to poll it."""
+        """Show the model on the screen and begin to poll it."""
         self.frame = Frame(self.look, desk, self.press, self)
-        if (earlier := desk.pages.find(PagesAhead)) is not None:  # of another window on this desk
+        # It belongs to another window of this model.
+        if (earlier := desk.pages.find(PagesAhead)) is not None:
             earlier.close()
         self.ahead = PagesAhead(desk, self.frame.page_named)
         desk.pages.attach(self.ahead)
@@ -116,12 +118,10 @@ class MainWindow(QWidget):
         self._timer.start(FRAME_MS)
 
     def _tick(self) -> None:
-        """Every picture at the full pace; at rest those in which there is something new."""
+        """Refresh the screen at the full rate, or at rest only if something has changed."""
         known, frame = self.times.known, self.frame
         self.times.frame()
-        known = (
-            known and self.times.known
-        )  # a stall has just been noticed, or what waited for it is not shown
+        known = known and self.times.known  # A stall was just detected, or its changes are not shown yet.
         if frame is None:
             return
         self.judge(late=False)
@@ -136,17 +136,17 @@ class MainWindow(QWidget):
         self._pace(FRAME_MS if self._lively(frame) else SOON_MS if changed or makes else REST_MS)
 
     def _lively(self, frame: Frame) -> bool:
-        """Whether every picture counts: something moves or was touched, on the machine or on the screen."""
+        """Return whether the full frame rate is needed, because of motion, animation or recent input."""
         played = frame.page.lively() and not self.isMinimized()
         return not frame.at_rest or played or self.times.clock() - self.times.touched < UNTOUCHED
 
     def _stir(self) -> None:
-        """Called from any thread; a window that has gone has nothing to show."""
+        """Wake the window from any thread. A closed window ignores the call."""
         with suppress(RuntimeError):
             self.stirred.emit()
 
     def _wake(self) -> None:
-        """The first event ends the leisure, before it is judged; so does a change of the machine."""
+        """Return to the full frame rate at the first event or change of the machine."""
         self._pace(FRAME_MS)
 
     def _pace(self, interval: int) -> None:
@@ -154,7 +154,7 @@ class MainWindow(QWidget):
             self._timer.setInterval(interval)
 
     def refresh(self) -> None:
-        """Poll the snapshot once, and show it everywhere."""
+        """Poll one snapshot and show it in all parts."""
         if self.frame is not None:
             with self.frame.desk.window.late.suspended():
                 self._look_at_hands(self.frame)
@@ -162,7 +162,7 @@ class MainWindow(QWidget):
                 self._wear(self.frame)
 
     def _look_at_hands(self, frame: Frame) -> None:
-        """What is held is held really, and for this page; a release that was lost is made up for."""
+        """Check which keys and buttons are really down for this page, and handle lost releases."""
         if self._page != frame.page.NAME:
             self._page = frame.page.NAME
             self.keyboard.away()
@@ -172,13 +172,13 @@ class MainWindow(QWidget):
                 panel.mouse_is_up()
 
     def press(self, key: str) -> None:
-        """Do what a key does; fingers on the screen come here too."""
+        """Execute the action of a key. Touch targets call this, too."""
         frame = self.frame
         action = (frame.key_actions().get(key) if frame else None) or self._keys.get(key)
         if action is not None:
             if frame is not None:
                 frame.page.pressed()
-                if key != "Esc":  # which removes the answer, and does nothing else then
+                if key != "Esc":  # Esc removes the message itself.
                     frame.desk.answers.next_key()
             action()
             self.refresh()
@@ -211,12 +211,12 @@ class MainWindow(QWidget):
         }
 
     def other_theme(self) -> None:
-        """Dark to light and back, for a shop with the doors open."""
+        """Switch between the dark and the light theme."""
         if self.frame is not None:
             self.frame.desk.choose_setting("theme", self.frame.desk.settings.following("theme"))
 
     def _wear(self, frame: Frame) -> None:
-        """The colours and the language that are chosen now."""
+        """Apply the selected colors, language and window size."""
         settings = frame.desk.settings.now
         if settings.language != spoken():
             speak_in(settings.language)
@@ -230,7 +230,7 @@ class MainWindow(QWidget):
             self._fill(settings.full_screen)
 
     def _fill(self, full: bool) -> None:
-        """The whole screen, or a window again."""
+        """Show the window on the full screen, or maximized."""
         self._full = full
         if full:
             fill_screen(self)
@@ -238,85 +238,85 @@ class MainWindow(QWidget):
             self.showMaximized()
 
     def open_on(self, screen: QScreen) -> None:
-        """As large as it needs to be: a panel that is hardly larger than the least window is filled.
+        """Show the window in a size that suits the screen.
 
-        So is any where no window manager would place it (a title bar that takes some lines of a panel of 600
-        would push the function keys off it).
+        A small screen is filled completely. The title bar of a window manager could otherwise push the
+        function keys off a screen with 600 lines.
         """
         room = screen.availableGeometry()
         self.setMinimumSize(min(LEAST[0], room.width()), min(LEAST[1], room.height()))
         if self.kiosk or room.height() < LEAST[1] + TITLE_BAR or room.width() <= LEAST[0]:
             fill_screen(self, frameless=self.kiosk)
         elif room.width() < 2 * START_SIZE[0]:
-            self.setGeometry(room)  # without a window manager nothing else would
+            self.setGeometry(room)  # Without a window manager, nothing else sets the geometry.
             self.showMaximized()
-        else:  # a window among others: a quarter of a large glass
+        else:  # On a large screen, use a quarter of it.
             self.resize(max(START_SIZE[0], room.width() // 2), max(START_SIZE[1], room.height() // 2))
             self.show()
 
     def _escape(self) -> None:
-        """One step back: in the page, then a question or the feed, and from the last step to Automatic."""
+        """Go one step back: on the page, then a question or feed hold, and finally to the Automatic page."""
         frame = self.frame
         if frame is not None and not (frame.escape() or frame.desk.escape()):
             frame.go(AUTOMATIC)
 
     def put_away(self) -> None:
-        """Stop polling and go, without asking; for scripts that only look."""
+        """Stop polling and delete the window without asking. For scripts that only read the screen."""
         self._timer.stop()
         self.hide()
         self.deleteLater()
 
-    # --- what the keyboard does at once --------------------------------------------------------------
+    # --- functions for the keyboard ------------------------------------------------------------------
 
     def hold(self, by: str = "", press: int = 0) -> None:
-        """Feed hold, whatever page, field or question has the keyboard; ``by`` which key, for the log."""
+        """Start feed hold on any page, field or question. ``by`` names the key in the log."""
         if self.frame is not None:
             self.frame.page.pressed()
             self.frame.desk.feed_hold(by or BY_SCREEN, press)
             self.refresh()
 
     def estop(self, press: int = 0) -> None:
-        """E-stop, whatever page, field or question has the keyboard."""
+        """Press the E-stop on any page, field or question."""
         if self.frame is not None:
             self.frame.page.pressed()
             self.frame.desk.station.press_estop(press)
             self.refresh()
 
     def estop_sent(self) -> None:
-        """Show the E-stop of the simulated station pressed: the key watcher has pressed it."""
+        """Show the simulated E-stop as pressed, after the key watcher has pressed it."""
         if self.frame is not None and self.frame.desk.control.panel is not None:
             self.frame.desk.station.press_estop()
 
     def esc_holds(self) -> bool:
-        """Return whether Esc holds the feed now: something moves, and nothing else is offered for Esc."""
+        """Return whether Esc starts feed hold now: the machine moves, and Esc has no other function."""
         frame = self.frame
         return frame is not None and frame.desk.snapshot().state in MOVING and frame.esc_holds()
 
     def has_field(self) -> bool:
-        """Return whether an entry has the keyboard, and with it all characters."""
+        """Return whether an input field has the keyboard and thus gets all characters."""
         return self.frame is not None and self.frame.has_field()
 
     def used(self) -> None:
-        """A key or a finger: who has signed in is there."""
+        """Note that the signed-in user pressed a key or touched the screen."""
         if self.frame is not None:
             self.frame.desk.access.used()
 
     def is_text(self, key: str) -> bool:
-        """Whether a character goes to an entry now."""
+        """Return whether this character goes to an input field now."""
         return self.frame is not None and self.frame.is_text(key)
 
     def judge(self, *, late: bool) -> None:
-        """Note whether the event that is handled now waited behind a stall: it starts nothing then."""
+        """Set whether the present event waited during a stall and therefore must not start anything."""
         if self.frame is not None:
             self.frame.desk.window.late.late = late
 
     def looks_different(self, at: float) -> bool:
-        """Return whether the screen showed something else at this time, so that a touch meant that."""
+        """Return whether the screen showed something else at this time, which the touch was meant for."""
         seen = [face for since, face in self._faces if since <= at]
         return bool(seen) and self.frame is not None and seen[-1] != self.frame.face
 
     def drop(self, starting: Starting) -> None:
-        """Report a press that waited behind a stall and is not carried out."""
+        """Report a press that waited during a stall and is not executed."""
         if self.frame is not None:
             self.frame.desk.window.late.report_dropped(starting)
 
@@ -327,7 +327,7 @@ class MainWindow(QWidget):
             self.frame.desk.warn(tr(Message(text, seconds=seconds, what=", ".join(names))))
 
     def stops_at(self, event: QInputEvent) -> bool:
-        """Whether a press is on something that stops the machine."""
+        """Return whether a press is on a control that stops the machine."""
         dock = self.frame.dock if self.frame is not None else None
         if dock is None or not dock.isVisible() or not isinstance(event, QPointerEvent):
             return False
@@ -337,7 +337,7 @@ class MainWindow(QWidget):
     # --- Qt's calls ----------------------------------------------------------------------------------
 
     def showEvent(self, _event: QShowEvent) -> None:
-        """There is a window now whose keys can be watched."""
+        """Start filtering the keys of the new window, and read the screen's resolution."""
         window = self.windowHandle()
         if window is not None:
             self.keyboard.watch(window)
@@ -345,13 +345,13 @@ class MainWindow(QWidget):
             window.screenChanged.connect(self._measure)
 
     def _measure(self) -> None:
-        """How large the glass is: rows of lists are told in millimetres."""
+        """Read the resolution of the screen, because list rows are limited in millimeters."""
         screen = self.screen()
         if screen is not None:
             self.look.measure(screen.physicalDotsPerInch())
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
-        """A key goes down. A key that repeats by being held counts once, where once is what is meant."""
+        """Handle a key press. A repeat counts only for keys that may repeat."""
         frame = self.frame
         if frame is None or self._answered(frame, event):
             return
@@ -368,7 +368,7 @@ class MainWindow(QWidget):
             self.press(name)
 
     def _elsewhere(self, frame: Frame, name: str) -> bool:
-        """Return whether a key that changes how a cycle runs is typed on another page; say so."""
+        """Return whether the key belongs to the Automatic page but another page is open, and show this."""
         if name not in OF_AUTOMATIC or frame.page is frame.automatic or name in frame.page.key_actions():
             return False
         frame.desk.say(tr(Message("{key} WORKS ON THE AUTOMATIC PAGE: PRESS F1, THEN F2", key=name)))
@@ -376,7 +376,7 @@ class MainWindow(QWidget):
         return True
 
     def _answered(self, frame: Frame, event: QKeyEvent) -> bool:
-        """Whether the key was the answer to a question: pressed by itself, after all others were let go."""
+        """Return whether the key answered a question. Yes needs a single key with all others released."""
         typed = {letter_of(event), typed_of(event)} - {""}
         if not frame.desk.asked or not typed & {frame.desk.asked, "N"}:
             return False
@@ -387,9 +387,9 @@ class MainWindow(QWidget):
         return True
 
     def _kept_from(self, frame: Frame, event: QKeyEvent) -> bool:
-        """Whether an entry has the keyboard and does not take a character: it is no other key then.
+        """Return whether an input field rejects the character, so that the key has no other function.
 
-        Neither do Ctrl+H, Ctrl+Space and Ctrl+E stop the machine there.
+        Ctrl+H, Ctrl+Space and Ctrl+E do not stop the machine there either.
         """
         text = event.text()
         if not text.isprintable() or not text or not frame.has_field():
@@ -401,17 +401,17 @@ class MainWindow(QWidget):
         return True
 
     def _typed(self, frame: Frame, event: QKeyEvent) -> bool:
-        """Whether the page has taken the key as text."""
+        """Return whether the page has handled the key as text input."""
         key = typed_of(event)
         if not key or (event.isAutoRepeat() and key not in TYPED_AGAIN) or not frame.page.typed(key):
             return False
         if frame.desk.notice == self._untaken:
-            frame.desk.clear()  # the next key was taken
+            frame.desk.clear()  # The next key was accepted.
         self.refresh()
         return True
 
     def keyReleaseEvent(self, event: QKeyEvent) -> None:
-        """A palm, or what a page holds, is let go."""
+        """Release a palm button, or a key of the page."""
         if self.frame is not None:
             self.frame.page.key_up(event)
         if not event.isAutoRepeat() and event.key() in PALMS:
@@ -427,7 +427,7 @@ class MainWindow(QWidget):
             self.refresh()
 
     def changeEvent(self, event: QEvent) -> None:
-        """Losing the keyboard lets every held button go: the release would be somebody else's to see."""
+        """Release all buttons when the window loses the keyboard, because it gets no release events."""
         if event.type() == QEvent.Type.ActivationChange:
             self._tell_keyboard()
             if self.isActiveWindow():
@@ -441,7 +441,7 @@ class MainWindow(QWidget):
             self.frame.desk.window.set_keyboard_away(not self.isActiveWindow())
 
     def let_go(self) -> None:
-        """Hands off everything that is held."""
+        """Release all keys, buttons and controls that are pressed."""
         self.keyboard.away()
         if self.frame is not None:
             if self.frame.dock is not None:
@@ -450,7 +450,7 @@ class MainWindow(QWidget):
             self.frame.page.let_go()
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """The frame fills the window."""
+        """Let the frame fill the window."""
         if self.frame is not None:
             self.frame.setGeometry(self.rect())
 
@@ -458,12 +458,12 @@ class MainWindow(QWidget):
         return self._meant or frame.desk.may_close(self._close)
 
     def _close(self) -> None:
-        """Although something is lost by it."""
+        """Close the window although data will be lost."""
         self._meant = True
         self.close()
 
     def closeEvent(self, event: QCloseEvent) -> None:
-        """Not while a program is under way."""
+        """Refuse to close while a program is running, in kiosk mode, or if the page prevents it."""
         frame = self.frame
         if self.kiosk and frame is not None and not self._meant:
             frame.desk.say(tr("KIOSK MODE: SHUT DOWN THE COMPUTER TO CLOSE TURNDESK"))

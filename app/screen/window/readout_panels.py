@@ -1,4 +1,7 @@
-"""Position, feed, spindle, tool, parts and times: large on the Automatic page, in low rows elsewhere."""
+"""Displays of position, feed, spindle, tool, parts and times.
+
+They are large on the Automatic page, and in one row on all other pages.
+"""
 
 from __future__ import annotations
 
@@ -17,17 +20,17 @@ from app.screen.panel import Panel, Shown
 from core.message import Message, join_messages
 
 LATHE_ROWS = 3
-ROOMY = 6.3  # units of height that figures of the full size need
+ROOMY = 6.3  # Units of row height that numbers of full size need.
 
 
 class PositionPanel(Panel):
-    """The readout. X is marked by a filled Ø or a hollow R, so that one is never taken for the other."""
+    """The position display. X has a filled Ø or a hollow R, so that the operator cannot confuse them."""
 
-    view: Shown[PositionFigures | None] = Shown(None)  # all at once: of one instant, in one unit
+    view: Shown[PositionFigures | None] = Shown(None)  # All values of one instant, in one unit.
 
     @property
     def readout(self) -> str:
-        """What the large figures are."""
+        """The kind of value that the large numbers show."""
         return self.view.readout.value if self.view else ""
 
     def draw(self, painter: Painter) -> None:
@@ -69,13 +72,13 @@ class PositionPanel(Panel):
             painter.write(above, "NOT HOMED" if axis.known else "LAST KNOWN", 1.5, "alarm", at=RIGHT)
 
     def _share(self, row: QRectF) -> float:
-        """Of the full size: five axes of a mill leave less room than three of a lathe."""
+        """Return the scale of the numbers. A mill with five axes has less room per row than a lathe."""
         few = self.view is None or len(self.view.axes) <= LATHE_ROWS
         return 1.0 if few else min(1.0, row.height() / (ROOMY * self.look.u))
 
 
 def draw_mark(painter: Painter, box: QRectF, mark: str, size: float, line: float) -> None:
-    """X as a diameter has a filled Ø, as a radius a hollow R; letter and line in units."""
+    """Draw the mark of X: a filled Ø for a diameter, a hollow R for a radius. Sizes are in units."""
     filled = mark == "Ø"
     painter.box(box, "mark", line, "mark" if filled else "")
     painter.write(box, mark, size, "on_mark" if filled else "mark", at=CENTRE)
@@ -85,7 +88,7 @@ def draw_mark(painter: Painter, box: QRectF, mark: str, size: float, line: float
 
 
 class Gauge(Panel):
-    """Draws from one frozen value; the same value again costs a comparison."""
+    """A panel that draws one immutable value. Setting an equal value does not redraw the panel."""
 
     value: Shown[object] = Shown(None)
 
@@ -94,22 +97,22 @@ class Gauge(Panel):
         self.title = title
 
     def row(self, y: float, high: float) -> QRectF:
-        """A row inside the frame; units."""
+        """Return a row inside the frame. ``y`` and ``high`` are in units."""
         u = self.look.u
         return QRectF(1.4 * u, y * u, self.width() - 2.8 * u, high * u)
 
     def label(self, painter: Painter, at: QRectF, text: str, flags: Qt.AlignmentFlag = LEFT) -> None:
-        """A small word that names a figure."""
+        """Draw a small label for a value."""
         painter.write(at, text, 1.6, "soft", at=flags)
 
     def figure(
         self, painter: Painter, at: QRectF, text: str, size: float, flags: Qt.AlignmentFlag = RIGHT
     ) -> None:
-        """Draw a figure in bold, smaller where its place is narrow."""
+        """Draw a value in bold, smaller if its place is narrow."""
         painter.write(at, text, size, "text", at=flags)
 
     def bar(self, painter: Painter, at: QRectF, fraction: float, most: float) -> None:
-        """An override: a bar with its figure; anything but 100 % stands out."""
+        """Draw an override as a bar with its percentage. A value other than 100 % is highlighted."""
         u = self.look.u
         plain = abs(fraction - 1.0) < 0.005
         figure = QRectF(at.right() - 9 * u, at.y(), 9 * u, at.height())
@@ -124,7 +127,7 @@ class Gauge(Panel):
 
 
 class FeedGauge(Gauge):
-    """Programmed feed large, actual feed and override below."""
+    """Programmed feed in large digits, with the measured feed and the override below."""
 
     def draw(self, painter: Painter) -> None:
         view = self.value
@@ -143,7 +146,7 @@ class FeedGauge(Gauge):
 
 
 class SpindleGauge(Gauge):
-    """Commanded and actual rpm, surface speed, override and its switch."""
+    """Commanded and measured speed in rpm, surface speed, override and the spindle switch."""
 
     def draw(self, painter: Painter) -> None:
         view = self.value
@@ -170,12 +173,13 @@ class SpindleGauge(Gauge):
         self.figure(painter, surface.adjusted(5 * u, 0, 0, 0), view.surface, 2.5)
         self.bar(painter, self.row(11.2, 2.8), view.override, 1.0)
         if view.load:
-            patch = QRectF(self.width() - 11.0 * u, 0.0, 9.8 * u, 2.0 * u)  # in the top line, as its title
+            # In the top line, next to the title.
+            patch = QRectF(self.width() - 11.0 * u, 0.0, 9.8 * u, 2.0 * u)
             painter.fill(patch, "panel")
             painter.write(patch, f"{tr('LOAD')} {view.load}", 1.6, "soft", at=CENTRE)
 
     def _unheard(self, painter: Painter) -> None:
-        """Nobody knows whether it stands: that is said instead of any figure."""
+        """Draw a warning in place of all values, because the spindle's state is unknown."""
         for row, size, text in (
             (self.row(2.6, 4.0), 3.6, "UNKNOWN"),
             (self.row(7.0, 3.0), 2.4, "SPINDLE MAY BE TURNING"),
@@ -205,7 +209,7 @@ class ToolGauge(Gauge):
 
 
 class TimesGauge(Gauge):
-    """Part count, time of this cycle, time left."""
+    """Part count, present cycle time, remaining time and last cycle time."""
 
     def draw(self, painter: Painter) -> None:
         if not isinstance(self.value, tuple):
@@ -222,20 +226,20 @@ class TimesGauge(Gauge):
             put(painter, at.adjusted(0, room.height() * 0.36, 0, 0), CENTRE, text)
 
 
-# --- all in one low row -------------------------------------------------------------------------------
+# --- readouts in one row ------------------------------------------------------------------------------
 
 
-LATHE_COLUMNS = 3  # X, Z and C; a mill has more
+LATHE_COLUMNS = 3  # X, Z and C. A mill has more axes.
 
 
 class HeadLine(Panel):
-    """Everything of one snapshot; X keeps its filled Ø or hollow R."""
+    """All readouts of one snapshot in one row. X has a filled Ø or a hollow R."""
 
     view: MachineStatus | None = None
     _shown: Shown[object] = Shown(None)
 
     def show_view(self, view: MachineStatus) -> None:
-        """Redraw when one of its figures has changed."""
+        """Show a status, and redraw if a value has changed."""
         self.view = view
         self._shown = (view.position, view.feed, view.spindle, view.tool, view.secondary)
 
@@ -291,24 +295,24 @@ class HeadLine(Panel):
             x += wide
 
 
-# --- the run in one low row ---------------------------------------------------------------------------
+# --- run in one row -----------------------------------------------------------------------------------
 
 
 Times = Sequence[tuple[str, str]]
-COMMENT, BLOCK = 0.38, 0.24  # shares of the width; parts and times have the rest
+COMMENT, BLOCK = 0.38, 0.24  # Fractions of the width. Parts and times use the rest.
 
 
 class RunLine(Panel):
-    """One low row at the lower left, where the Automatic page has its comment."""
+    """One row with comment, block, parts and times, at the place of the Automatic page's comment."""
 
     ground = "panel"
     comment, block, message = Shown(""), Shown(""), Shown("")
     times: Shown[Times] = Shown(())
-    stop = Shown("")  # number and words of what stopped the machine
+    stop = Shown("")  # Number and text of the alarm or stop.
     _tone = Shown("")
 
     def show_run(self, view: MachineStatus, times: Times) -> None:
-        """Redraw when something of it has changed."""
+        """Show a status and times, and redraw if they have changed."""
         self.comment, self.message, self.times = view.comment, view.message, times
         self.block = f"L{view.line}  {view.block_text}" if view.line else ""
         self.stop, self._tone = stop_words(view), view.tone.value
@@ -328,7 +332,7 @@ class RunLine(Panel):
         self._times(painter, QRectF((COMMENT + BLOCK) * wide, 0, (1 - COMMENT - BLOCK) * wide - u, high))
 
     def _alarm(self, painter: Painter) -> None:
-        """Over all of it: nothing runs, and this has to be read from where the machine is."""
+        """Draw the alarm over the whole row, large enough to read from the machine."""
         look, u = self.look, self.look.u
         painter.fill(self.area(), self._tone)
         sign = QRectF(u, 0.3 * u, 2.2 * u, 2.2 * u)
@@ -339,12 +343,12 @@ class RunLine(Panel):
         painter.write(box, text, 2.0, ink, bold=ink == "text", raw=True)
 
     def _stop(self, painter: Painter, box: QRectF) -> None:
-        """What the operator must do now: filled, over comment and block, as long as an M00 or M01 lasts."""
+        """Draw the message of M00 or M01 over comment and block, as long as the stop lasts."""
         painter.fill(box.adjusted(-1.4 * self.look.u, 0, 0, 0), "pause")
         painter.write(box, self.message, 2.4, "on_state", raw=True)
 
     def _times(self, painter: Painter, room: QRectF) -> None:
-        """Name and figure beside each other, each in a column of its own."""
+        """Draw the times in columns, each with its name and value side by side."""
         u, share = self.look.u, room.width() / max(1, len(self.times))
         for number, (name, figure) in enumerate(self.times):
             box = QRectF(room.x() + number * share, 0, share - 0.8 * u, room.height())
@@ -354,7 +358,7 @@ class RunLine(Panel):
 
 
 def stop_words(view: MachineStatus) -> str:
-    """Number and words of the alarm that came first, of the E-stop, or of a hold that nobody pressed."""
+    """Return the number and text of the first alarm, the E-stop, or an unrequested feed hold."""
     first = view.alarms[0] if view.alarms else view.stop
     if first is None:
         return ""

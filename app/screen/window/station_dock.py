@@ -1,4 +1,4 @@
-"""The operator station of the simulated machine: what stands beside a real lathe, under fingers and keys."""
+"""The operator station of a simulated machine on the screen, for touch and keys."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ from app.screen.panel import Control, FingerPanel, Shown, pressed
 from app.screen.window_layout import FINGER
 from core.executor.snapshot import Snapshot
 
-DRAWN_FOR = 71.6  # units of height; a taller dock gives every row its share
+DRAWN_FOR = 71.6  # Height in units for which the rows are designed. A taller dock scales them.
 
 
 class StationDock(FingerPanel):
-    """E-stop, spindle switch, two pots, feed hold and the palms."""
+    """E-stop, spindle switch, two pots, feed hold and the start buttons."""
 
     title = "OPERATOR STATION"
     _shown: Shown[object] = Shown(())
     _auto = Shown(True)
-    mute: Shown[frozenset[str]] = Shown(frozenset())  # letters that do not act now, and are not shown
-    barred = Shown(False)  # Cycle Start would be refused
+    mute: Shown[frozenset[str]] = Shown(frozenset())  # Keys that have no function now and are not shown.
+    barred = Shown(False)  # Cycle Start would be rejected now.
 
     def __init__(self, look: Look, desk: Desk, parent: QWidget | None = None) -> None:
         super().__init__(look, parent)
@@ -37,7 +37,7 @@ class StationDock(FingerPanel):
         self._twisting = False
 
     def show_station(self, snapshot: Snapshot) -> None:
-        """Where its switches and buttons stand."""
+        """Show the present positions of the switches and buttons."""
         desk = self._desk
         self._auto, self.barred = snapshot.spindle_auto, bool(start_refusal(desk, snapshot))
         palms = frozenset(desk.hands.palms.down)
@@ -46,7 +46,7 @@ class StationDock(FingerPanel):
         self._shown = (desk.hands.estop_pressed, pots, palms, latched, desk.hands.latch_now())
 
     def wheelEvent(self, event: QWheelEvent) -> None:
-        """Over a pot the wheel turns it."""
+        """Turn the pot under the pointer."""
         steps = 1 if event.angleDelta().y() > 0 else -1
         if self._feed_box().contains(event.position()):
             self._desk.station.step_override(steps)
@@ -119,7 +119,10 @@ class StationDock(FingerPanel):
         self._twisting = self.fingers == 1
 
     def _twist_ends(self) -> None:
-        """One finger alone, down and up: a hand that slaps the plate touches both and frees nothing."""
+        """Release the E-stop if one finger alone pressed and released the twist field.
+
+        A hand that hits the plate touches both fields and releases nothing.
+        """
         if self._twisting and not self.fingers:
             self._desk.hands.estop(pressed=False)
 
@@ -211,7 +214,7 @@ class StationDock(FingerPanel):
 
     @property
     def _latches(self) -> bool:
-        """Whether one finger is enough: chosen in F10 7, where nothing real moves."""
+        """Whether the palm buttons work with one finger: selected with F10 7, and all axes are simulated."""
         return self._desk.settings.now.latched and self._desk.machine.one_hand
 
     def _palm_control(self, at: QRectF, side: str) -> Control:

@@ -1,6 +1,4 @@
-"""The lines across the window: title, lit words, what stands until somebody acts, prompt line, comment,
-function keys.
-"""
+"""The rows across the window: title, lamps, notices, prompt line, comment and function keys."""
 
 from __future__ import annotations
 
@@ -22,33 +20,34 @@ from app.screen.panel import Panel, Shown
 from app.screen.window.keys import ANSWER, NO
 from app.screen.window_layout import FINGER
 
-TARGET = 13.0  # units: width of an answer to touch
-ANSWERS = {Sort.ANSWER: ("pause", "!"), Sort.DONE: ("run", "✓"), Sort.ASKED: ("wait", "?")}  # ground, sign
-PROMPT_SHARE = 0.47  # of the prompt line: the row of answer and question
-SIGN = 5.0  # units: width of the sign
+TARGET = 13.0  # Units: width of the touch target of an answer.
+# Background color and sign.
+ANSWERS = {Sort.ANSWER: ("pause", "!"), Sort.DONE: ("run", "✓"), Sort.ASKED: ("wait", "?")}
+PROMPT_SHARE = 0.47  # Fraction of the prompt line's height for message and question.
+SIGN = 5.0  # Units: width of the sign.
 
 
 class TitleLine(Panel):
-    """Program of the desk, page, program name, machine state in words, who is in force, clock."""
+    """The title line: page, program, machine state, signed-in user, machine name and clock."""
 
     ground = "panel"
 
     page = Shown("")
-    access = Shown("")  # who has signed in, and the level in force; empty: there are no levels
+    access = Shown("")  # The signed-in user and level; empty if access levels are off.
     _shown = Shown(("", "STARTING", Tone.OFF, "", ""))
 
     @property
     def program(self) -> str:
-        """The name of the program in the title line."""
+        """The program name in the title line."""
         return self._shown[0]
 
     @property
     def state(self) -> str:
-        """The state of the machine in words, as shown."""
+        """The displayed state of the machine."""
         return self._shown[1]
 
     def show_state(self, program: str, state: str, tone: Tone, machine: str, clock: str) -> None:
-        """What stands in the line."""
+        """Show these texts in the title line."""
         self._shown = (program, state, tone, machine, clock)
 
     def draw(self, painter: Painter) -> None:
@@ -82,14 +81,14 @@ class TitleLine(Panel):
 
 
 class PromptLine(Panel):
-    """Three places above the function keys: answer and question in one row, the state below them.
+    """Three places above the function keys: message and question in one row, the state below them.
 
-    Each place has one subject, and none covers another. Where there is an answer and a question, each has
+    Each place has one subject, and none covers another. If there are both a message and a question, each has
     half of the row. The question has two targets, always at the right end.
     """
 
     state, reason, question, answer, asked = (Shown("") for _ in range(5))
-    sort: Shown[Sort | None] = Shown(None)  # of the answer
+    sort: Shown[Sort | None] = Shown(None)  # Kind of the message.
 
     def __init__(self, look: Look, press: Callable[[str], None], parent: QWidget | None = None) -> None:
         super().__init__(look, parent)
@@ -98,19 +97,19 @@ class PromptLine(Panel):
 
     @property
     def text(self) -> str:
-        """What there is to read first: the answer to the last key, a question, or else the state."""
+        """The most important text: the message, else the question, else the state."""
         return self.answer or self.question or self.state
 
     def show_state(self, text: str, reason: str = "") -> None:
-        """Show what can be done now, and the reason why the machine is stopped."""
+        """Show what the operator can do now, and the reason why the machine is stopped."""
         self.state, self.reason = text, reason
 
     def show_question(self, text: str, asked: str = "") -> None:
-        """Show a question; ``asked`` is the key that means yes."""
+        """Show a question. ``asked`` is the key that means yes."""
         self.question, self.asked = text, asked
 
     def show_answer(self, text: str, *, sort: Sort | None) -> None:
-        """Show an answer; ``sort`` gives its color and its sign."""
+        """Show a message. ``sort`` determines its color and sign."""
         self.answer, self.sort = text, sort
 
     def draw(self, painter: Painter) -> None:
@@ -120,7 +119,7 @@ class PromptLine(Panel):
             self._announced = self.text
             announce(self, tr(self.text))
         if self.question and self.asked:
-            area.setRight(self._targets(painter, area))  # as high as a finger needs them
+            area.setRight(self._targets(painter, area))  # The targets use the full height, for touch.
         upper = QRectF(area.x(), area.y(), area.width(), PROMPT_SHARE * area.height())
         self._state(painter, area.adjusted(0, upper.height(), 0, 0))
         both = bool(self.answer and self.question)
@@ -151,7 +150,7 @@ class PromptLine(Panel):
         painter.write(area.adjusted(SIGN * u, 0, -1.4 * u, 0), text, 2.3, "on_state")
 
     def _targets(self, painter: Painter, area: QRectF) -> float:
-        """Draw yes and no at the right end, where no key is that asks; return where the text ends."""
+        """Draw the targets for yes and no at the right end, and return where the text must end."""
         u = self.look.u
         left = area.right() - 2 * TARGET * u
         for number, (word, key) in enumerate((("YES", ANSWER), ("NO", NO))):
@@ -173,11 +172,11 @@ class CommentLine(Panel):
 
 
 class FunctionKeys(Panel):
-    """F1 to F10 with labels of up to eight characters; each is a target for a finger too."""
+    """The function keys F1 to F10, each with a label of up to eight characters. Each is a touch target."""
 
     part_name = "FUNCTION KEYS"
-    labels: Shown[tuple[str, ...]] = Shown(("",) * 10)  # an empty one is no key
-    barred: Shown[frozenset[str]] = Shown(frozenset())  # keys that would be refused now: drawn dim
+    labels: Shown[tuple[str, ...]] = Shown(("",) * 10)  # An empty label means no key.
+    barred: Shown[frozenset[str]] = Shown(frozenset())  # Disabled keys, which are drawn dim.
 
     def __init__(self, look: Look, press: Callable[[int], None], parent: QWidget | None = None) -> None:
         super().__init__(look, parent)
@@ -200,17 +199,17 @@ class FunctionKeys(Panel):
             self.place(box, partial(self._press, number), barred=barred)
 
 
-# --- lit words ----------------------------------------------------------------------------------------
+# --- lamps --------------------------------------------------------------------------------------------
 
 
 class LampStrip(Panel):
-    """A row of words. Lit is filled and dark is hollow, so that the difference needs no colour."""
+    """A row of lamps. A lit lamp is filled and a dark lamp is hollow, so that color is not needed."""
 
     part_name = "LAMPS"
     lamps: Shown[tuple[Lamp, ...]] = Shown(())
     mute: Shown[frozenset[str]] = Shown(
         frozenset()
-    )  # keys that are text now, and not shown: the finger's alone
+    )  # Keys that are text input now. The lamps react to touch only.
 
     def __init__(self, look: Look, press: Callable[[str], None], parent: QWidget | None = None) -> None:
         super().__init__(look, parent)
@@ -247,16 +246,16 @@ class LampStrip(Panel):
             painter.write(room.translated(0, number * room.height()), word, 1.75, ink, at=CENTRE)
 
 
-# --- notices that stay --------------------------------------------------------------------------------
+# --- notices ------------------------------------------------------------------------------------------
 
 
-NOTICE_ROW, NOTICE_KEY = 5.0, 17.0  # units: height of a row, width of a key
-NOTICE_LOW = 4.5  # units: height of a row that is only read
-_THREE_LINES = 6.0  # units: height of a row that has room for them
+NOTICE_ROW, NOTICE_KEY = 5.0, 17.0  # Units: height of a row, width of a key.
+NOTICE_LOW = 4.5  # Units: height of a row without keys.
+_THREE_LINES = 6.0  # Units: height of a row with room for three lines.
 
 
 class NoticeRows(Panel):
-    """Each filled in the colour of what it says; a finger on a key presses it."""
+    """Rows with notices, each filled with the color of its tone and with keys for touch."""
 
     rows: Shown[tuple[NoticeRow, ...]] = Shown(())
 
@@ -267,11 +266,14 @@ class NoticeRows(Panel):
 
     @property
     def high(self) -> int:
-        """Pixels that the rows need."""
+        """The height in pixels that the rows need."""
         return sum(self._high_of(row) for row in self.rows)
 
     def _high_of(self, row: NoticeRow) -> int:
-        """A fingertip where there is something to press, or more for words that need it; else two lines."""
+        """Return the height of a row in pixels.
+
+        A row with keys is at least as high as a fingertip. A row without keys has two lines of text.
+        """
         u = self.look.u
         if not row.keys:
             return round(NOTICE_LOW * u)
@@ -280,21 +282,21 @@ class NoticeRows(Panel):
         return max(FINGER + 2, round(NOTICE_ROW * u) if fits else round(_THREE_LINES * u) + 3)
 
     def _room(self, row: NoticeRow, wide: float) -> float:
-        """For its words, beside its keys."""
+        """Return the width for the texts of a row, next to its keys."""
         return wide - (len(row.keys) * NOTICE_KEY + 2.4) * self.look.u
 
     @property
     def other_room(self) -> bool:
-        """Whether the rows need more or less than the room they have been given."""
+        """Whether the rows need another height than they have."""
         return self.high != self._stand_for
 
     def take_room(self) -> int:
-        """They have what they need from now on: how many pixels."""
+        """Note that the rows get the height that they need, and return it in pixels."""
         self._stand_for = self.high
         return self.high
 
     def draw(self, painter: Painter) -> None:
-        share, top = self.height() / max(1, self.high), 0.0  # less than they need where there is no more
+        share, top = self.height() / max(1, self.high), 0.0  # The rows may get less height than they need.
         for row in self.rows:
             high = share * self._high_of(row)
             self._row(painter, QRectF(0, top, self.width(), high - 2), row)
@@ -326,7 +328,7 @@ class NoticeRows(Panel):
 
 
 def _in_lines(text: str, font: QFont, wide: float) -> list[str]:
-    """Two lines where one has no room even in the smallest letters; the second may still be cut off."""
+    """Return the text in one line, or in two lines if it is too wide. The second line may still be elided."""
     if not text or width_of(text, font) <= wide:
         return [text] if text else []
     words, first = text.split(" "), ""

@@ -1,4 +1,4 @@
-"""The frame of the main window: what is always visible, and one page at a time in the room that is left."""
+"""The frame of the main window: the parts that are always visible, and one page at a time."""
 
 from __future__ import annotations
 
@@ -42,26 +42,26 @@ from core.executor.snapshot import Snapshot, State
 from core.message import Message
 
 _SEARCHTO, _FROM_LINE_1 = ("F6", "SEARCHTO"), ("Y", "FROM LINE 1")
-GAP = 4  # pixels under the rows that stand
+GAP = 4  # Pixels below the notice rows.
 _RESTING = frozenset({State.ESTOP, State.DISABLED, State.IDLE, State.FAULT})
-STALE = 0.45  # s after which all is looked at again where nothing seems to have changed
-_SETTLED = 3.0  # s after a move by hand before the room of a page may change
+STALE = 0.45  # Seconds after which everything is refreshed even without a visible change.
+_SETTLED = 3.0  # Seconds after a manual move before the layout of a page may change.
 
 
 Face = tuple[str, bool, bool, str]
 
 
 class Frame(QWidget):
-    """Polls nothing itself: ``refresh`` is called once a frame.
+    """The fixed parts of the window and the current page. ``refresh`` is called once a frame.
 
-    The Automatic page has large readouts above it, every other page the same figures in one low row.
+    The Automatic page has large readouts above it. All other pages have the same values in one row.
     """
 
     def __init__(self, look: Look, desk: Desk, press: Callable[[str], None], parent: QWidget) -> None:
         super().__init__(parent)
         self.look, self.desk = look, desk
-        self.at_rest = False  # nothing moves on the machine
-        self._shown: tuple[Snapshot, Loaded] | None = None  # the last time
+        self.at_rest = False  # Nothing moves on the machine.
+        self._shown: tuple[Snapshot, Loaded] | None = None  # Snapshot and program that were shown last.
         self._shown_at, self._paints = 0.0, 0
         self.title = TitleLine(look, self)
         self.head = HeadLine(look, self)
@@ -83,7 +83,7 @@ class Frame(QWidget):
         host = Host(look, desk, press, self.go, self.log.hide)
         self._host = host
         self._before_scope = page_table.AUTOMATIC
-        self._moved_at: float | None = None  # when slides were last moved by hand
+        self._moved_at: float | None = None  # Time of the last manual move.
         self.automatic = AutomaticPage(host, self)
         self._pages: dict[str, Page] = {page_table.AUTOMATIC: self.automatic}
         self.page: Page = self.automatic
@@ -94,7 +94,7 @@ class Frame(QWidget):
     # --- pages ---------------------------------------------------------------------------------------
 
     def go(self, name: str) -> bool:
-        """Open a page; one that does not open now, or that does not let go, says so."""
+        """Open a page. Return False if the page cannot open or the current page cannot close."""
         name = page_on(self.desk.machine.language, name)
         if name == self.page.NAME:
             return True
@@ -108,13 +108,13 @@ class Frame(QWidget):
         return True
 
     def page_named(self, name: str) -> Page:
-        """The page of this name, made with the first question for it; hidden until it is opened."""
+        """Return the page with this name. It is created at the first call and hidden until it is opened."""
         page = self._pages.get(name) or make_page(name, self._host, self)
         self._pages[name] = page
         return page
 
     def open_record(self, name: str) -> None:
-        """What was recorded before an alarm, in the scope."""
+        """Open the recording of an alarm in the scope."""
         before = self.page.NAME
         if before == page_table.SCOPE or self.go(page_table.SCOPE):
             self._before_scope = self._before_scope if before == page_table.SCOPE else before
@@ -122,7 +122,7 @@ class Frame(QWidget):
             self.desk.pages.open_record(name)
 
     def toggle_scope(self) -> None:
-        """The scope from any page, and back to that page."""
+        """Open the scope from any page, or return to that page."""
         if self.page.NAME == page_table.SCOPE:
             self.go(self._before_scope)
         else:
@@ -143,7 +143,7 @@ class Frame(QWidget):
         page.opened()
 
     def key_actions(self) -> KeyActions:
-        """What keys do here: those of the page, before those of the frame."""
+        """Return the actions of all keys. Those of the page precede those of the frame."""
         return {
             "F1": partial(self.go, page_table.MENU),
             "F7": self.toggle_log,
@@ -155,7 +155,7 @@ class Frame(QWidget):
         }
 
     def _log_keys(self) -> KeyActions:
-        """Keys that look through the log while it lies over the page."""
+        """Return the keys that scroll the alarm log while it covers the page."""
         log = self.log
         return {
             "Page up": lambda: log.scroll_by(-log.rows),
@@ -166,7 +166,7 @@ class Frame(QWidget):
         }
 
     def _open_marked(self) -> None:
-        """The record of the marked entry; one that has none says so."""
+        """Open the recording of the selected log entry, or show that the entry has none."""
         name = self.log.record
         if name:
             self.open_record(name)
@@ -174,44 +174,44 @@ class Frame(QWidget):
             self.desk.say(tr("NO SCOPE RECORD: ONLY ALARMS AND E-STOPS ARE RECORDED"))
 
     def toggle_log(self) -> None:
-        """The log of alarms over the page, or away again."""
+        """Show or hide the alarm log over the page."""
         self.log.setVisible(not self.log.isVisible())
         self.log.raise_()
 
     def escape(self) -> bool:
-        """Close what lies over the page, or what is open in it; False when nothing was."""
+        """Close the alarm log or something on the page. Return False if nothing was open."""
         if self.log.isVisible():
             self.log.hide()
             return True
         return self.page.escape()
 
     def esc_holds(self) -> bool:
-        """Return whether Esc holds the feed while something moves and is offered for nothing else."""
+        """Return whether Esc starts feed hold while the machine moves and has no other function."""
         return not self.desk.asked and not self.log.isVisible() and self.page.esc_holds()
 
     @property
     def face(self) -> Face:
-        """What decides the meaning of a touch: the page, and what is open or asked over it."""
+        """The screen state on which the meaning of a touch depends: the page, and what covers it."""
         return self.page.NAME, self.log.isVisible(), self.automatic.files.isVisible(), self.desk.asked
 
     def dress(self) -> None:
-        """Everything in the colours that are in force now."""
+        """Redraw all parts in the present colors."""
         for page in self._pages.values():
             page.dress()
         for part in self.findChildren(QWidget):
             part.update()
 
-    # --- places --------------------------------------------------------------------------------------
+    # --- layout --------------------------------------------------------------------------------------
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """Everything again, in the new unit."""
+        """Lay out all parts in the new unit."""
         self._lay_out()
 
     def _lay_out(self) -> None:
         stand(self.page, self._lay_parts(large=self.page is self.automatic))
 
     def _lay_parts(self, *, large: bool) -> Rect:
-        """Everything in its place for the size of now; the answer is the room of the page."""
+        """Lay out all parts for the present size, and return the rectangle of the page."""
         width, height = self.width(), self.height()
         self.look.resize(unit(width, height))
         with_dock = self.dock is not None and self.desk.settings.now.dock
@@ -240,7 +240,7 @@ class Frame(QWidget):
 
     @property
     def _dock_moved(self) -> bool:
-        """Whether the operator wants the station elsewhere than it stands."""
+        """Whether the operator has switched the station dock on or off since the last layout."""
         return self.dock is not None and self._docked is not self.desk.settings.now.dock
 
     def _stand_readouts(self, at: Places, large: bool) -> None:
@@ -256,29 +256,27 @@ class Frame(QWidget):
             part.setVisible(large)
 
     def _by_hand(self, snapshot: Snapshot) -> bool:
-        """Whether slides were moved by hand a moment ago: no target may slip away under a finger then."""
+        """Return whether the axes were jogged or homed in the last seconds, so that no target may move."""
         now = self.desk.hands.clock()
         if snapshot.state in {State.JOG, State.HOME}:
             self._moved_at = now
         return self._moved_at is not None and now - self._moved_at < _SETTLED
 
-    # --- what is shown -------------------------------------------------------------------------------
+    # --- display -------------------------------------------------------------------------------------
 
     def changed(self) -> bool:
-        """Whether there is something else to show than the last time: another state of the machine, another
-        program, something that was drawn since and may not be done.
-        """
+        """Return whether the machine, the program or a panel has changed since the last refresh."""
         shown, desk = self._shown, self.desk
         if shown is None or self._paints != Panel.paints:
             return True
         return shown[1] is not desk.session.now or not shown[0].tells_as(desk.snapshot())
 
     def aged(self) -> bool:
-        """Whether it is a while since all was shown."""
+        """Return whether the last refresh was more than 0.45 s ago."""
         return self.desk.clock.seconds() - self._shown_at > STALE
 
     def refresh(self) -> None:
-        """Take one snapshot and show it everywhere."""
+        """Poll one snapshot and show it in all parts."""
         snapshot, view, loaded = self.desk.look()
         self._shown, self._paints = (snapshot, loaded), Panel.paints
         self._shown_at = self.desk.clock.seconds()
@@ -298,7 +296,8 @@ class Frame(QWidget):
         else:
             self.head.show_view(view)
             self.run.show_run(view, self._times_of(snapshot, view, loaded))
-            self.notice.show_notice("", "")  # the prompt line tells it: nothing covers an entry
+            # The prompt line shows the alarm, so that no notice covers an input field.
+            self.notice.show_notice("", "")
         self.log.show_entries(self.desk.log.entries)
         if self.dock is not None:
             self.dock.show_station(snapshot)
@@ -308,7 +307,7 @@ class Frame(QWidget):
         self.keys.labels, self.keys.barred = self.page.labels(), self.page.barred()
 
     def _show_caret(self) -> None:
-        """Draw the caret of the page's entry exactly while the characters are that entry's."""
+        """Show the caret of the page's input field only while the field gets the characters."""
         has_field = self.page.has_field()
         if has_field is not self.look.caret:
             self.look.caret = has_field
@@ -316,16 +315,16 @@ class Frame(QWidget):
                 panel.update()
 
     def _is_dead(self, key: str) -> bool:
-        """Return whether the key of a lamp does not switch it on this page; a touch does on every page."""
+        """Return whether the key of a lamp has no function on this page. A touch works on every page."""
         elsewhere = key in OF_AUTOMATIC and self.page is not self.automatic
         return elsewhere or self.has_field() or self.is_text(key)
 
     def is_text(self, key: str) -> bool:
-        """Whether a character goes to an entry now: the page's, or a field that has the keyboard."""
+        """Return whether this character goes to an input field of the page or to a standard field."""
         return self.page.takes(key) or self._stock_field()
 
     def has_field(self) -> bool:
-        """Return whether an entry has the keyboard: then its caret is drawn, and no character is a key."""
+        """Return whether an input field has the keyboard, so that characters are text."""
         return self.page.has_field() or self._stock_field()
 
     def _stock_field(self) -> bool:
@@ -344,7 +343,7 @@ class Frame(QWidget):
         self.prompt.show_answer(desk.answers.answer, sort=desk.answers.sort)
 
     def _show_readouts(self, snapshot: Snapshot, view: MachineStatus, loaded: Loaded) -> None:
-        """The figures of this instant, large."""
+        """Show the values of this instant in the large displays."""
         self.position.view, self.feed.value, self.spindle.value = view.position, view.feed, view.spindle
         self.tool.value = (view.tool, view.secondary)
         self.times.value = self._times_of(snapshot, view, loaded)
@@ -352,7 +351,7 @@ class Frame(QWidget):
     def _times_of(
         self, snapshot: Snapshot, view: MachineStatus, loaded: Loaded
     ) -> tuple[tuple[str, str], ...]:
-        """Parts and times, as the run's row has them too."""
+        """Return the part count and the times, as the run line shows them too."""
         left = formats.duration(time_left(snapshot, loaded))
         return (
             ("PARTS", self.desk.runs.counter.words),
@@ -362,12 +361,15 @@ class Frame(QWidget):
         )
 
     def _lamps_of(self, snapshot: Snapshot, view: MachineStatus) -> tuple[Lamp, ...]:
-        """The lit words, from left to right."""
+        """Return the lamps from left to right."""
         kept = (Lamp("NOT SAVED", lit=True, warn=True),) if self.desk.storage.problem() else ()
         return (*view.modes, *view.lamps, *kept, drives_lamp(snapshot, "D"), Lamp("RESET", False, "R"))
 
     def _notices_of(self, snapshot: Snapshot, loaded: Loaded, *, here: bool) -> tuple[NoticeRow, ...]:
-        """What stands until somebody does something; its keys where they mean that (``here``)."""
+        """Return the notices that remain until the operator acts.
+
+        ``here``: the Automatic page is open, so the keys of the notices work.
+        """
         desk, rows = self.desk, []
         unheard = unheard_notice(snapshot)
         if unheard is not None:
@@ -390,7 +392,7 @@ class Frame(QWidget):
         return tuple(rows)
 
     def _keys_of(self, snapshot: Snapshot, loaded: Loaded) -> tuple[tuple[str, str], ...]:
-        """What can be done about an interrupted job now; a start that is refused is not offered."""
+        """Return the keys for an interrupted job. A start that would be refused is not included."""
         if snapshot.state is not State.IDLE or not snapshot.interrupted_line:
             return ()
         searchto = (_SEARCHTO,) if may_go_on(loaded) else ()
@@ -398,12 +400,12 @@ class Frame(QWidget):
 
 
 def _below(room: Rect, rows: Rect) -> Rect:
-    """What of a room is left under the rows."""
+    """Return the part of a rectangle below the notice rows."""
     taken = rows.h + GAP if rows.h else 0
     return Rect(room.x, room.y + taken, room.w, room.h - taken)
 
 
 def stand(part: QWidget, rect: Rect) -> None:
-    """Put it there and draw it anew."""
+    """Set the geometry of a widget and redraw it."""
     part.setGeometry(*rect)
     part.update()

@@ -1,4 +1,4 @@
-"""What the X server knows of keys and buttons; asked from Qt's own thread."""
+"""State of keys and mouse buttons in the X server. Call this from Qt's thread only."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ import ctypes
 
 from PySide6.QtGui import QGuiApplication, QNativeInterface
 
-_BUTTONS = 0x1F00  # of the pointer's mask: five buttons
-_KEYS_HELD_KEYS = 32  # bytes, one bit a key
+_BUTTONS = 0x1F00  # Five buttons in the pointer's mask.
+_KEYS_HELD_KEYS = 32  # Bytes, with one bit per key.
 
 
 class XServer:
-    """The server on whose display Qt shows the windows; asked from Qt's own thread."""
+    """The X server on whose display Qt shows the windows. Use it from Qt's thread only."""
 
     def __init__(self, display: int) -> None:
         self._x = ctypes.CDLL("libX11.so.6")
@@ -23,13 +23,13 @@ class XServer:
         self.tells_repeats = bool(supported.value)
 
     def keys(self) -> frozenset[int]:
-        """The codes of the keys that are down now."""
+        """Return the codes of the keys that are down now."""
         bits = (ctypes.c_ubyte * _KEYS_HELD_KEYS)()
         self._x.XQueryKeymap(self._display, bits)
         return frozenset(8 * n + bit for n, byte in enumerate(bits) for bit in range(8) if byte >> bit & 1)
 
     def buttons(self) -> bool:
-        """Whether a button of the mouse is down now."""
+        """Return whether a mouse button is down now."""
         windows = [ctypes.c_ulong(), ctypes.c_ulong()]
         places = [ctypes.c_int() for _ in range(4)]
         mask = ctypes.c_uint(0)
@@ -39,7 +39,7 @@ class XServer:
 
 
 def x_server() -> XServer | None:
-    """The server, None where the windows are not shown by one."""
+    """Return the X server of the windows, or None on another platform."""
     if QGuiApplication.platformName() != "xcb":
         return None
     app = QGuiApplication.instance()

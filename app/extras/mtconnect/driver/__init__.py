@@ -1,1 +1,1 @@
-"""An MTConnect SHDR adapter. It reports the values that it is given, and accepts no commands."""
+"""MTConnect SHDR adapter, which reports values and accepts no commands."""

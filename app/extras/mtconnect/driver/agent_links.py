@@ -1,7 +1,7 @@
-"""Agents of MTConnect: the lines of SHDR that they read, what waits for each, and the socket they come in by.
+"""MTConnect agents: SHDR lines, the data waiting for each agent, and the listening socket.
 
-The lines are as the reference agent reads them: ``time|key|value|key|value``; a condition stands alone.
-Source of the rules: the C++ agent's tokenizer, token mapper and adapter. There is no escaping in them.
+The lines follow the reference agent: ``time|key|value|key|value``, with a condition on a separate line. The
+rules are from the C++ agent's tokenizer, token mapper and adapter. SHDR has no escape characters.
 """
 
 from __future__ import annotations
@@ -20,15 +20,15 @@ from core.ports import DriverError
 UNAVAILABLE = "UNAVAILABLE"
 NORMAL = "NORMAL"
 PING = b"* PING"
-LONGEST = 256  # characters of a value; a block of a program may be any length
+LONGEST = 256  # characters of a value; a program block can have any length
 _CONTROL = re.compile(r"[\x00-\x1f\x7f-\x9f\ufffe\uffff]+")
-_LONGEST_BEAT = 30 * 60 * 1000 - 1  # ms; the agent wants less than half an hour
+_LONGEST_BEAT = 30 * 60 * 1000 - 1  # ms; the agent requires less than half an hour
 
 Value = str | float | None  # None: not known
 
 
 class Active(NamedTuple):
-    """A condition that is not normal: ``level`` is WARNING or FAULT, ``code`` tells it from its like."""
+    """Active condition. ``level`` is WARNING or FAULT, and ``code`` identifies the condition."""
 
     level: str
     code: str
@@ -36,9 +36,9 @@ class Active(NamedTuple):
 
 
 class Report(NamedTuple):
-    """The machine at one instant: value of each sample and event, and what is active of each condition.
+    """State of the machine at one instant: values of samples and events, and active conditions.
 
-    A key that is missing is not known.
+    A missing key means that the value is not known.
     """
 
     values: Mapping[str, Value]
@@ -46,17 +46,20 @@ class Report(NamedTuple):
 
 
 def stamp(at: datetime) -> str:
-    """UTC as the agent reads it, in milliseconds."""
+    """Return a UTC time in the format of the agent, in milliseconds."""
     return at.isoformat(timespec="milliseconds").replace("+00:00", "Z")
 
 
 def pong(heartbeat: float) -> bytes:
-    """The answer to a PING; ``heartbeat`` in s. The agent takes whole ms from 1 to under half an hour."""
+    """Return the reply to a PING.
+
+    ``heartbeat`` is in seconds, sent as 1 ms to just under half an hour.
+    """
     return b"* PONG %d\n" % min(max(round(1000 * heartbeat), 1), _LONGEST_BEAT)
 
 
 def text_of(item: DataItem, value: Value) -> str:
-    """A value as text."""
+    """Return a value as text."""
     if value is None:
         return UNAVAILABLE
     if isinstance(value, str):
@@ -65,9 +68,9 @@ def text_of(item: DataItem, value: Value) -> str:
 
 
 def clean(text: str) -> str:
-    """Text that stays one value: what the agent would take for a separator or a quotation is replaced.
+    """Return text that the agent reads as one value, with separators and quotation marks replaced.
 
-    A quotation mark at the beginning and ``--multiline--`` anywhere would swallow what follows.
+    A leading quotation mark or ``--multiline--`` would include the following data.
     """
     text = _CONTROL.sub(" ", text).replace("|", "/").replace("--multiline--", "- multiline -")
     text = text.encode("utf-8", "replace").decode("utf-8")[:LONGEST].strip()
@@ -75,33 +78,36 @@ def clean(text: str) -> str:
 
 
 def values_line(at: str, pairs: Mapping[str, str]) -> str:
-    """Samples and events of one instant."""
+    """Return the line with samples and events of one instant."""
     return "|".join((at, *(part for pair in pairs.items() for part in pair))) + "\n"
 
 
 def active_line(at: str, key: str, active: Active) -> str:
-    """A condition becomes active, or its text changes; severity and qualifier are left empty."""
+    """Return the line for a condition that becomes active or changes its text.
+
+    The fields for severity and qualifier are empty.
+    """
     return f"{at}|{key}|{active.level}|{clean(active.code)}|||{clean(active.text)}\n"
 
 
 def cleared_line(at: str, key: str, code: str = "") -> str:
-    """One code of a condition is over; without one the condition is normal."""
+    """Return the line for the end of a condition code, or of the whole condition without a code."""
     return f"{at}|{key}|{NORMAL}|{clean(code)}|||\n"
 
 
 def unknown_line(at: str, key: str) -> str:
-    """Nobody knows how it stands with a condition."""
+    """Return the line for a condition whose state is not known."""
     return f"{at}|{key}|{UNAVAILABLE}||||\n"
 
 
-# --- What has been told, so that only what has changed is told again.
+# --- Sent values, so that only changes are sent. --------------------
 
 
 Conditions = dict[str, tuple[Active, ...] | None]  # None: not known
 
 
 class AgentsState:
-    """The state of the machine as every agent that is connected has it."""
+    """State of the machine that all connected agents have received."""
 
     def __init__(self, items: tuple[DataItem, ...]) -> None:
         self._values = {item.key: item for item in items if item.category is not Category.CONDITION}
@@ -112,14 +118,14 @@ class AgentsState:
         self._shown = dict.fromkeys(self._values, UNAVAILABLE)
 
     def whole(self, at: str) -> str:
-        """Everything, for an agent that has just come."""
+        """Return the complete state for a new agent."""
         lines = [values_line(at, self._shown)]
         for key, active in self._conditions.items():
             lines += _whole_condition(at, key, active)
         return "".join(lines)
 
     def changes(self, report: Report, at: str) -> str:
-        """What is new in a report; it counts as told from now on."""
+        """Return the changes in a report, which then count as sent."""
         new = dict(self._new_values(report))
         lines = [values_line(at, new)] if new else []
         for key, before in self._conditions.items():
@@ -142,7 +148,7 @@ class AgentsState:
 
 
 def _differs(item: DataItem, before: Value, now: Value) -> bool:
-    """A sample by more than its band; standing still and everything else at once."""
+    """Return whether a value has changed. A sample must leave its band, except from or to 0."""
     if isinstance(before, str) or isinstance(now, str) or before is None or now is None:
         return before != now
     if now == 0.0 or before == 0.0:
@@ -159,7 +165,7 @@ def _whole_condition(at: str, key: str, active: tuple[Active, ...] | None) -> li
 def _changed_condition(
     at: str, key: str, before: tuple[Active, ...] | None, now: tuple[Active, ...] | None
 ) -> list[str]:
-    """New and changed ones first, then those that are over."""
+    """Return the lines of new and changed conditions, followed by those of ended conditions."""
     if not now or before is None:
         return _whole_condition(at, key, now)
     codes = {each.code for each in now}
@@ -167,46 +173,47 @@ def _changed_condition(
     return lines + [cleared_line(at, key, each.code) for each in before if each.code not in codes]
 
 
-BEHIND = 64 * 1024  # bytes that may wait for a slow agent; at ten lines a second about a minute
-READ = 1024  # bytes taken at a time: whoever sends more waits in its own buffers
+BEHIND = 64 * 1024  # bytes that may wait for a slow agent; about one minute at ten lines per second
+READ = 1024  # bytes per read; a faster sender waits in its own buffers
 LONGEST_LINE = 1024
-# --- An agent: what waits to be sent to it, and what it sends.
+# --- Agent: data to be sent to it, and data received from it.
 
 
-_GRACE = 1.0  # s on top of two heartbeats
-DOOR = 5.0  # s in which a newcomer to a full house has to ping
+_GRACE = 1.0  # seconds in addition to two heartbeats
+DOOR = 5.0  # seconds within which an additional agent must send PING
 
 
 class LostError(Exception):
-    """The agent is gone, or is given up; the sentence says why."""
+    """Error for an agent that is gone or disconnected. The message states the reason."""
 
 
 class GoneError(LostError):
-    """It went by itself, as agents do."""
+    """Error for an agent that has closed its connection."""
 
 
 class AgentLink:
-    """On a wire that does not wait. ``heartbeat`` (s) is what the agent is told to ping at.
+    """Connection of an agent on a non-blocking socket.
 
-    ``waits_since`` (s): it came when all places were taken, and is told nothing; None: it is served.
+    ``heartbeat`` is the requested PING interval in seconds. ``waits_since`` is the time in seconds at which
+    the agent arrived while all places were taken. None means that the agent receives data.
     """
 
     def __init__(self, wire: socket.socket, heartbeat: float, waits_since: float | None = None) -> None:
         self.wire = wire
         self.waits_since = waits_since
-        self.ignored = 0  # lines that were no PING
+        self.ignored = 0  # received lines other than PING
         self._heartbeat = heartbeat
-        self._heard: float | None = None  # when it last pinged; None: it never did and need not
+        self._heard: float | None = None  # time of the last PING; None if the agent has never sent one
         self._in = b""
         self._out = bytearray()
 
     @property
     def pings(self) -> bool:
-        """Whether it is an agent by its own word."""
+        """Whether the peer has sent a PING."""
         return self._heard is not None
 
     def put(self, data: bytes) -> None:
-        """Queue it. Raises LostError for an agent that has not taken what was sent before."""
+        """Queue data. Raises LostError if too much earlier data is waiting."""
         if len(self._out) + len(data) > BEHIND:
             raise LostError(
                 Message(
@@ -217,7 +224,7 @@ class AgentLink:
         self._out += data
 
     def flush(self) -> None:
-        """Send what the wire takes now; the rest waits for the next look. Raises LostError."""
+        """Send as much queued data as the socket accepts. Raises LostError."""
         try:
             sent = self.wire.send(self._out)
         except BlockingIOError:
@@ -229,7 +236,7 @@ class AgentLink:
         del self._out[:sent]
 
     def read(self, now: float) -> None:
-        """Take what has come; a PING is answered, everything else is only counted. Raises LostError."""
+        """Read received data. A PING is answered, and other lines are counted. Raises LostError."""
         try:
             come = self.wire.recv(READ)
         except BlockingIOError:
@@ -254,26 +261,23 @@ class AgentLink:
             self.ignored += 1
 
     def mind(self, now: float) -> None:
-        """Raises LostError for an agent that pinged and has stopped: its end of the line may be long gone.
-
-        And for one that waits for a place and is none.
-        """
+        """Raise LostError if an agent has stopped sending PING, or waits for a place without sending PING."""
         if self.waits_since is not None and now - self.waits_since > DOOR:
             raise GoneError("all connections are in use, and this agent does not send PING")
         if self._heard is not None and now - self._heard > 2.0 * self._heartbeat + _GRACE:
             raise LostError(Message("no PING from the agent for {now} s", now=f"{now - self._heard:.0f}"))
 
 
-# --- The socket at which agents come in.
+# --- Listening socket. -----------------
 
 
 _BACKLOG = 4
-_SEND = 64 * 1024  # bytes that the system may keep for a slow agent: what it reads is never hours old
-_UNANSWERED = 30_000  # ms without a word of the other computer after which it counts as gone
+_SEND = 64 * 1024  # bytes that the system buffers for a slow agent, so that its data is not outdated
+_UNANSWERED = 30_000  # ms without a response after which the other computer counts as gone
 
 
 def listening(bind: str, port: int) -> socket.socket:
-    """Bound and listening. Raises DriverError with what is in the way."""
+    """Return a bound, listening socket. Raises DriverError with the cause."""
     try:
         family, kind, proto, _, address = socket.getaddrinfo(
             bind, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE
@@ -286,7 +290,7 @@ def listening(bind: str, port: int) -> socket.socket:
             cause=error.strerror,
         ) from error
     try:
-        if sys.platform != "win32":  # elsewhere this would share a port that somebody else has
+        if sys.platform != "win32":  # On Windows, this option would share a port with another program.
             wire.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         wire.bind(address)
         wire.listen(_BACKLOG)
@@ -304,7 +308,7 @@ def listening(bind: str, port: int) -> socket.socket:
 
 
 def accepted(door: socket.socket) -> socket.socket:
-    """Who is at the door, not waiting for it. Raises OSError where nobody is there any more."""
+    """Accept a connection without waiting. Raises OSError if the peer has gone."""
     wire, _ = door.accept()
     try:
         _tune(wire)
@@ -315,7 +319,7 @@ def accepted(door: socket.socket) -> socket.socket:
 
 
 def _tune(wire: socket.socket) -> None:
-    """The other end may vanish without a word, and lines go out at once."""
+    """Detect a vanished peer, and send lines without delay."""
     wire.setblocking(False)
     wire.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
     wire.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)

@@ -1,7 +1,7 @@
-"""The adapter of MTConnect, and the device model (``Devices.xml``) with the items that it tells.
+"""MTConnect adapter, and the device model (``Devices.xml``) of the reported items.
 
-Agents come in; every agent gets the whole state and then what changes. Millimetres are sent and
-``nativeUnits`` is left out, so the agent multiplies nothing.
+Each agent receives the complete state, then the changes. Values are sent in millimeters without
+``nativeUnits``, so that the agent does not convert them.
 """
 
 from __future__ import annotations
@@ -32,30 +32,33 @@ from app.extras.mtconnect.driver.mtconnect_items import Component, DataItem
 from app.extras.mtconnect.driver.mtconnect_table import MtconnectTable
 from core.ports import Clock, DriverError
 
-LOOK = 0.1  # s between two looks at the machine
+LOOK = 0.1  # seconds between two reports
 MOST = 8  # agents at a time
-_AT_DOOR = 4  # that may wait for the place of one who never pinged
-ENDS = 2.0  # s that closing waits for the thread
+_AT_DOOR = 4  # agents that can wait for a connection without PING
+ENDS = 2.0  # seconds that closing waits for the thread
 _log = logging.getLogger(__name__)
 
 
 @dataclass(slots=True)
 class Counts:
-    """Since the adapter was opened."""
+    """Counts of connections since the adapter was opened."""
 
     accepted: int = 0
-    refused: int = 0  # more than there is room for
+    refused: int = 0  # connections beyond the limit
     lost: int = 0
-    ignored: int = 0  # lines that were no PING, of agents that are gone
+    ignored: int = 0  # lines other than PING from agents that are gone
 
 
 def utc_now() -> datetime:
-    """The time of day of this computer."""
+    """Return the present time in UTC."""
     return datetime.now(UTC)
 
 
 class Adapter:
-    """``report`` is the machine now, asked ten times a second by the caller of ``turn``. Nothing waits."""
+    """Adapter that reports the machine to agents.
+
+    The owner calls ``turn`` repeatedly. ``report`` returns the present state of the machine.
+    """
 
     def __init__(
         self,
@@ -75,21 +78,21 @@ class Adapter:
 
     @property
     def address(self) -> tuple[str, int]:
-        """Where it listens, once it is open."""
+        """Address and port of the open listening socket."""
         assert self._door is not None
         host, port = self._door.getsockname()[:2]
         return host, port
 
     @property
     def agents(self) -> int:
-        """How many are served."""
+        """Number of agents that receive data."""
         return len(self._served())
 
     def _served(self) -> list[AgentLink]:
         return [link for link in self._links if link.waits_since is None]
 
     def open(self) -> None:
-        """Begin to listen. Raises DriverError where it cannot."""
+        """Start listening. Raises DriverError on failure."""
         try:
             self._door = listening(self._settings.bind, self._settings.port)
         except DriverError:
@@ -99,7 +102,7 @@ class Adapter:
         self.look()
 
     def turn(self, patience: float = 0.0) -> None:
-        """Whatever is to be done now; waits at most ``patience`` s, or until the next look, for it."""
+        """Process pending work, waiting at most ``patience`` seconds or until the next report."""
         left = max(self._next_look - self._clock.now(), 0.0)
         for key, _ in self._selector.select(min(patience, left)):
             if key.data is None:
@@ -110,7 +113,7 @@ class Adapter:
             self.look()
 
     def close(self) -> None:
-        """Hang up on all agents: they then know by themselves that nothing is known any more."""
+        """Disconnect all agents, which then know that no values are available."""
         for link in self._links.copy():
             self._forget(link)
         if self._door is not None:
@@ -120,7 +123,7 @@ class Adapter:
         self._selector.close()
 
     def look(self) -> None:
-        """See what is new at the machine, and tell it."""
+        """Send the changes of the machine state to all agents."""
         self._next_look = self._clock.now() + LOOK
         changes = self._sent.changes(self._report(), stamp(self._utc())).encode("utf-8")
         for link in self._links.copy():
@@ -139,7 +142,7 @@ class Adapter:
         assert self._door is not None
         try:
             wire = accepted(self._door)
-        except OSError:  # gone before it was let in, or no more files: the next turn tries again
+        except OSError:  # the peer has gone or no file is free; the next turn tries again
             return
         if len(self._links) >= MOST + _AT_DOOR:
             self.counts.refused += 1
@@ -158,7 +161,7 @@ class Adapter:
         self._tell(link, self._sent.whole(stamp(self._utc())).encode("utf-8"))
 
     def _make_room(self, link: AgentLink) -> None:
-        """An agent at the door: whoever came first and never pinged gives way to it."""
+        """Serve a waiting agent. The first connection that never sent PING is closed if necessary."""
         served = self._served()
         silent = next((other for other in served if not other.pings), None)
         if len(served) >= MOST and silent is None:
@@ -194,14 +197,17 @@ class Adapter:
         link.wire.close()
 
 
-# --- The thread in which the adapter lives.
+# --- Thread of the adapter. ---------------
 
 
-_BREATH = 0.005  # s between two turns: an agent that floods takes no more than that of this computer
+_BREATH = 0.005  # seconds between two turns, which limits the load by a flooding agent
 
 
 class AdapterThread:
-    """Turns the adapter until it is closed. Should it fail, agents are hung up on and so know it."""
+    """Thread that runs the adapter until it is closed.
+
+    After a failure, all agents are disconnected.
+    """
 
     def __init__(self, adapter: Adapter) -> None:
         self._adapter = adapter
@@ -210,16 +216,16 @@ class AdapterThread:
 
     @property
     def alive(self) -> bool:
-        """Whether it still tells."""
+        """Whether the thread is running."""
         return self._thread.is_alive()
 
     def start(self) -> None:
-        """Open the port, then begin. Raises DriverError where it cannot be opened; no thread is left then."""
+        """Open the port, then start the thread. Raises DriverError without leaving a thread."""
         self._adapter.open()
         self._thread.start()
 
     def close(self) -> None:
-        """Hang up, and end the thread; within a tenth of a second."""
+        """Disconnect the agents and stop the thread within ``ENDS`` seconds."""
         self._closing.set()
         if self._thread.is_alive():
             self._thread.join(ENDS)
@@ -228,14 +234,14 @@ class AdapterThread:
         try:
             while not self._closing.wait(_BREATH):
                 self._adapter.turn(LOOK)
-            self._adapter.look()  # how it ended is worth knowing too
+            self._adapter.look()  # reports the final state
         finally:
             if not self._closing.is_set():
                 _log.error("there is no shop-floor data any more: a mistake of the control", exc_info=True)
             self._adapter.close()
 
 
-# --- The device model for the reference agent.
+# --- Device model for the reference agent. ---
 
 
 VERSION = "2.2"
@@ -246,9 +252,9 @@ _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_.-]*")
 
 
 def devices_xml(device: Component, described: str, at: datetime) -> str:
-    """The whole document. Raises DriverError for a device whose name no agent would take.
+    """Return the XML document. Raises DriverError if the device name is not valid for agents.
 
-    ``described`` is for people. The uuid comes from the device's name, so it is the same at every call.
+    ``described`` is a text for people. The uuid depends only on the name of the device.
     """
     if not _NAME.fullmatch(device.name):
         raise DriverError(
@@ -267,7 +273,7 @@ def devices_xml(device: Component, described: str, at: datetime) -> str:
 
 
 def _header(at: datetime) -> Element:
-    """An agent fills it with its own figures; the schema wants it to be there."""
+    """Return the header element that the schema requires. An agent replaces its values."""
     return Element(
         "Header",
         {
@@ -284,9 +290,9 @@ def _header(at: datetime) -> Element:
 
 
 def _element(component: Component, device: str, parent: Element) -> Element:
-    """A component with its items, then its parts, as the schema orders them.
+    """Return the element of a component with its items and parts, in the order of the schema.
 
-    Identifiers begin with the device's name: one agent may have many machines, and no two may be alike.
+    Identifiers begin with the name of the device, so that they are unique in an agent with several devices.
     """
     named = {"id": f"{device}_{component.kind}_{component.name}", "name": component.name}
     element = SubElement(parent, component.kind, named)

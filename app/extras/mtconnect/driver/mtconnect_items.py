@@ -1,4 +1,4 @@
-"""The data items of a machine as MTConnect names them, in the components they belong to."""
+"""MTConnect data items of a machine, grouped into components."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from enum import StrEnum
 
 
 class Category(StrEnum):
-    """What kind of value an item has."""
+    """Category of a data item."""
 
     SAMPLE = "SAMPLE"
     EVENT = "EVENT"
@@ -17,9 +17,9 @@ class Category(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class DataItem:
-    """``key`` is the name by which a line refers to it; units are those that are sent.
+    """Data item. ``key`` is its name in SHDR lines, and ``units`` are the units of the sent values.
 
-    Of a sample: ``digits`` behind the point; a change within ``band`` + ``share`` of the value is not told.
+    Samples have ``digits`` decimals. A change within ``band`` + ``share`` of the value is not sent.
     """
 
     key: str
@@ -27,7 +27,7 @@ class DataItem:
     type: str
     sub_type: str = ""
     units: str = ""
-    frame: str = ""  # the coordinate system of a position
+    frame: str = ""  # coordinate system of a position
     digits: int = 0
     band: float = 0.0
     share: float = 0.0
@@ -35,7 +35,7 @@ class DataItem:
 
 @dataclass(frozen=True, slots=True)
 class Component:
-    """A part of the machine with its items and its own parts."""
+    """Component of the machine with its items and sub-components."""
 
     kind: str
     name: str
@@ -43,7 +43,7 @@ class Component:
     parts: tuple[Component, ...] = ()
 
     def all_items(self) -> Iterator[DataItem]:
-        """Its own and those of all its parts."""
+        """Yield the items of the component and of all its parts."""
         yield from self.items
         for part in self.parts:
             yield from part.all_items()
@@ -51,9 +51,10 @@ class Component:
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """What of a machine decides which items there are.
+    """Layout of the machine, which determines its data items.
 
-    ``spindle`` names the component; with ``spindle_turns_to`` it is an axis too and has an angle.
+    ``spindle`` is the name of the spindle component. With ``spindle_turns_to``, the spindle is also a rotary
+    axis with an angle.
     """
 
     linear: tuple[str, ...]
@@ -64,7 +65,7 @@ class Layout:
 
 
 def machine_items(layout: Layout, name: str) -> Component:
-    """The device with everything that is told of it; units: mm, degrees, mm/s, rpm, per cent."""
+    """Return the device with all items. Units are mm, degrees, mm/s, rpm and percent."""
     return Component(
         "Device",
         name,
@@ -104,7 +105,7 @@ def _own_drive(axis: str) -> tuple[DataItem, ...]:
 
 
 def _linear(layout: Layout) -> Iterator[Component]:
-    """A standing slide is read one or two counts to and fro: 3 um are no movement."""
+    """Yield the linear axes. A band of 3 µm suppresses encoder noise at standstill."""
     for axis in layout.linear:
         at = DataItem(
             f"{axis}abs",

@@ -1,4 +1,4 @@
-"""[mtconnect] of the machine file: where agents find the adapter."""
+"""Table [mtconnect] of the machine file: address of the adapter."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from core.table_schema import Driver, DriverTable
 
 @key_table
 class MtconnectTable:
-    """Where agents find the adapter, how often they shall ping (``heartbeat``, s), and the device's name."""
+    """Address of the adapter, the PING interval ``heartbeat`` in seconds, and the name of the device."""
 
     enabled: bool = file_key(default=False, meaning="true: TurnDesk serves an MTConnect adapter.")
     bind: str = file_key(

@@ -1,1 +1,4 @@
-"""A pendant, dial or gamepad on USB, read by the input layer of the kernel (evdev). It starts nothing."""
+"""Pendant, dial or gamepad on USB, read through the kernel's input layer (evdev).
+
+It cannot start motion.
+"""

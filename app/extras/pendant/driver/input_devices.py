@@ -1,6 +1,6 @@
-"""Input devices of Linux (evdev): found by name or USB number, opened for us alone, their events read.
+"""Linux input devices (evdev): found by name or USB number, opened exclusively, and read.
 
-Events are as the kernel writes them: ``struct input_event``, its packets, and what gets lost.
+Events have the format of the kernel: ``struct input_event`` in packets, with a mark for lost events.
 """
 
 from __future__ import annotations
@@ -28,13 +28,13 @@ from app.extras.pendant.driver.pendant_table import (
 from core.message import Message
 from core.ports import DriverError
 
-# Two C longs of time, then type, code and value: 24 bytes where a long has 8. It is part of the kernel's
-# promise to programs (Documentation/input/event-codes.rst), and does not change.
+# Two C longs of time, then type, code and value: 24 bytes if a long has 8 bytes. The format is part of the
+# kernel's stable interface (Documentation/input/event-codes.rst).
 EVENT = struct.Struct("@llHHi")
 
 
 class InputEvent(NamedTuple):
-    """``t`` is when the kernel had it, seconds of the clock that the device was told to use."""
+    """Input event. ``t`` is the kernel's time stamp in seconds of the selected clock."""
 
     t: float
     kind: int
@@ -43,14 +43,20 @@ class InputEvent(NamedTuple):
 
 
 class Packet(NamedTuple):
-    """What changed at once; ``lost``: events before it were thrown away, so nothing in it can be counted."""
+    """Simultaneous changes.
+
+    ``lost`` means that earlier events were lost, so counts are not reliable.
+    """
 
     events: tuple[InputEvent, ...]
     lost: bool = False
 
 
 class Packets:
-    """Bytes in, whole packets out. From SYN_DROPPED to the next SYN_REPORT everything is worth nothing."""
+    """Parser of bytes into complete packets.
+
+    Data from SYN_DROPPED to the next SYN_REPORT is discarded.
+    """
 
     def __init__(self) -> None:
         self._bytes = b""
@@ -58,7 +64,7 @@ class Packets:
         self._lost = False
 
     def feed(self, data: bytes) -> Iterator[Packet]:
-        """Every packet that is whole now."""
+        """Yield every packet that is now complete."""
         self._bytes += data
         whole = len(self._bytes) // EVENT.size * EVENT.size
         read, self._bytes = self._bytes[:whole], self._bytes[whole:]
@@ -75,7 +81,7 @@ class Packets:
 
 
 class AxisRange(NamedTuple):
-    """What an axis tells: from ``low`` to ``high``, ``value`` now."""
+    """Range of an axis from ``low`` to ``high``, and its present ``value``."""
 
     low: int
     high: int
@@ -83,7 +89,7 @@ class AxisRange(NamedTuple):
 
 
 NODES, SYSFS = Path("/dev/input"), Path("/sys/class/input")
-# --- Devices: found, and opened for us alone.
+# --- Devices. -------------------------------
 
 
 _BLUETOOTH = "0005"
@@ -92,20 +98,20 @@ RULES = "/etc/udev/rules.d/70-turndesk-pendant.rules"
 
 
 class EventSource(Protocol):
-    """One open device: bytes of ``struct input_event``, and what is pressed now."""
+    """Open device that provides bytes of ``struct input_event`` and the present state."""
 
     def read(self) -> bytes:
-        """What has come since, nothing where nothing has. Raises OSError once the device is gone."""
+        """Return the bytes since the last call, possibly none. Raises OSError once the device is gone."""
         ...
 
     def fileno(self) -> int: ...
 
     def keys(self) -> frozenset[int]:
-        """Every key that is down. Raises OSError."""
+        """Return the codes of all pressed keys. Raises OSError."""
         ...
 
     def ranges(self) -> Mapping[int, AxisRange]:
-        """Its axes and where they stand. Raises OSError."""
+        """Return the ranges and positions of its axes. Raises OSError."""
         ...
 
     def close(self) -> None: ...
@@ -113,7 +119,7 @@ class EventSource(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class DeviceEntry:
-    """A device as /sys tells it. ``stem``: nodes of one device have the same."""
+    """Device as listed in /sys. All nodes of one device have the same ``stem``."""
 
     node: str
     name: str
@@ -121,14 +127,14 @@ class DeviceEntry:
     serial: str
     stem: str
     bluetooth: bool
-    able: frozenset[tuple[int, int]]  # kind and code of whatever it can tell
+    able: frozenset[tuple[int, int]]  # kind and code of all possible events
 
 
 def entries(sysfs: Path = SYSFS) -> list[DeviceEntry]:
-    """Every input device that is plugged in."""
+    """Return all connected input devices."""
     found = []
     for path in sorted(sysfs.glob("event*")):
-        with contextlib.suppress(OSError):  # pulled out while we look
+        with contextlib.suppress(OSError):  # The device was unplugged in the meantime.
             found.append(_entry(path))
     return found
 
@@ -160,7 +166,10 @@ def _entry(path: Path) -> DeviceEntry:
 
 
 def _bits(words: str) -> Iterable[int]:
-    """The kernel writes long words in hexadecimal, the highest first."""
+    """Yield the numbers of the set bits.
+
+    The kernel writes hexadecimal longs, the highest first.
+    """
     size = 8 * struct.calcsize("@l")
     for place, word in enumerate(reversed(words.split())):
         value = int(word, 16)
@@ -170,7 +179,10 @@ def _bits(words: str) -> Iterable[int]:
 def chosen(
     device: str, serial: str, wanted: Mapping[str, Control], found: Sequence[DeviceEntry]
 ) -> tuple[DeviceEntry, ...]:
-    """The nodes of the one device that is meant and that has all that is wanted of it. Raises DriverError."""
+    """Return the nodes of the single device that matches and has all wanted controls.
+
+    Raises DriverError.
+    """
     meant = [each for each in found if device.lower() in {each.name.lower(), each.numbers}]
     meant = [each for each in meant if not serial or each.serial == serial]
     if not meant:
@@ -221,11 +233,11 @@ def _apart(meant: Sequence[DeviceEntry]) -> str:
     )
 
 
-# --- the kernel's own calls -------------------------------------------------------------------------------
+# --- kernel calls -----------------------------------------------------------------------------------------
 
 
 def _request(direction: int, number: int, size: int) -> int:
-    """An ioctl of input devices, as the kernel's macro _IOC puts it together."""
+    """Return the number of an ioctl of input devices, as the kernel macro _IOC does."""
     return direction << 30 | size << 16 | ord("E") << 8 | number
 
 
@@ -236,16 +248,17 @@ _CHUNK = 64 * 24
 
 
 def _ioctl(device: int, request: int, value: int | bytes | bytearray | array.array[int]) -> None:
-    """One request to a device; only Linux has such devices, and the library for it."""
+    """Send one request to a device. ``fcntl`` exists on Linux only."""
     import fcntl
 
     fcntl.ioctl(device, request, value)
 
 
 class KernelDevice:
-    """``EventSource`` on a device node, read by us alone: what it types must not reach the screen too.
+    """Implementation of ``EventSource`` on a device node.
 
-    Times are of the monotonic clock. Raises DriverError where it is not to be had.
+    The node is opened exclusively, so that its keys do not reach the screen. Time stamps are those of the
+    monotonic clock. Raises DriverError if the device cannot be opened.
     """
 
     def __init__(self, entry: DeviceEntry, folder: Path = NODES) -> None:
@@ -275,24 +288,24 @@ class KernelDevice:
             ) from error
 
     def fileno(self) -> int:
-        """For select."""
+        """Return the file descriptor for select."""
         return self._fd
 
     def read(self) -> bytes:
-        """What has come since."""
+        """Return the bytes since the last call."""
         try:
             return os.read(self._fd, _CHUNK)
         except BlockingIOError:
             return b""
 
     def keys(self) -> frozenset[int]:
-        """EVIOCGKEY: a bit for each key that is down."""
+        """Return the pressed keys (EVIOCGKEY)."""
         bits = bytearray(KEYS // 8)
         _ioctl(self._fd, _request(2, 0x18, len(bits)), bits)
         return frozenset(i for i in range(KEYS) if bits[i // 8] >> (i % 8) & 1)
 
     def ranges(self) -> Mapping[int, AxisRange]:
-        """EVIOCGABS of every axis that it has."""
+        """Return the range of every axis (EVIOCGABS)."""
         told = {}
         for code in range(AXES):
             if (ABS, code) in self._able:
@@ -303,7 +316,7 @@ class KernelDevice:
         return told
 
     def close(self) -> None:
-        """Let it go: it types for everybody again."""
+        """Close the device, which ends its exclusive use."""
         with contextlib.suppress(OSError):
             os.close(self._fd)
 

@@ -1,8 +1,8 @@
-"""The pendant beside the machine's own station: its thread, what its events mean, and ``core.ports``.
+"""Pendant in addition to the operator station: its thread, the meaning of its events, and ``core.ports``.
 
-The thread finds the device, reads it, and finds it again when it was unplugged. The pendant adds stops, holds
-and counts. A press that comes late moves nothing: it has to be let go and pressed again. A release always
-counts.
+The thread finds the device, reads it, and finds it again after it was unplugged. The pendant adds stops, feed
+hold and handwheel counts. A late press has no effect until the button is released and pressed again. A
+release always counts.
 """
 
 from __future__ import annotations
@@ -18,25 +18,30 @@ from app.extras.pendant.driver.input_devices import AxisRange, EventSource, Inpu
 from app.extras.pendant.driver.pendant_table import ABS, KEY, REL, Control
 from core.ports import DigitalIO, DriverError, Station, StationState
 
-_LISTEN = 0.05  # s that one look at the device lasts
-_AGAIN = 0.5  # s between two looks for one that is away
-_SILENT = 0.3  # s without a look of its thread after which nothing counts as held
-ENDS = 1.0  # s that closing waits for the thread
+_LISTEN = 0.05  # seconds of one read of the device
+_AGAIN = 0.5  # seconds between two searches for a missing device
+_SILENT = 0.3  # seconds without a read by the thread after which no button counts as pressed
+ENDS = 1.0  # seconds that closing waits for the thread
 
 
 @dataclass(frozen=True, slots=True)
 class PendantState:
-    """``inputs`` by the names of the machine file; ``away`` says why it is not read."""
+    """State of the pendant.
+
+    ``inputs`` have the names of the machine file, ``away`` is why it is not read.
+    """
 
     inputs: Mapping[str, bool]
     counts: int
     away: str
-    broke: float  # when it was last lost, or had lost something
+    broke: float  # time at which the device or events were last lost
 
 
 class Pendant:
-    """``find`` opens the nodes of the device and raises DriverError where it cannot; ``now`` is the clock of
-    their events. ``run`` is for a thread of its own, ``look`` for a test that has none.
+    """Pendant. ``find`` opens the nodes of the device, and ``now`` is the clock of their events.
+
+    ``find`` raises DriverError if the device cannot be opened. ``run`` needs a separate thread, and ``look``
+    serves a test without a thread.
     """
 
     def __init__(
@@ -50,7 +55,7 @@ class Pendant:
         place: bool = False,
         ring: Callable[[], None] = lambda: None,
     ) -> None:
-        """``ring`` is called when something has changed."""
+        """Create the pendant. ``ring`` is called after each change."""
         self._ring = ring
         self._buttons = PendantButtons(bound, stops, wheel, place)
         self._find, self.now = find, now
@@ -63,7 +68,7 @@ class Pendant:
         self._thread: threading.Thread | None = None
 
     def state(self) -> PendantState:
-        """As it is now; from any thread."""
+        """Return the present state; callable from any thread."""
         with self._lock:
             buttons = self._buttons
             away = self._away
@@ -72,16 +77,16 @@ class Pendant:
             held = {name: not away and name in buttons.down for name in buttons.bound}
             return PendantState(held, buttons.counts, away, self._broke)
 
-    # --- its thread -----------------------------------------------------------------------------------------
+    # --- thread ---------------------------------------------------------------------------------------------
 
     def start(self) -> None:
-        """Look for it once, so that whoever asks next is told; then go on in a thread."""
+        """Search for the device once, so that its state is known, then continue in a thread."""
         self.look(0.0)
         self._thread = threading.Thread(target=self._run, name="pendant", daemon=True)
         self._thread.start()
 
     def close(self) -> None:
-        """Let the device go."""
+        """Stop the thread and close the device."""
         self._ending.set()
         if self._thread is not None:
             self._thread.join(ENDS)
@@ -94,7 +99,7 @@ class Pendant:
                 self._ending.wait(_AGAIN)
 
     def look(self, seconds: float) -> None:
-        """Take what comes within so long; where the device is away, look for it."""
+        """Process events for ``seconds``, or search for a missing device."""
         self._looked = self.now()
         if not self._nodes:
             self._open()
@@ -150,7 +155,7 @@ class Pendant:
 
 
 def _pressed(nodes: Sequence[EventSource]) -> tuple[set[int], dict[int, AxisRange]]:
-    """What is down on all of them now. Raises OSError."""
+    """Return the pressed keys and axis ranges of all nodes. Raises OSError."""
     keys: set[int] = set()
     ranges: dict[int, AxisRange] = {}
     for node in nodes:
@@ -159,17 +164,18 @@ def _pressed(nodes: Sequence[EventSource]) -> tuple[set[int], dict[int, AxisRang
     return keys, ranges
 
 
-# --- The ports.
+# --- Ports. ---
 
 
-_TOLD = 0.3  # s for which something that happened once is told: a control that looks every tick has seen it
+_TOLD = 0.3  # seconds for which a single event is reported, so that a control that polls each tick detects it
 LOST = "pendant events were lost; the handwheel may have turned farther than TurnDesk counted"
 
 
 class PendantStation:
-    """``core.ports.Station``. Where the pendant carries a stop it must be there: no cycle runs without it.
+    """Implementation of ``core.ports.Station`` with the pendant added.
 
-    Where it does not, pulling it out holds once. Nothing here can start anything.
+    A pendant with a stop must be present, otherwise no cycle runs. Without a stop, unplugging it causes one
+    feed hold. The pendant cannot start any motion.
     """
 
     def __init__(self, station: Station, pendant: Pendant, *, stops: bool, wheel: bool) -> None:
@@ -178,11 +184,11 @@ class PendantStation:
 
     @property
     def away(self) -> str:
-        """Why the pendant is not read; empty when it is."""
+        """Reason why TurnDesk does not read the pendant, or an empty string."""
         return self._pendant.state().away
 
     def snapshot(self) -> StationState:
-        """The station now."""
+        """Return the state of the station, including the pendant."""
         state, pendant = self._station.snapshot(), self._pendant.state()
         just = self._pendant.now() - pendant.broke < _TOLD
         lost = pendant.away if pendant.away and (self._stops or just) else ""
@@ -200,43 +206,43 @@ class PendantStation:
 
 
 class PendantIO:
-    """``core.ports.DigitalIO``: the buttons of the pendant are inputs as any other."""
+    """Implementation of ``core.ports.DigitalIO`` with the pendant's buttons as inputs."""
 
     def __init__(self, io: DigitalIO, pendant: Pendant) -> None:
         self._io, self._pendant = io, pendant
 
     def inputs(self) -> Mapping[str, bool]:
-        """Those of the machine and those of the pendant."""
+        """Return the inputs of the machine and of the pendant."""
         return {**self._io.inputs(), **self._pendant.state().inputs}
 
     def outputs(self) -> Mapping[str, bool]:
-        """A pendant has none."""
+        """Return the outputs of the machine, because a pendant has no outputs."""
         return self._io.outputs()
 
     def write(self, name: str, on: bool) -> None:
-        """Raises DriverError as the machine's."""
+        """Write an output of the machine. Raises DriverError."""
         self._io.write(name, on)
 
     def safe(self) -> None:
-        """Every output to its safe state."""
+        """Set every output to its safe state."""
         self._io.safe()
 
 
-LATE = 0.1  # s from the kernel to here; what is older was done to a machine that looked different
-# --- What its events mean: buttons that are held, clicks that are counted, and what must not count.
+LATE = 0.1  # seconds from the kernel to this code; older presses belong to an earlier state of the machine
+# --- Meaning of events: pressed buttons, counted detents, and ignored events. ---------------------
 
 
-_PRESSED, _FREE = 0.6, 0.3  # of the way to the end of an axis: down from the first on, up at the second
-_PLACES = 256  # of a dial that tells its place; the kernel swallows its 0: a click that comes with the next
-_REPEAT = 2  # value of a key that repeats by itself
+_PRESSED, _FREE = 0.6, 0.3  # ratios to the end of an axis: pressed from the first, released below the second
+_PLACES = 256  # positions of a dial; the kernel omits position 0, so that detent is counted with the next one
+_REPEAT = 2  # value of an automatic key repeat
 
 
 @dataclass(slots=True)
 class PendantButtons:
-    """``bound``: what each name of the machine file is at; ``stops`` are names that count however late.
+    """Buttons and handwheel of the pendant. ``bound`` maps names of the machine file to controls.
 
-    ``down`` are names that are held, ``counts`` what the wheel has counted; ``place``: it tells where it
-    stands instead of steps.
+    ``stops`` are the names that count even if late. ``down`` are the names of pressed buttons, and ``counts``
+    is the handwheel count. ``place`` means that the wheel reports positions instead of steps.
     """
 
     bound: Mapping[str, Control]
@@ -245,12 +251,15 @@ class PendantButtons:
     place: bool = False
     counts: int = 0
     down: set[str] = field(default_factory=set)
-    stale: set[str] = field(default_factory=set)  # down, and to be let go before they count
+    stale: set[str] = field(default_factory=set)  # pressed, but without effect until they are released
     ranges: dict[int, AxisRange] = field(default_factory=dict)
-    _at: int | None = None  # of a wheel that tells its place
+    _at: int | None = None  # position of a wheel that reports positions
 
     def begin(self, keys: Iterable[int], ranges: Mapping[int, AxisRange]) -> None:
-        """The device is there, or tells anew what is pressed: nothing of that was meant for us, but stops."""
+        """Start with the present state of the device.
+
+        Pressed buttons other than stops have no effect.
+        """
         self.ranges = dict(ranges)
         pressed, self._at = set(keys), None
         held = {name for name, control in self.bound.items() if self._held(control, pressed)}
@@ -260,13 +269,13 @@ class PendantButtons:
             self._at = self.ranges[self.wheel.code].value
 
     def gone(self) -> None:
-        """The device is gone: nothing is held, and where its wheel stands is not known."""
+        """Release all buttons and forget the position of the wheel, because the device is gone."""
         self.down.clear()
         self.stale.clear()
         self._at = None
 
     def take(self, packet: Packet, now: float) -> None:
-        """What has come; ``now`` is by the clock of the events."""
+        """Apply the events of a packet. ``now`` is on the clock of the events."""
         for event in packet.events:
             late = now - event.t > LATE
             if self.wheel is not None and (event.kind, event.code) == self.wheel[:2]:
@@ -316,7 +325,7 @@ class PendantButtons:
         return self._share(control) > _FREE
 
     def _share(self, control: Control) -> float:
-        """How far an axis is pushed this way, 0…1."""
+        """Return the deflection of an axis in the direction of a control, 0 to 1."""
         reach = self.ranges.get(control.code)
         if reach is None or reach.high <= reach.low:
             return 0.0

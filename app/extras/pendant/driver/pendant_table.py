@@ -1,7 +1,7 @@
-"""[pendant] of the machine file: which device on USB it is; its buttons are inputs at ``pendant.…``.
+"""Table [pendant] of the machine file: the USB device. Its buttons are inputs at ``pendant.…``.
 
-Names and numbers of keys, buttons, wheels and axes are the kernel's (linux/input-event-codes.h). A key that
-has no name here is written by its number: ``KEY_0x1d3``.
+Names and numbers of keys, buttons, wheels and axes are those of the kernel (linux/input-event-codes.h). A key
+without a name in this module is written by its number: ``KEY_0x1d3``.
 """
 
 from __future__ import annotations
@@ -16,11 +16,14 @@ from core.table_schema import Driver, DriverTable, FileReading, Finding, written
 
 SYN, KEY, REL, ABS = 0x00, 0x01, 0x02, 0x03
 SYN_REPORT, SYN_DROPPED = 0, 3
-KEYS, RELS, AXES = 0x300, 0x10, 0x40  # so many there are of each
+KEYS, RELS, AXES = 0x300, 0x10, 0x40  # number of codes of each kind
 
 
 class Control(NamedTuple):
-    """A key, a wheel, or one end of an axis. ``end``: -1 or +1 of an axis that is used as two buttons."""
+    """Key, wheel or one end of an axis.
+
+    ``end`` is -1 or +1 for an axis that is used as two buttons.
+    """
 
     kind: int
     code: int
@@ -53,7 +56,7 @@ def _buttons() -> Iterator[tuple[str, int]]:
     yield from _row(0x110, "LEFT RIGHT MIDDLE SIDE EXTRA FORWARD BACK TASK", button)
     yield from _row(0x120, "TRIGGER THUMB THUMB2 TOP TOP2 PINKIE BASE BASE2 BASE3 BASE4 BASE5 BASE6", button)
     yield from _row(0x130, "SOUTH EAST C NORTH WEST Z TL TR TL2 TR2 SELECT START MODE THUMBL THUMBR", button)
-    yield from _row(0x130, "A B", button)  # the same as SOUTH and EAST
+    yield from _row(0x130, "A B", button)  # same codes as SOUTH and EAST
     yield from _row(0x133, "X Y", button)
     yield from _row(0x150, "GEAR_DOWN GEAR_UP", button)
     yield from _row(0x220, "DPAD_UP DPAD_DOWN DPAD_LEFT DPAD_RIGHT", button)
@@ -73,7 +76,7 @@ _BY_NUMBER = re.compile(r"KEY_0x([0-9a-fA-F]{1,3})")
 
 
 def button_of(name: str) -> Control | None:
-    """The button of a name: ``BTN_A``, ``KEY_F13``, or one end of an axis, ``ABS_HAT0X-``; None: no such."""
+    """Return the control for a button name such as ``BTN_A``, ``KEY_F13`` or ``ABS_HAT0X-``, or None."""
     if name in _KEYS:
         return Control(KEY, _KEYS[name])
     if (found := _BY_NUMBER.fullmatch(name)) and int(found[1], 16) < KEYS:
@@ -84,15 +87,18 @@ def button_of(name: str) -> Control | None:
 
 
 def wheel_of(name: str) -> Control | None:
-    """What counts: ``REL_DIAL``, ``REL_WHEEL``, or ``ABS_WHEEL``, which tells its place; None: no such."""
+    """Return the control for a wheel name such as ``REL_DIAL``, or None.
+
+    ``ABS_WHEEL`` reports positions instead of steps.
+    """
     if name in _RELS:
         return Control(REL, _RELS[name])
     return Control(ABS, _AXES[name]) if name in _AXES else None
 
 
-AT_PENDANT = "pendant."  # begins the address of a button or wheel
+AT_PENDANT = "pendant."  # prefix of the address of a button or wheel
 _PATH, _WHEEL = "pendant", "io.analog.handwheel"
-STOPS = ("hold", "start_inhibit")  # what must not be believed to be there when it is gone
+STOPS = ("hold", "start_inhibit")  # inputs that must not count as present when the device is gone
 _MAY = re.compile(r"hold|start_inhibit|wheel_\w+|jog_rapid|jog_[xyzabc]_(plus|minus)")
 _STARTS = re.compile(r"(cycle_?)?start.*|.*palms?.*|spindle_auto", re.IGNORECASE)
 NO_START = (
@@ -103,9 +109,10 @@ NO_START = (
 
 @key_table
 class PendantModel:
-    """``device`` is its name or ``vendor:product`` in hexadecimal; ``serial`` tells two alike apart.
+    """Settings of the pendant.
 
-    ``counts``: its wheel tells steps, as REL says, or its place (0…255), as a Shuttle does.
+    ``device`` is its name or hexadecimal ``vendor:product``, and ``serial`` distinguishes identical devices.
+    ``counts`` states whether the wheel reports steps (REL) or its position from 0 to 255, as a Shuttle does.
     """
 
     device: str = file_key(
@@ -146,7 +153,7 @@ def _rules(file: FileReading) -> Iterator[Finding]:
 
 
 def _pendant_inputs(file: FileReading) -> Mapping[str, str]:
-    """Return the inputs and outputs that are at the pendant, by path."""
+    """Return the inputs and outputs of the pendant, by path."""
     return {path: at for path, at in file.elsewhere.items() if at.startswith(AT_PENDANT)}
 
 
@@ -172,7 +179,7 @@ def _wrong_button(path: str, terminal: str) -> str:
 
 
 def _taken(buttons: Mapping[str, str]) -> Iterator[Finding]:
-    """One button means one thing: whoever presses it does not mean two."""
+    """Yield a finding for each button that has more than one function."""
     taken: dict[object, str] = {}
     for path, terminal in buttons.items():
         code = button_of(terminal.removeprefix(AT_PENDANT))
@@ -183,7 +190,7 @@ def _taken(buttons: Mapping[str, str]) -> Iterator[Finding]:
 
 
 def _wheel(file: FileReading) -> str:
-    """Where the handwheel is at the pendant; empty where it is not."""
+    """Return the address of the handwheel on the pendant, or an empty string."""
     path = f"{_WHEEL}.at"
     at = file.values.text(path) if file.values.has(path) else ""
     return at if at.startswith(AT_PENDANT) else ""
