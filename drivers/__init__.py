@@ -1,1 +1,1 @@
-"""Drivers: one folder for each kind of machine, all behind ``core.ports``."""
+"""Drivers, with one folder per kind of machine, all of which implement ``core.ports``."""

@@ -1,6 +1,6 @@
-"""Operator stations: one without wires, and one whose buttons are inputs by the names of the machine file.
+"""Operator stations: a simulated or on-screen one, and one whose buttons are inputs of the machine file.
 
-The one without wires has palms behind a two-hand relay, feed hold, E-stop, switch and pots.
+The simulated station has palm buttons with a two-hand relay, feed hold, E-stop, a switch and pots.
 """
 
 from __future__ import annotations
@@ -17,9 +17,10 @@ from core.ports import Clock, Station, StationState
 
 
 class TwoHandRelay:
-    """Both palms within ``window`` seconds, and both let go before it works again (anti-tie-down).
+    """Two-hand relay: both palm buttons must be pressed within ``window`` seconds.
 
-    On a real machine this is a safety relay; the control sees its one output and never the palms.
+    Both must be released before the next start (anti-tie-down). On a real machine, this is a safety relay,
+    and the control reads only its output.
     """
 
     def __init__(self, window: float, pulse: float) -> None:
@@ -31,7 +32,7 @@ class TwoHandRelay:
         self._on_until = -1.0
 
     def press(self, palm: str, now: float) -> None:
-        """A palm goes down."""
+        """Press a palm button at time ``now``."""
         if self._down[palm] is not None:
             return
         self._down[palm] = now
@@ -43,7 +44,7 @@ class TwoHandRelay:
         self._armed = False
 
     def release(self, palm: str, now: float) -> None:
-        """A palm comes up: the output falls, but not before a pulse that a scan can see."""
+        """Release a palm button; the output turns off, but not before the minimum pulse has passed."""
         self._down[palm] = None
         if self._on_until > now:
             self._on_until = max(now, self._on_from + self._pulse)
@@ -51,16 +52,16 @@ class TwoHandRelay:
             self._armed = True
 
     def output(self, now: float) -> bool:
-        """The relay's contact."""
+        """Return whether the output is on."""
         return self._on_from <= now < self._on_until
 
     def falls(self, now: float) -> bool:
-        """Whether its output is going to fall by itself."""
+        """Return whether the output will turn off automatically."""
         return now < self._on_until < float("inf")
 
 
 class Panel:
-    """Everything on the station, as the operator's hands leave it."""
+    """State of all controls of a simulated operator station."""
 
     def __init__(self, window: float, pulse: float, seed: int) -> None:
         self.relay = TwoHandRelay(window, pulse)
@@ -69,7 +70,7 @@ class Panel:
         self.spindle_pot = 1.0
         self.feed_pot = 1.0
         self.handwheel = 0  # counts
-        self.noise = 0.0  # half width of what a bad wiper adds to the pots
+        self.noise = 0.0  # Half width of the noise of the pots.
         self._pulse = pulse
         self._hold_down = False
         self._hold_until = -1.0
@@ -78,25 +79,25 @@ class Panel:
         self._random = random.Random(seed)
 
     def hold(self, down: bool, now: float) -> None:
-        """Feed hold button; seen for one pulse at least."""
+        """Press or release the feed hold button, which is reported for at least one pulse."""
         self._hold_down = down
         if down:
             self._hold_until = now + self._pulse
 
     def settled(self, now: float) -> bool:
-        """Whether it tells the same until somebody's hand is on it again."""
+        """Return whether the reported state stays the same until the operator acts."""
         pulse = now < self._hold_until or self.relay.falls(now)
         return self._silent is None and not self.noise and not pulse
 
     def silence(self, on: bool, now: float) -> None:
-        """The station's cable is off, or on again."""
+        """Disconnect or connect the cable of the station."""
         self._silent = self.state(now) if on else None
         self._silent_since = now
 
     def state(self, now: float) -> StationState:
-        """What the control reads; when silent, the last that came, with its age."""
+        """Return the state that the control reads; a disconnected station has its last state with its age."""
         if self._silent is not None:
-            estop = self._silent.estop or self.estop  # the E-stop has a wire of its own
+            estop = self._silent.estop or self.estop  # The E-stop has a separate wire.
             age = now - self._silent_since
             return dataclasses.replace(self._silent, estop=estop, start=False, age=age)
         return StationState(
@@ -115,68 +116,65 @@ class Panel:
         return min(max(value + self._random.uniform(-self.noise, self.noise), 0.0), top)
 
 
-_WINDOW, _PULSE = 0.5, 0.1  # s, of the two-hand relay that the screen stands for
+_WINDOW, _PULSE = 0.5, 0.1  # Seconds; two-hand relay that the screen replaces.
 
 
 class StationHands:
-    """What an operator does at a panel; every method may be called from any thread.
-
-    ``lock`` is that of whoever reads the panel.
-    """
+    """Operator actions at a panel, callable from any thread with ``lock``, the lock of the panel's reader."""
 
     def __init__(self, panel: Panel, lock: AbstractContextManager[object], clock: Clock) -> None:
         self._panel, self._lock, self._clock = panel, lock, clock
 
     def press_left(self) -> None:
-        """Left palm button down."""
+        """Press the left palm button."""
         self._palm("left", down=True)
 
     def release_left(self) -> None:
-        """Left palm button up."""
+        """Release the left palm button."""
         self._palm("left", down=False)
 
     def press_right(self) -> None:
-        """Right palm button down."""
+        """Press the right palm button."""
         self._palm("right", down=True)
 
     def release_right(self) -> None:
-        """Right palm button up."""
+        """Release the right palm button."""
         self._palm("right", down=False)
 
     def press_start(self) -> None:
-        """Both palms down together and up again."""
+        """Press both palm buttons together and release them."""
         self.press_left()
         self.press_right()
         self.release_left()
         self.release_right()
 
     def press_hold(self) -> None:
-        """Feed hold button down."""
+        """Press the feed hold button."""
         with self._lock:
             self._panel.hold(True, self._clock.now())
 
     def release_hold(self) -> None:
-        """Feed hold button up."""
+        """Release the feed hold button."""
         with self._lock:
             self._panel.hold(False, self._clock.now())
 
     def set_spindle_auto(self, auto: bool) -> None:
-        """Spindle AUTO/OFF."""
+        """Set the spindle switch to AUTO or OFF."""
         with self._lock:
             self._panel.spindle_auto = auto
 
     def set_spindle_pot(self, fraction: float) -> None:
-        """Spindle override, 0…1."""
+        """Set the spindle override, limited to 0…1."""
         with self._lock:
             self._panel.spindle_pot = min(max(fraction, 0.0), 1.0)
 
     def set_feed_pot(self, fraction: float) -> None:
-        """Feed override, 0…1.5."""
+        """Set the feed override, limited to 0…1.5."""
         with self._lock:
             self._panel.feed_pot = min(max(fraction, 0.0), 1.5)
 
     def turn_handwheel(self, counts: int) -> None:
-        """Turn the drawn handwheel on by so many counts, signed."""
+        """Turn the on-screen handwheel by a number of counts, signed."""
         with self._lock:
             self._panel.handwheel += counts
 
@@ -190,10 +188,10 @@ class StationHands:
 
 
 class PanelStation(StationHands):
-    """Hands on one side, ``core.ports.Station`` on the other; any thread may call.
+    """``core.ports.Station`` of an on-screen panel, combined with wired inputs, callable from any thread.
 
-    ``inputs`` are those of the machine: its own E-stop, start and hold count as well, where it has any.
-    ``wired`` is a station of which there is only a handwheel, which counts on, or the input of a load.
+    ``inputs`` returns the inputs of the machine, whose E-stop, start and hold also apply. ``wired`` is a
+    station that provides only a handwheel or the spindle load.
     """
 
     def __init__(
@@ -204,7 +202,7 @@ class PanelStation(StationHands):
         self._wired = wired
 
     def snapshot(self) -> StationState:
-        """The station now."""
+        """Return the present state of the station."""
         with self._lock:
             state = self._panel.state(self._clock.now())
         inputs = self._inputs()
@@ -220,21 +218,24 @@ class PanelStation(StationHands):
         )
 
     def press_estop(self) -> None:
-        """The screen's E-stop: the control stops everything it can. It is no safety device."""
+        """Press the on-screen E-stop, which is not a safety device.
+
+        The control stops everything that it can stop.
+        """
         with self._lock:
             self._panel.estop = True
 
     def release_estop(self) -> None:
-        """Free again."""
+        """Release the on-screen E-stop."""
         with self._lock:
             self._panel.estop = False
 
 
-# --- A station whose buttons are inputs.
+# --- Operator station whose buttons are inputs.
 
 
 class Pot(Protocol):
-    """A pot in the machine file: its values at both ends, and the input that says whether it counts."""
+    """Pot in the machine file: its values at both ends, and the input that enables it."""
 
     @property
     def low(self) -> float: ...
@@ -252,10 +253,10 @@ def station_of(
     handwheel: int,
     age: float,
 ) -> StationState:
-    """Return the state of the station. A button that the machine file does not have is never pressed.
+    """Build the state of the station; a button that the machine file does not have is never pressed.
 
-    ``read`` returns the fraction of a pot's range by the name of the pot. Without an input ``spindle_auto``
-    the switch of the spindle's pot says whether the spindle is on AUTO.
+    ``read`` returns the position of a pot as a fraction, by its name. Without an input ``spindle_auto``, the
+    switch of the spindle pot selects AUTO.
     """
     pot, load = pots.get("spindle_pot"), pots.get("spindle_load")
     auto = inputs.get(pot.switch, True) if pot is not None and pot.switch else True
@@ -272,7 +273,7 @@ def station_of(
         feed_pot=override("feed_pot"),
         handwheel=handwheel,
         age=age,
-        # Per cent; what is below 0 is the noise of an idle motor.
+        # Percent; negative values are noise of an idle motor.
         spindle_load=_scaled(load, max(read("spindle_load"), 0.0)) if load is not None else None,
     )
 
@@ -281,11 +282,11 @@ def _scaled(pot: Pot, fraction: float) -> float:
     return pot.low + (pot.high - pot.low) * fraction
 
 
-# --- hands at a station in another process ----------------------------------------------------------------
+# --- Operator actions at a station in another process -----------------------------------------------------
 
 
 def _hand(name: str) -> Callable[..., None]:
-    """Return the method of this name, which is used at the station later: nobody waits."""
+    """Return a method that posts its name and arguments without waiting."""
 
     def use(self: PostedHands, *values: object) -> None:
         self.post(name, *values)
@@ -294,14 +295,15 @@ def _hand(name: str) -> Callable[..., None]:
 
 
 class PostedHands(ABC):
-    """Hands at a simulated station of another process; ``app.desk.station_hands.StationPanel`` explains them.
+    """Operator actions at a simulated station of another process.
 
-    A subclass has ``post``, which sends what a hand does to that process.
+    ``app.desk.station_hands.StationPanel`` explains the actions. A subclass implements ``post``, which sends
+    an action to that process.
     """
 
     @abstractmethod
     def post(self, name: str, *values: object) -> None:
-        """Have the method of this name used at the station. Never waits."""
+        """Send the name of a station method and its arguments to the other process, without waiting."""
 
     press_left, release_left = _hand("press_left"), _hand("release_left")
     press_right, release_right = _hand("press_right"), _hand("release_right")

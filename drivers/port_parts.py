@@ -1,4 +1,4 @@
-"""Parts of ports that drivers share: orders that they refuse, touches of a probe, samples of the scope."""
+"""Parts of ports that several drivers use: checks of commands, probe touches and scope samples."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from core.ports import DriverError, FloatArray, Latch
 
 T = TypeVar("T")
 
-# --- Refusals. Each function raises DriverError unless the order may be carried out.
+# --- Checks: each function raises DriverError unless the command is permitted.
 
 
 def demand_no_fault(fault: str) -> None:
-    """Refuse to switch the drives on while there is a fault."""
+    """Raise DriverError if a fault prevents switching the drives on."""
     if fault:
         raise DriverError(
             "the drives stay off because of a fault ({fault}); clear the fault first", "no-power", fault=fault
@@ -25,7 +25,7 @@ def demand_no_fault(fault: str) -> None:
 
 
 def demand_power(fault: str, on: bool) -> None:
-    """Refuse a motion with a fault, or while the drives are not ``on``."""
+    """Raise DriverError if a motion is not permitted because of a fault or because the drives are off."""
     if fault:
         raise DriverError("{fault}; clear the fault first", code_of(fault, "axis"), fault=fault)
     if not on:
@@ -33,19 +33,19 @@ def demand_power(fault: str, on: bool) -> None:
 
 
 def demand_no_homing(axis: str) -> None:
-    """Refuse setpoints while ``axis`` is homing; it is empty when no axis is."""
+    """Raise DriverError while ``axis`` is homing; an empty name means no axis."""
     if axis:
         raise DriverError("{name} is homing; wait until homing is complete", reason="homing", name=axis)
 
 
 def demand_axis(axis: str, axes: Container[str]) -> None:
-    """Refuse to home an axis that is not among ``axes``."""
+    """Raise DriverError if ``axis`` is not among ``axes``."""
     if axis not in axes:
         raise DriverError("axis {axis} does not exist", reason="no-axis", axis=f"{axis!r}")
 
 
 def demand_standstill(axis: str, moving: bool) -> None:
-    """Refuse to home ``axis`` while an axis is moving."""
+    """Raise DriverError if ``axis`` cannot home because an axis is moving."""
     if moving:
         raise DriverError(
             "{axis} cannot home while an axis is moving; wait until all axes are at rest",
@@ -56,13 +56,13 @@ def demand_standstill(axis: str, moving: bool) -> None:
 
 
 def demand_spindle(problem: str) -> None:
-    """Refuse to turn the spindle while there is a ``problem``."""
+    """Raise DriverError if a ``problem`` prevents turning the spindle."""
     if problem:
         raise DriverError("the spindle stays off: {problem}", "spindle-off", problem=problem)
 
 
 def demand_estop_released(pressed: bool) -> None:
-    """Refuse to turn the spindle while the E-stop is ``pressed``."""
+    """Raise DriverError if the spindle cannot turn because the E-stop is pressed."""
     if pressed:
         raise DriverError(
             "the spindle stays off while the E-stop is pressed; release the E-stop first", "spindle-off"
@@ -70,7 +70,7 @@ def demand_estop_released(pressed: bool) -> None:
 
 
 def demand_free_drive(enabled: bool, turning: bool) -> None:
-    """Refuse to hold the spindle's drive as C while the drives are not ``enabled``, or while it turns."""
+    """Raise DriverError if the spindle drive cannot become C, because it is off or turns."""
     if not enabled:
         raise DriverError(
             "C uses the spindle drive, and the drives are off; switch them on first",
@@ -86,7 +86,7 @@ def demand_free_drive(enabled: bool, turning: bool) -> None:
 
 
 def output_of(name: str, outputs: Mapping[str, T]) -> T:
-    """Return the output of this name; refuse one that the machine does not have."""
+    """Return the output of this name. Raises DriverError if the machine does not have it."""
     if name not in outputs:
         raise DriverError(
             "output {name} is not in the machine file; add it under [io.out]", "output", name=f"{name!r}"
@@ -95,43 +95,43 @@ def output_of(name: str, outputs: Mapping[str, T]) -> T:
 
 
 def demand_output(name: str, on: bool, problem: str) -> None:
-    """Refuse to switch an output on while there is a ``problem``."""
+    """Raise DriverError if a ``problem`` prevents switching an output on."""
     if on and problem:
         raise DriverError("output {name} stays off: {problem}", "output", name=name, problem=problem)
 
 
-# --- The touch of a probe.
+# --- Touch of a probe.
 
 
 class FirstTouch:
-    """``core.ports.TouchInput``: axis positions when the input of a probe first came on after ``arm``."""
+    """``core.ports.TouchInput`` that latches the axis positions at the first touch after ``arm``."""
 
     def __init__(self) -> None:
         self._on = False
         self._kept: Latch | None = None
 
     def arm(self) -> None:
-        """Forget what was kept."""
+        """Clear the latched touch."""
         self._kept = None
 
     def latched(self) -> Latch | None:
-        """The first touch since."""
+        """Return the first touch since ``arm``, or None."""
         return self._kept
 
     def _touches(self, on: bool) -> bool:
-        """Return whether the input, which is ``on`` now, has made the first touch."""
+        """Return whether the present input state ``on`` is the first touch."""
         before, self._on = self._on, on
         return on and not before and self._kept is None
 
 
-# --- Samples of the scope between two looks of the control, in memory that was set aside beforehand.
+# --- Samples for the scope in preallocated memory.
 
 
-KEPT = 8192  # rows: eight seconds at 1 ms for a control that is late
+KEPT = 8192  # Rows, which cover eight seconds at 1 ms for a delayed control.
 
 
 class SampleLog:
-    """Rows as ``core.ports.SampleSource`` has them, added by a driver and taken by its control."""
+    """Ring buffer of rows as in ``core.ports.SampleSource``."""
 
     def __init__(self, axes: int, kept: int = KEPT) -> None:
         self.width = 5 + 3 * axes
@@ -141,16 +141,16 @@ class SampleLog:
         self._added = self._taken = 0
         self._rows = np.frombuffer(self._bytes, dtype=np.float64).reshape(kept, self.width)
         self._none = np.empty((0, self.width))
-        self.last = -np.inf  # time of the newest row
+        self.last = -np.inf  # Time of the newest row.
 
     def add(self, t: float, *figures: float) -> None:
-        """One more row; the oldest goes when there is no room."""
+        """Append one row; the oldest row is discarded if the buffer is full."""
         self._row.pack_into(self._bytes, self._added % self._kept * self._row.size, t, *figures)
         self._added += 1
         self.last = t
 
     def extend(self, rows: FloatArray) -> None:
-        """Add the newest of these rows, as many as the log has room for."""
+        """Append the newest of these rows, as many as the buffer can store."""
         rows = rows[-self._kept :]
         at = self._added % self._kept
         head = rows[: self._kept - at]
@@ -160,7 +160,7 @@ class SampleLog:
         self.last = rows[-1, 0]
 
     def take(self, most: int = KEPT) -> FloatArray:
-        """The oldest rows that have not been taken, ``most`` at a time."""
+        """Remove and return at most ``most`` of the oldest rows."""
         first = max(self._taken, self._added - self._kept)
         count = min(self._added - first, most)
         if not count:

@@ -1,4 +1,4 @@
-"""What a process that keeps its own time asks of the system: a real-time class, and memory that stays."""
+"""System rights of a real-time process: a scheduling policy and locked memory."""
 
 from __future__ import annotations
 
@@ -10,7 +10,10 @@ _CURRENT, _FUTURE, _ON_FAULT = 1, 2, 4  # MCL_CURRENT, MCL_FUTURE and MCL_ONFAUL
 
 
 def ask_real_time(policy: str, priority: int) -> str:
-    """Ask for a policy of sched(7), as ``SCHED_FIFO``; returns why it was refused, empty if granted."""
+    """Request a policy of sched(7), such as ``SCHED_FIFO``.
+
+    Return the reason for a refusal, or an empty text.
+    """
     try:
         os.sched_setscheduler(0, getattr(os, policy), os.sched_param(priority))
     except (OSError, AttributeError) as error:
@@ -19,12 +22,11 @@ def ask_real_time(policy: str, priority: int) -> str:
 
 
 def lock_memory(*, only_used: bool = False) -> tuple[str, int]:
-    """Lock the memory that there is, and what comes; collect garbage no more than needed.
+    """Lock the present and future memory, and reduce garbage collection.
 
-    ``only_used``: memory that was reserved and is not used yet is locked when it is used first.
-
-    Returns why it was refused, and the limit in bytes: 0 if there is none. Under a limit only what is there
-    is locked: with ``MCL_FUTURE`` the first allocation beyond the limit would fail, in the middle of a cut.
+    With ``only_used``, reserved memory is locked at its first use. Return the reason for a refusal and the
+    limit in bytes, 0 without a limit. With a limit, only present memory is locked, because ``MCL_FUTURE``
+    would make the first allocation beyond the limit fail during a cut.
     """
     gc.collect()
     gc.freeze()

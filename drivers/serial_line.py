@@ -1,4 +1,4 @@
-"""A serial line as its drivers see it: settings, both directions, parity, and why it has failed."""
+"""Serial line as drivers use it: settings, transfer, parity, and reasons for failures."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from core.ports import DriverError
 
 
 class WireError(DriverError):
-    """The line itself has failed: no such port, cable or adapter out."""
+    """Failure of the line itself, such as a missing port or a disconnected adapter."""
 
 
 @dataclass(frozen=True, slots=True)
 class LineSettings:
-    """How the bits go over a line. ``flow``: xonxoff, rtscts or none."""
+    """Settings of a serial line; ``flow`` is xonxoff, rtscts or none."""
 
     port: str
     baud: int = 9600
@@ -27,80 +27,80 @@ class LineSettings:
 
     @property
     def character(self) -> float:
-        """Seconds that one character takes, with start, parity and stop bits."""
+        """The duration of one character in seconds, with start, parity and stop bits."""
         return (1 + self.bits + (self.parity != "N") + self.stop) / self.baud
 
     @property
     def words(self) -> str:
-        """``9600 7E1``."""
+        """The settings as text, such as ``9600 7E1``."""
         return f"{self.baud} {self.bits}{self.parity}{self.stop}"
 
 
 class Wire(Protocol):
-    """Questions and answers. Every method raises WireError when the line is cut."""
+    """Serial line for requests and responses. Every method raises WireError if the line has failed."""
 
     def send(self, data: bytes) -> None:
-        """Give bytes to the line; waits at most a moment."""
+        """Send bytes; wait only briefly."""
         ...
 
     def receive(self, limit: float) -> bytes:
-        """What has come; waits ``limit`` seconds at most for the first byte."""
+        """Return received bytes; wait at most ``limit`` seconds for the first one."""
         ...
 
     def discard(self) -> None:
-        """Forget what has come and was not read."""
+        """Discard received bytes that have not been read."""
         ...
 
     def close(self) -> None: ...
 
 
 class FlowWire(Wire, Protocol):
-    """A line whose other side may hold what is sent, and where damaged characters are counted."""
+    """Serial line with flow control and a count of damaged characters."""
 
     @property
     def damaged(self) -> int:
-        """Characters with a parity or framing error since the line was opened."""
+        """The number of characters with a parity or framing error since the line was opened."""
         ...
 
     def offer(self, data: bytes) -> int:
-        """How many of these bytes the line takes now; none while the other side holds it."""
+        """Send the bytes that the line accepts now and return their number, which may be 0."""
         ...
 
     def obey_codes(self) -> None:
-        """From now on the other side's DC3 and DC1 (XOFF, XON) hold and release what is sent.
+        """Let DC3 and DC1 (XOFF, XON) of the other side stop and resume the output.
 
-        A line that cannot leaves them in what comes.
+        A line that cannot do so leaves these characters in its input.
         """
         ...
 
     def waiting(self) -> int:
-        """Bytes taken that have not gone out."""
+        """Return the number of accepted bytes that have not been transmitted."""
         ...
 
     def drop_output(self) -> None:
-        """What was taken and has not gone out is not sent any more."""
+        """Discard accepted bytes that have not been transmitted."""
         ...
 
 
 # --- Parity of seven-bit characters on a line of eight bits.
 
 
-PARITIES = {"E": 0, "O": 1}  # what the count of ones in a character is, modulo 2
+PARITIES = {"E": 0, "O": 1}  # Number of ones in a character, modulo 2.
 _TOP = 0x80
 
 
 def parity_of(character: int) -> int:
-    """Its ones, modulo 2."""
+    """Return the number of ones in a character, modulo 2."""
     return character.bit_count() & 1
 
 
 def table_of(parity: str) -> bytes:
-    """For ``bytes.translate``: the top bit of each seven-bit character is its parity bit."""
+    """Return a table for ``bytes.translate`` that adds the parity bit to seven-bit characters."""
     odd = PARITIES[parity]
     return bytes(c & ~_TOP | (_TOP if parity_of(c & ~_TOP) != odd else 0) for c in range(256))
 
 
-# --- Why a serial port does not open or has failed, in words for who stands before it.
+# --- Reasons for a failed serial port, as texts for the operator.
 
 
 _TO_DO = {
@@ -116,9 +116,9 @@ _TO_DO = {
 
 
 def why(error: Exception) -> str:
-    """What to do about it, else the operating system's word for it, where there is one."""
+    """Return a remedy for an error of a serial port, or the text of the operating system."""
     number = _number(error)
-    if number is None and error.__context__ is not None:  # the library puts its cause into its own words
+    if number is None and error.__context__ is not None:  # The library hides the cause in its own text.
         number = _number(error.__context__)
     if number is not None:
         return _TO_DO.get(number) or os.strerror(number)
@@ -126,6 +126,6 @@ def why(error: Exception) -> str:
 
 
 def _number(error: BaseException) -> int | None:
-    """The operating system's; that of termios stands in its first word."""
+    """Return the error number of the operating system; for termios errors, it is the first argument."""
     number = error.errno if isinstance(error, OSError) else error.args[0] if error.args else None
     return number if isinstance(number, int) else None

@@ -1,4 +1,4 @@
-"""The serial ports of this computer, by pyserial; every failure is one sentence."""
+"""Serial ports of this computer, by pyserial, with errors as single sentences."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from serial.tools.list_ports import comports
 
 from drivers.serial_line import PARITIES, LineSettings, WireError, table_of, why
 
-# --- What a POSIX terminal makes of damaged characters when told to mark them (PARMRK).
+# --- Marks of a POSIX terminal for damaged characters (PARMRK).
 
 
 class Unmarker:
-    """Takes the marks out and counts them: FF 00 c is a damaged c, FF FF a good FF."""
+    """Decoder of PARMRK marks that counts damaged characters: FF 00 c is a damaged c, FF FF a valid FF."""
 
     def __init__(self) -> None:
         self.damaged = 0
         self._rest = b""
 
     def feed(self, come: bytes) -> bytes:
-        """The characters as they were meant; a damaged one as it came."""
+        """Return the characters without marks; damaged characters are unchanged."""
         data, out = self._rest + come, bytearray()
         at = 0
         while at < len(data):
@@ -46,8 +46,8 @@ class Unmarker:
 
 
 _POSIX = sys.platform != "win32"
-_ENDING, _GLANCE = 20, 0.05  # looks, s: a second for the last characters at 110 baud
-# termios' own error is no OSError; a TypeError is what pyserial makes of a port that was closed meanwhile.
+_ENDING, _GLANCE = 20, 0.05  # Checks and s: one second for the last characters at 110 baud.
+# The error of termios is not an OSError. pyserial raises TypeError if the port was closed by another thread.
 _FAILURES: tuple[type[Exception], ...] = (serial.SerialException, OSError, TypeError)
 if sys.platform != "win32":
     import select
@@ -58,14 +58,14 @@ _NOT_OPENED: tuple[type[Exception], ...] = (*_FAILURES, ValueError)
 
 
 class PortInfo(NamedTuple):
-    """A serial port of this computer."""
+    """Serial port of this computer: its device and description."""
 
     device: str
     what: str
 
 
 def list_ports() -> list[PortInfo]:
-    """The serial ports of this computer, by name."""
+    """Return the serial ports of this computer, sorted by name."""
     return sorted(
         PortInfo(port.device, "" if port.description in {None, "n/a"} else port.description)
         for port in comports()
@@ -73,13 +73,14 @@ def list_ports() -> list[PortInfo]:
 
 
 class SerialWire:
-    """A port of this computer, opened for us alone. ``watch``: damaged characters are told from good ones.
+    """Serial port of this computer, opened exclusively; with ``watch``, damaged characters are counted.
 
-    Seven bits and parity on a port that does not do them are done here; XOFF and XON then come to the reader.
+    If the port does not support seven bits with parity, this class adds the parity; XOFF and XON are then not
+    interpreted.
     """
 
     def __init__(self, settings: LineSettings, *, watch: bool = False) -> None:
-        """Raises WireError."""
+        """Open and configure the port. Raises WireError."""
         self.settings = settings
         self._marks = Unmarker() if watch and _POSIX else None
         self._parities: bytes | None = None
@@ -114,18 +115,18 @@ class SerialWire:
 
     @property
     def damaged(self) -> int:
-        """Parity and framing errors, where they are watched for."""
+        """The number of parity and framing errors, or 0 if they are not counted."""
         return self._marks.damaged if self._marks is not None else 0
 
     def send(self, data: bytes) -> None:
-        """Raises WireError; also when the other side holds the line for more than a second."""
+        """Send bytes. Raises WireError, also if the other side stops the output for more than a second."""
         try:
             self._port.write(self._coded(data))
         except _FAILURES as error:
             raise self._cut(error) from error
 
     def offer(self, data: bytes) -> int:
-        """What the kernel takes at once."""
+        """Send the bytes that the kernel accepts immediately and return their number."""
         try:
             data = self._coded(data)
             if sys.platform == "win32":
@@ -139,7 +140,10 @@ class SerialWire:
             raise self._cut(error) from error
 
     def obey_codes(self) -> None:
-        """Flow control by XON and XOFF, in the kernel; not where they carry a parity bit it does not know."""
+        """Enable XON/XOFF in the kernel.
+
+        Nothing is enabled if these characters have a parity bit that the kernel does not know.
+        """
         try:
             if sys.platform == "win32":
                 self._port.xonxoff = True
@@ -149,7 +153,7 @@ class SerialWire:
             raise self._cut(error) from error
 
     def receive(self, limit: float) -> bytes:
-        """What has come."""
+        """Return received bytes; wait at most ``limit`` seconds for the first one."""
         try:
             come = self._come(max(limit, 0.0))
         except _FAILURES as error:
@@ -157,7 +161,7 @@ class SerialWire:
         return self._marks.feed(come) if self._marks is not None else come
 
     def _come(self, limit: float) -> bytes:
-        """Waiting by ``select``: pyserial would set the whole line up again for each other time-out."""
+        """Wait by ``select``, because pyserial would configure the port again for each other timeout."""
         if sys.platform == "win32":
             self._port.timeout = limit
             first = self._port.read(1)
@@ -166,40 +170,40 @@ class SerialWire:
         return self._port.read(max(self._port.in_waiting, 1)) if ready else b""
 
     def discard(self) -> None:
-        """Forget the input."""
+        """Discard the received bytes."""
         try:
             self._port.reset_input_buffer()
         except _FAILURES as error:
             raise self._cut(error) from error
 
     def waiting(self) -> int:
-        """Bytes that the kernel still has."""
+        """Return the number of bytes in the kernel's output buffer."""
         try:
             return int(self._port.out_waiting)
         except _FAILURES as error:
             raise self._cut(error) from error
 
     def drop_output(self) -> None:
-        """What the kernel still has is not sent."""
+        """Discard the bytes in the kernel's output buffer."""
         try:
             self._port.reset_output_buffer()
         except _FAILURES as error:
             raise self._cut(error) from error
 
     def close(self) -> None:
-        """Let the port go; what the other side holds is dropped, or it would keep us here.
+        """Close the port; output that the other side has stopped is discarded, because closing would block.
 
-        Only what is held: dropping also empties the transmitter of some UARTs, and of a pseudo terminal, and
-        with it the end of what was sent.
+        Other output is not discarded, because this would also clear the transmitter of some UARTs and of a
+        pseudo terminal, and lose the last bytes.
         """
-        with suppress(*_FAILURES):  # a cable that has gone holds nothing
+        with suppress(*_FAILURES):  # A disconnected cable does not block.
             if not self._goes_out():
                 self._port.reset_output_buffer()
         with suppress(*_FAILURES):
             self._port.close()
 
     def _goes_out(self) -> bool:
-        """Whether the kernel has handed all of it to the line, within the time that takes."""
+        """Return whether the kernel transmits its output within the expected time."""
         for _ in range(_ENDING):
             if not (left := self._port.out_waiting):
                 return True
@@ -216,7 +220,10 @@ class SerialWire:
 
 
 def _opened(settings: LineSettings) -> serial.Serial:
-    """On POSIX bits, parity and XON/XOFF are set afterwards: pyserial does not look whether they are kept."""
+    """Open the port.
+
+    On POSIX, bits, parity and XON/XOFF are set later, because pyserial does not verify them.
+    """
     return serial.Serial(
         settings.port,
         settings.baud,
@@ -231,7 +238,7 @@ def _opened(settings: LineSettings) -> serial.Serial:
     )
 
 
-# --- Settings of a line that a POSIX terminal does itself; some adapters, and ptys, drop them silently.
+# --- Line settings of a POSIX terminal, which some adapters and ptys ignore silently.
 
 
 if sys.platform != "win32":
@@ -242,25 +249,26 @@ if sys.platform != "win32":
     _FRAME = termios.CSIZE | termios.PARENB | termios.PARODD
 
     def frame(handle: int, bits: int, parity: str) -> bool:
-        """Set bits and parity; whether the port keeps them. Raises termios.error."""
+        """Set bits and parity, and return whether the port accepts them. Raises termios.error."""
         wanted = _SIZES[bits] | _PARITIES[parity]
         attributes = termios.tcgetattr(handle)
         attributes[2] = attributes[2] & ~_FRAME | wanted
         try:
             termios.tcsetattr(handle, termios.TCSANOW, attributes)
         except termios.error as error:
-            if error.args[0] != errno.EINVAL:  # the C library, of a port that keeps none of it
+            # The C library reports this for a port that accepts none of the settings.
+            if error.args[0] != errno.EINVAL:
                 raise
         return bool(termios.tcgetattr(handle)[2] & _FRAME == wanted)
 
     def obey_codes(handle: int) -> None:
-        """XOFF and XON hold and release what is sent, in the kernel. Raises termios.error."""
+        """Let XOFF and XON stop and resume the output in the kernel. Raises termios.error."""
         attributes = termios.tcgetattr(handle)
         attributes[0] |= termios.IXON | termios.IXOFF
         termios.tcsetattr(handle, termios.TCSANOW, attributes)
 
     def mark_damage(handle: int, *, parity: bool) -> None:
-        """Damaged characters come as FF 00 and the character, FF as FF FF. Raises termios.error."""
+        """Mark damaged characters as FF 00 c, and FF as FF FF. Raises termios.error."""
         attributes = termios.tcgetattr(handle)
         attributes[0] |= termios.PARMRK | (termios.INPCK if parity else 0)
         attributes[0] &= ~(termios.IGNPAR | termios.ISTRIP)

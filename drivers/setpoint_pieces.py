@@ -1,6 +1,6 @@
-"""Setpoints in pieces of constant acceleration that end at rest, in plain numbers.
+"""Setpoint queue of pieces with constant acceleration that ends at rest.
 
-Needs nothing but the standard library: what plays them may live under another Python.
+The module needs only the standard library, because its user may run under another Python.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ INF = float("inf")
 
 
 class Piece(NamedTuple):
-    """From ``t`` for ``dt`` seconds: position, velocity, acceleration at its start, one number an axis."""
+    """Motion from ``t`` for ``dt`` seconds: position, velocity and acceleration of each axis at the start."""
 
     t: float
     dt: float
@@ -23,21 +23,21 @@ class Piece(NamedTuple):
 
 
 def at(piece: Piece, t: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Position and velocity at ``t``, held at the piece's end when ``t`` lies behind it."""
+    """Return position and velocity of a piece at ``t``, limited to its start and end."""
     begins, lasts, at_p, at_v, at_a = piece
     dt = t - begins
-    if not 0.0 <= dt <= lasts:  # quicker than min and max: drives ask for this a thousand times a second
+    if not 0.0 <= dt <= lasts:  # Faster than min and max; drives call this a thousand times per second.
         dt = 0.0 if dt < 0.0 else lasts
     half = 0.5 * dt
     p = tuple([x + (v + a * half) * dt for x, v, a in zip(at_p, at_v, at_a, strict=True)])
     return p, tuple([v + a * dt for v, a in zip(at_v, at_a, strict=True)])
 
 
-_TRIM = 64  # pieces; forgetting the past one by one would cost more than keeping it
+_TRIM = 64  # Pieces; discarding single pieces would cost more than storing them.
 
 
 class PieceQueue:
-    """What is played, and where it comes to rest; not thread-safe, its driver locks."""
+    """Queue of pieces with its final rest position; not thread-safe, so the driver must lock it."""
 
     def __init__(self, rest: Sequence[float]) -> None:
         self._zero = (0.0,) * len(rest)
@@ -47,16 +47,16 @@ class PieceQueue:
         self._rest = tuple(rest)
 
     def rest_at(self, position: Sequence[float]) -> None:
-        """Forget every setpoint and rest here: after power-up, homing, or a stop by the drive itself."""
+        """Discard all setpoints and rest at this position, for example after power-up or homing."""
         self._pieces, self._starts, self._end = [], [], -INF
         self._rest = tuple(position)
 
     def horizon(self, now: float) -> float:
-        """End of the last motion queued; ``now`` when nothing is."""
+        """Return the end time of the last motion, or ``now`` if the queue is empty."""
         return max(self._end, now)
 
     def demand_at(self, t: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Position and velocity at ``t``; where two pieces meet, those of the later one."""
+        """Return position and velocity at ``t``; at the joint of two pieces, those of the later one."""
         if t >= self._end:
             return self._rest, self._zero
         index = bisect_right(self._starts, t) - 1
@@ -65,7 +65,7 @@ class PieceQueue:
         return at(self._pieces[index], t)
 
     def piece_at(self, t: float) -> tuple[Piece, float]:
-        """Return the piece that is played at ``t``, and until when it is; a resting one where none is."""
+        """Return the piece that is valid at ``t`` and its end time; without motion, a resting piece."""
         if t >= self._end:
             return Piece(t, INF, self._rest, self._zero, self._zero), INF
         index = bisect_right(self._starts, t) - 1
@@ -77,21 +77,21 @@ class PieceQueue:
         return piece, min(ends, following)
 
     def motion_at(self, t: float) -> tuple[tuple[float, ...], tuple[float, ...], tuple[float, ...]]:
-        """Position, velocity and acceleration at ``t``."""
+        """Return position, velocity and acceleration at ``t``."""
         p, v = self.demand_at(t)
         index = bisect_right(self._starts, t) - 1
         return p, v, self._pieces[index].a if index >= 0 and t < self._end else self._zero
 
     @property
     def pieces(self) -> Sequence[Piece]:
-        """What is queued, with what has not been forgotten of the past."""
+        """The queued pieces, including those of the past that have not been trimmed."""
         return self._pieces
 
     def brake(self, now: float, decel: Sequence[float]) -> float:
-        """The drive's own stop: from now on straight to rest, all axes together; returns when it ends.
+        """Replace the queue by a straight deceleration of all axes together, and return its end time.
 
-        For stops that do not ask the host (E-stop, a fault). It leaves the path only by the curve within the
-        braking distance.
+        It is for stops without the host (E-stop, fault). The axes leave the path only by its curvature within
+        the braking distance.
         """
         return self._brake(now, self.demand_at(now), decel)
 
@@ -108,13 +108,13 @@ class PieceQueue:
         return now + dt
 
     def trim(self, before: float) -> None:
-        """Forget what was over ``before`` this time."""
+        """Discard pieces that ended before this time."""
         gone = bisect_right(self._starts, before) - 1
         if gone >= _TRIM:
             del self._pieces[:gone], self._starts[:gone]
 
     def replace(self, start: float, pieces: list[Piece]) -> None:
-        """Cut at ``start`` and append; a gap before ``start`` is rest. Unchecked."""
+        """Cut the queue at ``start`` and append ``pieces`` without checks; a gap before ``start`` is rest."""
         rest = at(pieces[-1], INF)[0]
         keep = bisect_right(self._starts, start - 1e-12)
         del self._pieces[keep:], self._starts[keep:]

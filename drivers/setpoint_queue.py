@@ -1,7 +1,7 @@
-"""The queue that every setpoint driver plays: always a complete trajectory that ends at rest.
+"""Setpoint queue of a driver, which always contains a complete trajectory that ends at rest.
 
-A host that stalls, is killed or loses its cable therefore leaves slides that stop on their path, at the
-planned deceleration and without a fault. Hold, override, abort and jog are one verb: splice another tail.
+If the host stalls, is killed or is disconnected, the axes therefore stop on their path at the planned
+deceleration without a fault. Hold, override, abort and jog all use one operation: splice another tail.
 """
 
 from __future__ import annotations
@@ -15,17 +15,18 @@ import numpy as np
 from core.ports import DriverError, Segments
 from drivers.setpoint_pieces import Piece, PieceQueue
 
-_AT_ONCE = 100  # pieces; their conversion takes a tenth of a millisecond
+_AT_ONCE = 100  # Pieces per step; their conversion takes 0.1 ms.
 
 
 def _nothing() -> None:
-    """Nothing else has to go on meanwhile."""
+    """Do nothing."""
 
 
 def pieces_of(segments: Segments, axes: int, give_way: Callable[[], None] = _nothing) -> list[Piece]:
-    """The segments as pieces; raises DriverError when they have the wrong shape or hold no numbers.
+    """Convert segments into pieces. Raises DriverError for a wrong shape or values that are not finite.
 
-    ``give_way`` is called again and again: thousands of pieces take longer than some drives wait.
+    ``give_way`` is called repeatedly, because the conversion of thousands of pieces may take too long for
+    some drives.
     """
     count = len(segments.t)
     shapes = {segments.p.shape, segments.v.shape, segments.a.shape}
@@ -53,18 +54,18 @@ def pieces_of(segments: Segments, axes: int, give_way: Callable[[], None] = _not
 
 @dataclass(frozen=True, slots=True)
 class AxisFigures:
-    """What a driver of setpoints knows of one axis; mm and seconds, or degrees."""
+    """Limits and properties of one axis for a driver, in mm or degrees, and seconds."""
 
     name: str
     vmax: float
-    amax: float  # also what its drive brakes with on its own
-    count: float  # mm or degrees of one count of the drive
+    amax: float  # Also the deceleration of the drive's own stop.
+    count: float  # Length of one count of the drive in mm or degrees.
     following_window: float
     following_time: float
     travel: tuple[float, float] | None = None
     absolute: bool = True
     home_speed: float = 10.0
-    corner: float = 4.0  # velocity that a corner may jump: amax times the setpoint interval
+    corner: float = 4.0  # Permitted velocity jump at a corner: amax times the setpoint interval.
 
 
 def check_limits(
@@ -73,9 +74,9 @@ def check_limits(
     homed: Sequence[bool],
     actual: Sequence[float] | None = None,
 ) -> None:
-    """Raise DriverError for setpoints that are too fast, or outside the travel of an axis that is homed.
+    """Raise DriverError for setpoints that are too fast, or outside the travel of a homed axis.
 
-    With ``actual``, an axis that is outside its travel may move back from there.
+    With ``actual``, an axis outside its travel may move back from its present position.
     """
     for n, axis in enumerate(axes):
         if abs(segments.v[:, n]).max(initial=0.0) > axis.vmax * 1.001 + 0.01:
@@ -104,14 +105,14 @@ def check_limits(
 
 
 _SLOT = 1e-6  # s; clock rounding between the end of one piece and the start of the next
-_REST = 0.01  # mm/s or degrees/s; what rounding may leave of a velocity
+_REST = 0.01  # mm/s or degrees/s; velocity that may remain by rounding.
 
 
 @dataclass(frozen=True, slots=True)
 class Tolerance:
-    """How far two pieces may part where they meet, by axis: position (mm or degrees) and velocity.
+    """Permitted difference of position (mm or degrees) and velocity where two pieces meet, by axis.
 
-    Rounding alone asks for a micrometre. Velocity may jump by what a corner may, ``amax * interval``.
+    The position tolerance covers rounding. The velocity may jump as at a corner, by ``amax * interval``.
     """
 
     position: tuple[float, ...]
@@ -119,12 +120,12 @@ class Tolerance:
 
     @classmethod
     def of(cls, axes: Sequence[AxisFigures]) -> Tolerance:
-        """A micrometre, and the corners of these axes."""
+        """Return a tolerance of 0.001 mm and the corner velocities of these axes."""
         return cls((0.001,) * len(axes), tuple(1.01 * axis.corner + 1e-3 for axis in axes))
 
 
 class SetpointQueue(PieceQueue):
-    """Setpoints of all axes, checked before they are queued; not thread-safe, its driver locks."""
+    """Setpoint queue of all axes that checks its input; not thread-safe, so the driver must lock it."""
 
     def __init__(
         self, axes: tuple[str, ...], rest: Sequence[float], commit: float, tolerance: Tolerance
@@ -133,14 +134,16 @@ class SetpointQueue(PieceQueue):
         self.axes = axes
         self.commit = commit
         self._tolerance = tolerance
-        self.give_way: Callable[[], None] = _nothing  # what has to go on while a long path is taken in
-        self.handed_out: Callable[[], float] = lambda: -math.inf  # until then the drives have their setpoints
+        self.give_way: Callable[[], None] = _nothing  # Called while a long path is converted.
+        # Time up to which the drives already have setpoints.
+        self.handed_out: Callable[[], float] = lambda: -math.inf
 
     def splice(self, segments: Segments, now: float) -> None:
         """Replace everything from ``segments.t[0]`` on.
 
-        Raises DriverError, and keeps the old queue, unless the segments start at or after ``now`` + commit,
-        continue what stays in position and velocity, hang together, and end at rest.
+        The segments must start at or after ``now`` + commit, continue the remaining queue in position and
+        velocity, be continuous, and end at rest. Otherwise DriverError is raised and the queue does not
+        change.
         """
         pieces = pieces_of(segments, len(self.axes), self.give_way)
         start = pieces[0].t
@@ -158,7 +161,10 @@ class SetpointQueue(PieceQueue):
         self.replace(start, pieces)
 
     def _check_run(self, segments: Segments) -> None:
-        """Each piece must begin where the one before ends, and the last must come to rest."""
+        """Check that each piece begins at the end of the piece before it, and that the last ends at rest.
+
+        Raises DriverError.
+        """
         dt = segments.dt[:, None]
         t_end = segments.t + segments.dt
         p_end = segments.p + (segments.v + 0.5 * segments.a * dt) * dt
@@ -202,7 +208,7 @@ class SetpointQueue(PieceQueue):
         old: tuple[tuple[float, ...], tuple[float, ...]],
         new: tuple[tuple[float, ...], tuple[float, ...]],
     ) -> None:
-        """Position and velocity of both sides agree within the tolerance, axis by axis."""
+        """Check that position and velocity agree at the splice within the tolerance. Raises DriverError."""
         templates = (
             "{axis}: at the splice point between queued and new setpoints, the position jumps from "
             "{before} to {after}",
@@ -218,13 +224,16 @@ class SetpointQueue(PieceQueue):
                     )
 
 
-# --- One axis from rest to rest: what a drive does on its own when it homes.
+# --- Move of one axis from rest to rest, as for homing.
 
 
 def straight(
     start: float, rest: Sequence[float], axis: int, *, to: float, speed: float, accel: float
 ) -> Segments:
-    """Ramp up, run at ``speed``, ramp down: axis number ``axis`` goes to ``to``, the others stay."""
+    """Plan a move of one axis from rest to rest: ramp up, run at ``speed``, ramp down.
+
+    The axis with number ``axis`` moves to ``to``; the others rest.
+    """
     way = to - rest[axis]
     sign = math.copysign(1.0, way)
     top = min(speed, math.sqrt(abs(way) * accel))

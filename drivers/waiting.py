@@ -1,8 +1,8 @@
-"""Clocks, wake-ups, and openings of what was lost: how drivers wait, and keep nobody waiting.
+"""Wake-ups, clocks and background openings for drivers.
 
-A wake-up lets a driver tell its control at once that something has changed, so that a machine at rest is
-looked at less often. What was lost is opened in a thread of its own: nobody waits for a port or process that
-is not there.
+A wake-up lets a driver report a change to its control at once, so that a machine at rest is polled less
+often. Lost connections are opened in a separate thread, so that the control never waits for a missing port or
+process.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ _CHUNK = 1 << 16
 class Wakeup:
     """``core.ports.Wakeup`` within one process.
 
-    ``settled`` is the driver's: whether nothing of it changes any more without a ring.
+    ``settled`` is supplied by the driver and returns whether nothing changes without a wake-up.
     """
 
     def __init__(self, settled: Callable[[], bool]) -> None:
@@ -36,18 +36,18 @@ class Wakeup:
         self._rung = threading.Event()
 
     def ring(self) -> None:
-        """Something was asked for, or has changed; from any thread."""
+        """Wake up the control after a command or change, from any thread."""
         self._rung.set()
 
     def wait(self, seconds: float) -> bool:
-        """Until it rings, so long at most; whether it has."""
+        """Wait for a wake-up for at most ``seconds`` and return whether there was one."""
         rung = self._rung.wait(seconds)
         self._rung.clear()
         return rung
 
 
 class Bell:
-    """The same between two processes: whoever has ``far`` rings, and so does this one from any thread."""
+    """Wake-up between two processes by a socket pair; both ends may ring from any thread."""
 
     def __init__(self) -> None:
         self._near, self.far = socket.socketpair()
@@ -55,18 +55,19 @@ class Bell:
         self.far.setblocking(False)
 
     def ring(self) -> None:
-        """One that is full rings already; one that is closed wakes nobody."""
+        """Wake up the waiting process; nothing happens if the socket is full or closed."""
         with suppress(OSError):
             self.far.send(b"!")
 
     def wait(self, seconds: float, files: Sequence[int] = ()) -> bool:
-        """Until it rings or one of the files can be read, so long at most; whether it has or can. What rang
-        before counts.
+        """Wait for a wake-up or a readable file, for at most ``seconds``; return whether there was one.
+
+        Earlier wake-ups also count.
         """
         try:
             if not select.select([self._near.fileno(), *files], [], [], seconds)[0]:
                 return False
-        except (OSError, ValueError):  # closed meanwhile
+        except (OSError, ValueError):  # Closed by another thread.
             return True
         with suppress(OSError):
             while self._near.recv(_CHUNK):
@@ -74,17 +75,17 @@ class Bell:
         return True
 
     def close(self) -> None:
-        """It rings no more."""
+        """Close both ends."""
         self._near.close()
         self.far.close()
 
 
 class Touch:
-    """The lock of a machine in somebody's hand: when it is let go, the control hears of it."""
+    """Lock for actions on a machine that wakes up the control when it is released."""
 
     def __init__(self, lock: AbstractContextManager[object], ring: Callable[[], None]) -> None:
         self._lock, self._ring = lock, ring
-        self.count = 0  # how many times it was taken
+        self.count = 0  # Number of times the lock was acquired.
 
     def __enter__(self) -> None:
         self._lock.__enter__()
@@ -97,59 +98,59 @@ class Touch:
         self._ring()
 
 
-# --- Clocks: the real one, and one that tests and runs without a screen move on themselves.
+# --- Clocks: the real one, and one that tests and runs without a screen advance.
 
 
 class RealClock:
-    """Seconds of the monotonic clock since it was made, or since ``zero`` of that clock.
+    """Monotonic clock that starts at its creation, or at ``zero`` of the system's monotonic clock.
 
-    The monotonic clock is one for all processes, so two of these with the same zero agree.
+    The system's clock is common to all processes, so two instances with the same zero agree.
     """
 
     def __init__(self, zero: float | None = None) -> None:
         self.zero = time.monotonic() if zero is None else zero
 
     def now(self) -> float:
-        """Seconds since this clock was made."""
+        """Return the seconds since the start of this clock."""
         return time.monotonic() - self.zero
 
     def sleep_until(self, t: float) -> None:
-        """Wait until ``t``; returns at once when that is past."""
+        """Wait until ``t``; return at once if the time has passed."""
         left = t - self.now()
         if left > 0:
             time.sleep(left)
 
 
 class StepClock:
-    """Time that stands still until somebody moves it; sleeping moves it. Thread-safe."""
+    """Clock that advances only by calls, also by sleeping; thread-safe."""
 
     def __init__(self, start: float = 0.0) -> None:
         self._t = start
         self._lock = threading.Lock()
 
     def now(self) -> float:
-        """The time it was moved to."""
+        """Return the present time in seconds."""
         return self._t
 
     def sleep_until(self, t: float) -> None:
-        """Move to ``t`` at once; never back."""
+        """Advance to ``t`` at once, but never backward."""
         with self._lock:
             self._t = max(self._t, t)
 
     def advance(self, dt: float) -> None:
-        """Move on by ``dt`` seconds."""
+        """Advance by ``dt`` seconds."""
         with self._lock:
             self._t += dt
 
 
-# --- Openings of what was lost.
+# --- Openings of lost connections.
 
 
 T = TypeVar("T")
 
 
 class Opening(Generic[T]):
-    """One attempt. ``at_once``: in this thread, where it cannot wait."""
+    """Attempt to open a lost connection in a thread, or with ``at_once`` in the calling thread."""
 
     def __init__(self, open_: Callable[[], T], *, at_once: bool = False) -> None:
         self._open = open_
@@ -160,7 +161,7 @@ class Opening(Generic[T]):
             threading.Thread(target=self._run, name="reopening", daemon=True).start()
 
     def take(self) -> T | None:
-        """What was opened, None until then. Raises DriverError when it cannot be."""
+        """Return the opened connection, or None while opening. Raises DriverError if opening failed."""
         try:
             found = self._found.get_nowait()
         except queue.Empty:

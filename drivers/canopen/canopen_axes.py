@@ -1,4 +1,4 @@
-"""The slides on the bus behind ``core.ports.AxisSink``: one queue of setpoints, one drive an axis."""
+"""Axes on a CANopen bus, with one setpoint queue and one drive per axis."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from drivers.setpoint_queue import SetpointQueue, Tolerance, check_limits
 def follower_of(
     config: CanopenConfig, drives: DriveSet, queue: SetpointQueue, schedule: SyncSchedule
 ) -> Follower:
-    """The one of ``config.bus.mode``."""
+    """Create the follower for ``config.bus.mode``."""
     if config.bus.mode == "pp":
         return ProfiledFollower(drives.axes, drives.indices, queue)
     if MOTIONS[config.bus.mode].cyclic:
@@ -28,14 +28,14 @@ def follower_of(
     return PvtFollower(drives.axes, drives.indices, queue, config.commit, config.bus.record)
 
 
-_PAST = 0.5  # s of setpoints that may still be asked for
+_PAST = 0.5  # Age in s of setpoints that are still available.
 _BRAKES = (
-    0.15  # s beyond the ramp from full speed in which a quick stop must have ended in a drive without power
+    0.15  # Seconds in addition to the ramp from full speed until a quick stop must have ended without power.
 )
 
 
 class CanopenAxes:
-    """Used by the one thread that owns the bus, which sends the commands and the SYNC."""
+    """``core.ports.AxisSink`` of the CANopen drives, used only by the thread that owns the bus."""
 
     def __init__(self, config: CanopenConfig, bus: Bus) -> None:
         self._bus = bus
@@ -50,13 +50,13 @@ class CanopenAxes:
         self.cyclic = MOTIONS[config.bus.mode].cyclic
         self.homing: Homing | None = None
         self.fault = ""
-        self.beside = ""  # what is wrong elsewhere on the bus
-        self.reconnect: Callable[[], None] = lambda: None  # opens the bus and configures all that is on it
-        self.clearing: list[Callable[[], None]] = []  # who else has faults to clear
+        self.beside = ""  # Fault of another device on the bus.
+        self.reconnect: Callable[[], None] = lambda: None  # Opens the bus and configures all nodes.
+        self.clearing: list[Callable[[], None]] = []  # Functions that clear the faults of other devices.
         self._on = False
-        self._braking = False  # by quick stop, after which a drive takes its power itself
-        self._powerless_at = 0.0  # when it is taken in any case
-        self._given_up: Homing | None = None  # a homing that was stopped and still brakes
+        self._braking = False  # Braking by quick stop, after which a drive switches itself off.
+        self._powerless_at = 0.0  # Time when the power is switched off at the latest.
+        self._given_up: Homing | None = None  # A canceled homing that still brakes.
 
     def connect(self) -> None:
         """Configure every drive. Raises DriverError."""
@@ -64,9 +64,9 @@ class CanopenAxes:
         self.queue.rest_at(self._actual())
 
     def tick(self, now: float) -> None:
-        """Supervise, home, feed; what is fed at each SYNC is fed by ``go_on``. Raises nothing.
+        """Supervise the drives, home and feed setpoints, without raising errors.
 
-        What is wrong becomes the fault, and all axes stop.
+        A fault stops all axes. In cyclic modes, ``go_on`` feeds the setpoints at each SYNC instead.
         """
         self._supervise()
         if not self.cyclic:
@@ -76,7 +76,7 @@ class CanopenAxes:
         self.queue.trim(now - _PAST)
 
     def go_on(self, now: float) -> None:
-        """The next step of a homing, or the next setpoints."""
+        """Execute the next step of a homing, or feed the next setpoints."""
         try:
             if self._on and not self.fault:
                 self._go_on(now)
@@ -86,19 +86,22 @@ class CanopenAxes:
     # --- the port -----------------------------------------------------------------------------------------
 
     def now(self) -> float:
-        """The machine's clock."""
+        """Return the time of the machine's clock in seconds."""
         return self._bus.clock.now()
 
     def horizon(self) -> float:
-        """End of what is queued; now when nothing is."""
+        """Return the end time of the setpoint queue, or the present time if it is empty."""
         return self.queue.horizon(self.now())
 
     def demand_at(self, t: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Queued position and velocity at ``t``."""
+        """Return the queued positions and velocities at time ``t``."""
         return self.queue.demand_at(t)
 
     def splice(self, segments: Segments) -> None:
-        """Queue setpoints. Raises DriverError as the port says, and for what the drives cannot follow."""
+        """Splice setpoints into the queue.
+
+        Raises DriverError if they are invalid or the drives cannot follow.
+        """
         self._need_power()
         homing = self.homing or self._given_up
         demand_no_homing(homing.config.name if homing is not None else "")
@@ -107,7 +110,7 @@ class CanopenAxes:
         self.queue.splice(segments, self.now())
 
     def sample(self) -> AxisSample:
-        """The axes as the last answers have it, at the time of their SYNC."""
+        """Return the state of the axes from the last replies, at the time of their SYNC."""
         actual, powered, seen = self._actual(), self._powered(), self.drives.seen
         demand, velocity = self.queue.demand_at(self.follower.path_time(seen))
         busy = self.homing is not None or self._given_up is not None
@@ -129,7 +132,7 @@ class CanopenAxes:
         return self.drives.moving or (self.cyclic and self.follower.playing)
 
     def enable(self, on: bool) -> None:
-        """Power on or off, and wait for it. Raises DriverError naming the drive that does not come."""
+        """Switch the power on or off and wait for it. Raises DriverError that names the drives that fail."""
         if not on:
             self._off(DriveState.OFF)
             self.drives.power_off()
@@ -143,16 +146,16 @@ class CanopenAxes:
         self._on = True
 
     def stop(self, how: Stop) -> None:
-        """The drives' own stop at once, all of them at one SYNC; RAMP_HOLD brakes on the path."""
+        """Stop all axes by the drives at one SYNC, or on the path with RAMP_HOLD."""
         if how is Stop.RAMP_HOLD and self._powered():
             self._hold()
             return
         self._off(DriveState.OFF if how is Stop.OFF else DriveState.QUICK_STOP)
-        if not self._bus.trouble and not self.cyclic:  # else with the next SYNC, which keeps its time
+        if not self._bus.trouble and not self.cyclic:  # Otherwise with the next SYNC at its regular time.
             self.drives.exchange()
 
     def home(self, axis: str) -> None:
-        """Start the drive's homing. Raises DriverError."""
+        """Start the homing of the drive. Raises DriverError without power or while the axis moves."""
         demand_axis(axis, self.axes)
         driven = next((a for a in self.drives.axes if a.config.name == axis), None)
         if driven is None or driven.config.absolute:
@@ -163,8 +166,9 @@ class CanopenAxes:
         self.homing = Homing(driven, self.follower.mode, self.now())
 
     def clear_fault(self) -> None:
-        """Forget the fault, reset the drives that have one; they stay without power. A bus that has failed is
-        opened anew, and every node configured. Raises DriverError.
+        """Clear the fault and reset the drives, which remain without power.
+
+        After a bus failure, the bus is opened again and every node is configured. Raises DriverError.
         """
         if self._bus.trouble:
             self.reconnect()
@@ -175,11 +179,11 @@ class CanopenAxes:
         self.drives.clear()
 
     def follower_rests(self, now: float) -> bool:
-        """Nothing is queued, and nothing is left in the drives."""
+        """Return whether no setpoints are left in the queue or in the drives."""
         return at_rest(self.queue.horizon(now), now) and not self.follower.playing
 
     def rest_here(self) -> None:
-        """The path goes on from where the drives stand."""
+        """Restart the setpoint queue at the measured positions."""
         self.queue.rest_at(self._actual())
 
     # --- inside -------------------------------------------------------------------------------------------
@@ -190,11 +194,11 @@ class CanopenAxes:
         if trouble and not self.fault:
             self._trip(trouble)
         elif self._on and not self._powered() and not trouble:
-            self._off(DriveState.OFF)  # power was taken away: E-stop, safe torque off
+            self._off(DriveState.OFF)  # The power was removed by E-stop or STO.
             self.drives.lose_home()
 
     def _trip(self, fault: str) -> None:
-        """No axis is kept alive without the others."""
+        """Set the fault and stop all axes."""
         self.fault = self.fault or fault
         self._off(DriveState.QUICK_STOP)
 
@@ -211,13 +215,16 @@ class CanopenAxes:
         self.queue.rest_at(self._actual())
 
     def _end_braking(self, now: float) -> None:
-        """A drive whose encoder no longer counts, or that runs away, brakes for ever and pushes meanwhile."""
+        """Switch the drives off when a quick stop takes too long.
+
+        A drive with a failed encoder or a runaway would otherwise push without end.
+        """
         if self._braking and now > self._powerless_at:
             self._braking = False
             self.drives.aim(DriveState.OFF)
 
     def _hold(self) -> None:
-        """Brake on the path; a homing has none, there the drive brakes by itself."""
+        """Brake on the path; during homing, the drive brakes on its own ramp."""
         if self.homing is not None:
             self.homing.give_up()
             self.homing, self._given_up = None, self.homing
@@ -226,7 +233,7 @@ class CanopenAxes:
             if any(self.queue.demand_at(at)[1]):
                 self.queue.brake(at, [axis.amax for axis in self.config.axes])
             else:
-                place, _ = self.queue.demand_at(at)  # what is played until then stays
+                place, _ = self.queue.demand_at(at)  # Setpoints until then remain.
                 self.queue.splice(Segments.resting(at, place), at - self.commit)
             self.follower.braked(at)
 
@@ -242,7 +249,7 @@ class CanopenAxes:
                 for index, sub, value in limits(homing.config):
                     homing.axis.drive.setup.try_write(index, sub, value)
             self.homing = self._given_up = None
-            self.queue.rest_at(self._actual())  # the path goes on from where the drive has stopped
+            self.queue.rest_at(self._actual())  # The path continues from the stop position of the drive.
 
     def _need_power(self) -> None:
         demand_power(self.fault, self._powered())
@@ -251,7 +258,7 @@ class CanopenAxes:
         return self._on and self.drives.powered
 
     def _actual(self) -> tuple[float, ...]:
-        """Positions by the drives' counts; an axis without a drive is where the queue has it."""
+        """Return the positions measured by the drives, or the queued position of an axis without a drive."""
         p = list(self.queue.demand_at(self.now())[0])
         for index, axis in zip(self.drives.indices, self.drives.axes, strict=True):
             p[index] = axis.drive.position * axis.config.count

@@ -1,4 +1,4 @@
-"""The wire: one socket, read by the loop that owns it. There is no reading thread that could die unseen."""
+"""CAN bus with one socket, which the loop that owns the bus reads without a separate thread."""
 
 from __future__ import annotations
 
@@ -20,42 +20,43 @@ from core.ports import Clock, DriverError, Fault
 from drivers.canopen.canopen_table import CanopenTable
 
 _log = logging.getLogger(__name__)
-for _library in ("can", "canopen"):  # what goes wrong there is raised, and told by us in one sentence
+for _library in ("can", "canopen"):  # Their errors are raised and reported by TurnDesk.
     logging.getLogger(_library).addHandler(logging.NullHandler())
 
-_GARBLED = 3  # frames of a wrong shape
-_BUS_OFF = 0x40  # class of an error frame: the controller has switched itself off
+_GARBLED = 3  # Number of invalid frames.
+_BUS_OFF = 0x40  # Class of an error frame: the controller is bus-off.
 _OPERATIONAL = 5
-_ROUNDS = 400  # looks at a bus whose clock stands, before nobody answers
-_EARLY = 0.005  # s by which our heartbeat may go out with something else
+_ROUNDS = 400  # Cycles with a stopped clock before a missing response is assumed.
+_EARLY = 0.005  # Seconds by which the heartbeat may be sent early.
 _BEAT, _SYNC, _NMT = 0x700, 0x080, 0x000
-_ECHOING = ("udp_multicast",)  # hears itself: no other master can be told apart
+_ECHOING = ("udp_multicast",)  # Receives its own frames, so another master cannot be detected.
 
 
 class Bus(canopen.Network):
-    """One CAN bus. ``idle`` is what a wait does in between where time does not pass by itself (tests)."""
+    """CAN bus; in tests, ``idle`` advances the time during a wait."""
 
     def __init__(self, config: CanopenTable, clock: Clock, idle: Callable[[], None] | None = None) -> None:
         super().__init__(opened(config))
         self.config = config
         self.clock = clock
         self.garbled = 0
-        self.trouble: Fault | str = ""  # why the bus cannot be trusted; stays until it is opened anew
+        self.trouble: Fault | str = ""  # Reason for the bus failure until the bus is opened again.
         self._idle = idle
-        self.meanwhile: Callable[[], float] | None = None  # goes on in every wait; s until it has to again
-        self.next_beat = clock.now()  # when ours is due
+        # Called during every wait; returns seconds until the next call.
+        self.meanwhile: Callable[[], float] | None = None
+        self.next_beat = clock.now()  # Time of TurnDesk's next heartbeat.
         if config.interface not in _ECHOING:
             for cob in (_SYNC, _NMT, _BEAT + config.host_id):
                 self.subscribe(cob, self._another_master)
 
     def close(self) -> None:
-        """Let the interface go."""
+        """Close the interface."""
         if self.bus is not None:
             self.bus.shutdown()
             self.bus = None
 
     def reopen(self) -> None:
-        """The interface anew, behind whatever ended the trust in it. Raises DriverError."""
+        """Open the interface again after a failure. Raises DriverError."""
         self.close()
         try:
             self.bus = opened(self.config)
@@ -65,10 +66,10 @@ class Bus(canopen.Network):
         self.next_beat = self.clock.now()
 
     def pump(self, wait: float = 0.0) -> None:
-        """Take in what has come, waiting at most ``wait`` for the first; our heartbeat goes out from here.
+        """Send the heartbeat when it is due and process received frames.
 
-        The heartbeat lives in the loop on purpose: a kernel job would go on telling the drives that all is
-        well when this process hangs.
+        ``wait`` limits the seconds to the first frame. The heartbeat is sent from this loop on purpose: a
+        kernel job would continue to send it if the process hangs.
         """
         self.beat()
         while self.bus is not None and not self.trouble:
@@ -83,15 +84,15 @@ class Bus(canopen.Network):
             self._take(message)
 
     def beat(self, *, at_once: bool = False) -> None:
-        """Our heartbeat, when it is due. A node begins to watch it with the first that it hears."""
+        """Send the heartbeat when it is due; a node starts to monitor it at the first one."""
         now = self.clock.now()
         if (at_once or now >= self.next_beat - _EARLY) and not self.trouble:
             self.next_beat = now + self.config.heartbeat
-            with contextlib.suppress(DriverError):  # kept as the bus's trouble
+            with contextlib.suppress(DriverError):  # Stored as the fault of the bus.
                 self.send_message(_BEAT + self.config.host_id, bytes([_OPERATIONAL]))
 
     def send_message(self, can_id: int, data: bytes, remote: bool = False) -> None:
-        """Send one frame. Raises DriverError when the interface does not take it."""
+        """Send one frame. Raises DriverError if the interface rejects it."""
         if self.bus is None or self.trouble:
             raise DriverError(
                 "CAN {channel}: {problem}",
@@ -111,11 +112,11 @@ class Bus(canopen.Network):
             ) from error
 
     def synchronise(self) -> None:
-        """One SYNC: drives apply what was sent before it, and answer."""
+        """Send one SYNC, at which the drives apply the frames sent before and reply."""
         self.send_message(_SYNC, b"")
 
     def wait(self, ready: Callable[[], bool], timeout: float) -> bool:
-        """Take messages in until ``ready``; False after ``timeout`` seconds of real time."""
+        """Process frames until ``ready`` returns True; return False after ``timeout`` seconds."""
         if self._idle is not None:
             return self._wait_in_steps(ready)
         end = time.monotonic() + timeout
@@ -129,11 +130,11 @@ class Bus(canopen.Network):
 
     @property
     def stepped(self) -> bool:
-        """Time does not pass by itself (tests)."""
+        """Whether time advances only by ``idle``, as in tests."""
         return self._idle is not None
 
     def lost(self, why: str) -> None:
-        """Nothing on this bus can be believed any more; the first reason is kept."""
+        """Mark the bus as failed; the first reason is retained."""
         self.trouble = self.trouble or Fault(why, "bus")
 
     def _wait_in_steps(self, ready: Callable[[], bool]) -> bool:
@@ -156,7 +157,7 @@ class Bus(canopen.Network):
             self._deliver(message)
 
     def _deliver(self, message: can.Message) -> None:
-        """To whoever listens; a few frames of a wrong shape are dropped, more of them end the trust."""
+        """Pass a frame to its subscribers; repeated invalid frames mark the bus as failed."""
         try:
             self.notify(message.arbitration_id, bytearray(message.data), self.clock.now())
         except (struct.error, IndexError, ValueError) as error:
@@ -177,21 +178,24 @@ class Bus(canopen.Network):
 
 
 class WaitingSdo(SdoClient):
-    """An SDO client that reads the bus itself while it waits."""
+    """SDO client that reads the bus itself while it waits."""
 
-    RESPONSE_TIMEOUT = 1.0  # s; some drives take their time over what they store
+    RESPONSE_TIMEOUT = 1.0  # Seconds; some drives store values slowly.
 
     def __init__(self, rx_cobid: int, tx_cobid: int, dictionary: canopen.ObjectDictionary) -> None:
         SdoClient.__init__(self, rx_cobid, tx_cobid, dictionary)
 
     def on_response(self, can_id: int, data: bytearray, timestamp: float) -> None:
-        """An answer has eight bytes; anything else is none. Raises ValueError."""
+        """Handle a response. Raises ValueError unless it has eight bytes."""
         if len(data) != 8:
             raise ValueError(f"an SDO answer of {len(data)} bytes")
         SdoClient.on_response(self, can_id, data, timestamp)
 
     def read_response(self) -> bytes:
-        """The answer. Raises SdoCommunicationError without one, SdoAbortedError when the node refuses."""
+        """Wait for the response and return it.
+
+        Raises SdoCommunicationError without a response and SdoAbortedError if the node rejects the request.
+        """
         bus = self.network
         assert isinstance(bus, Bus)
         if not bus.wait(lambda: not self.responses.empty(), self.RESPONSE_TIMEOUT):
@@ -203,10 +207,10 @@ class WaitingSdo(SdoClient):
 
 
 class Node(canopen.RemoteNode):
-    """A node of the bus whose SDO client needs no reading thread."""
+    """Remote node whose SDO client needs no reading thread."""
 
     def add_sdo(self, rx_cobid: int, tx_cobid: int) -> WaitingSdo:
-        """One more SDO channel."""
+        """Add an SDO channel and return its client."""
         client = WaitingSdo(rx_cobid, tx_cobid, self.object_dictionary)
         self.sdo_channels.append(client)
         if self.has_network():
@@ -214,14 +218,15 @@ class Node(canopen.RemoteNode):
         return client
 
 
-# NotImplementedError: an interface that python-can does not know.
+# NotImplementedError is raised for an interface that python-can does not know.
 _NOT_OPENED = (can.CanError, OSError, ValueError, TypeError, AttributeError, ImportError, NotImplementedError)
 
 
 def opened(config: CanopenTable) -> can.BusABC:
-    """The interface; raises DriverError. On udp_multicast a channel may end in ``:port``.
+    """Open the CAN interface. Raises DriverError if it cannot be opened.
 
-    Two groups on one port hear each other within one computer.
+    On udp_multicast, a channel may end in ``:port``. Two groups on one port receive each other's frames
+    within one computer.
     """
     on_udp = config.interface in _ECHOING
     channel, _, port = config.channel.partition(":") if on_udp else (config.channel, "", "")

@@ -1,4 +1,4 @@
-"""What hangs on the bus: filled by the app from the machine file, frozen."""
+"""Configuration of the devices on the bus, which the app fills from the machine file."""
 
 from __future__ import annotations
 
@@ -13,31 +13,34 @@ from drivers.setpoint_queue import AxisFigures
 
 @dataclass(frozen=True, slots=True)
 class AxisConfig(AxisFigures):
-    """One axis. Without a ``node`` it has no drive, and only counts."""
+    """One axis; without a ``node`` it has no drive and only counts."""
 
     node: CanNode | None = None
     profile: DriveProfile = CIA402
-    counts_per_rev: int = 0  # the drive's velocities are rpm of so many counts; 0: counts/s
+    counts_per_rev: int = 0  # Counts per revolution for velocities in rpm; 0: counts/s.
     home_method: int = 0
     home_latch: float = 0.0
     home_offset: float = 0.0
 
     def velocity(self, speed: float) -> float:
-        """A speed, mm/s or degrees/s, in the drive's unit: counts/s, or rpm."""
+        """Convert a speed in mm/s or degrees/s into the drive's unit, counts/s or rpm."""
         counts = speed / self.count
         return counts * 60.0 / self.counts_per_rev if self.counts_per_rev else counts
 
     def acceleration(self, accel: float) -> int:
-        """An acceleration, mm/s² or degrees/s², in the drive's unit: counts/s², or rpm/s; at least one."""
+        """Convert an acceleration into the drive's unit, counts/s² or rpm/s, at least 1.
+
+        The argument is in mm/s² or degrees/s².
+        """
         counts = accel / self.count
         return max(round(counts * 60.0 / self.counts_per_rev if self.profile.rpm else counts), 1)
 
 
 @dataclass(frozen=True, slots=True)
 class SpindleConfig:
-    """A drive in profile velocity mode; rpm and rpm/s. ``is_c``: it positions C too.
+    """Spindle drive in profile velocity mode, in rpm and rpm/s; ``is_c``: the drive also positions C.
 
-    Without counts a turn its node tells no angle.
+    Without counts per revolution, its node does not provide an angle.
     """
 
     node: CanNode
@@ -49,19 +52,19 @@ class SpindleConfig:
 
 @dataclass(frozen=True, slots=True)
 class EncoderConfig:
-    """An encoder on the spindle. Without a ``node``: the second input of the drive that ``name`` says."""
+    """Encoder on the spindle; without a ``node``, it is the second encoder input of the drive ``name``."""
 
     name: str
     node: CanNode | None
     index: int
     sub: int
-    counts_per_rev: int  # negative: it counts down with M03
+    counts_per_rev: int  # Negative: counts down with M03.
     rpm_max: float
 
 
 @dataclass(frozen=True, slots=True)
 class OutputConfig:
-    """An output: ``safe`` None keeps its state."""
+    """Output with its safe state; None leaves the output unchanged."""
 
     terminal: CanTerminal
     safe: bool | None = False
@@ -69,7 +72,7 @@ class OutputConfig:
 
 @dataclass(frozen=True, slots=True)
 class PotConfig:
-    """An analog input: ``low`` … ``high`` is what 0 and full scale mean; ``switch`` is its input's name."""
+    """Analog input, whose zero and full scale mean ``low`` and ``high``; ``switch`` names its input."""
 
     terminal: CanTerminal
     low: float = 0.0
@@ -79,12 +82,12 @@ class PotConfig:
 
 @dataclass(frozen=True, slots=True)
 class CanopenConfig:
-    """The whole machine on the bus."""
+    """Configuration of the complete machine on the bus."""
 
     bus: CanopenTable
     axes: tuple[AxisConfig, ...]
     spindle: SpindleConfig | None = None
-    encoder: EncoderConfig | None = None  # beside a spindle that somebody else turns
+    encoder: EncoderConfig | None = None  # For a spindle that another device drives.
     modules: tuple[CanNode, ...] = ()
     outputs: Mapping[str, OutputConfig] = field(default_factory=dict)
     inputs: Mapping[str, CanTerminal] = field(default_factory=dict)

@@ -1,4 +1,4 @@
-"""An encoder on the spindle: a node of CiA 406, or the second encoder input of a drive. It only measures."""
+"""Spindle encoder on the bus: a CiA 406 node, or the second encoder input of a drive."""
 
 from __future__ import annotations
 
@@ -15,14 +15,17 @@ from drivers.canopen.canopen_config import EncoderConfig
 from drivers.canopen.canopen_setup import Setup, watching
 from drivers.canopen.cia402_drives import SYNCS, Drive402
 
-_WINDOW = 0.1  # s over which speed is measured: one reading more or less late is then a per cent of it
-_FASTER = 2.0  # times the highest speed: no spindle does that, a broken wire does
-_SCALED = 0x04  # bit 2 of 0x6000: the node counts 0x6001 a turn, not its own resolution
+_WINDOW = 0.1  # Seconds over which the speed is measured, so that a late reading changes it by about 1 %.
+_FASTER = 2.0  # Factor of the maximum speed that indicates a broken wire.
+_SCALED = 0x04  # Bit 2 of 0x6000: the counts per revolution are 0x6001 instead of the resolution.
 _WORD = 2**32
 
 
 class CanEncoder:
-    """Speed and angle by counts at each SYNC. ``trouble`` stays until ``clear_fault``."""
+    """Spindle encoder that measures speed and angle by its counts at each SYNC.
+
+    A fault remains until ``clear_fault``.
+    """
 
     def __init__(self, config: EncoderConfig, bus: Bus, drive: Drive402 | None) -> None:
         self._config = config
@@ -32,14 +35,14 @@ class CanEncoder:
         self.node = self._setup.node
         self.trouble: Fault | str = ""
         self.missing = 0
-        self._range = _WORD  # counts after which it goes round
+        self._range = _WORD  # Counts after which the position wraps around.
         self._raw: int | None = None
         self._counts = 0
         self._asked = self._heard = bus.clock.now()
-        self._reads: deque[tuple[float, float]] = deque()  # time of the SYNC and turns
+        self._reads: deque[tuple[float, float]] = deque()  # Time of the SYNC, and revolutions.
 
     def connect(self) -> None:
-        """Check and map it. Raises DriverError with what does not fit."""
+        """Check and map the encoder. Raises DriverError if it does not match the machine file."""
         setup, config = self._setup, self._config
         if config.node is not None:
             setup.pre_operational()
@@ -56,16 +59,16 @@ class CanEncoder:
         self._reads.clear()
 
     def operational(self) -> None:
-        """NMT start; a drive is started by whoever owns it."""
+        """Start the node by NMT; a drive is started by its owner."""
         if self._drive is None:
             self.node.nmt.state = "OPERATIONAL"
 
     def sync_sent(self, now: float, *, counted: bool = True) -> None:
-        """A SYNC goes out; ``counted``: an answer to it is waited for."""
+        """Record that a SYNC is sent; with ``counted``, a reply is expected."""
         self.missing, self._asked = self.missing + counted, now
 
     def look(self) -> None:
-        """Supervise."""
+        """Set a fault if heartbeats or replies are missing."""
         silent = self._bus.clock.now() - self._heard
         if self._drive is None and silent > 3.0 * self._bus.config.heartbeat:
             self._wrong(
@@ -75,7 +78,7 @@ class CanEncoder:
             self._wrong("the encoder does not respond to SYNC; check cable and power")
 
     def clear_fault(self) -> None:
-        """Configure it anew where something was wrong; without it the slides go on, the spindle does not."""
+        """Configure the encoder again after a fault; a failure affects only the spindle, not the axes."""
         if not self.trouble:
             return
         try:
@@ -85,22 +88,25 @@ class CanEncoder:
             self.trouble = Fault("spindle encoder {error}", "spindle-encoder", error=error)
 
     def speed(self) -> float:
-        """rpm, signed, over the last tenth of a second."""
+        """Return the speed of the last 0.1 s in rpm, signed."""
         if len(self._reads) < 2:
             return 0.0
         (t0, turns0), (t1, turns1) = self._reads[0], self._reads[-1]
         return 60.0 * (turns1 - turns0) / (t1 - t0)
 
     def angle(self) -> tuple[float, float] | None:
-        """(time, turns) of the last SYNC that was answered; None before."""
+        """Return a (time, revolutions) pair at the last SYNC with a reply, or None before the first reply."""
         return self._reads[-1] if self._reads else None
 
     def fault(self) -> str:
-        """Why it is not to be believed; empty when it is."""
+        """Return the reason why the measurement is invalid, or an empty text."""
         return self._bus.trouble or self.trouble
 
     def _check_counts(self) -> None:
-        """Does it count what the machine file says, and not go round between two answers? DriverError."""
+        """Check the counts per revolution and the counting range against the machine file.
+
+        Raises DriverError if the counts differ or may wrap around between two replies.
+        """
         setup, config = self._setup, self._config
         scaled = setup.read(od.ENCODER_MODE) & _SCALED
         counts = setup.read(od.ENCODER_STEPS if scaled else od.ENCODER_RESOLUTION)
@@ -117,7 +123,7 @@ class CanEncoder:
         turns = setup.read(od.ENCODER_TURNS)
         self._range = (setup.read(od.ENCODER_RANGE) if scaled else counts * max(turns, 1)) or _WORD
         wait = self._bus.config.sync * self._bus.config.seldom
-        between = (SYNCS + 1) * wait * config.rpm_max / 60.0  # turns, at most
+        between = (SYNCS + 1) * wait * config.rpm_max / 60.0  # Maximum revolutions.
         if self._range < 2.0 * between * counts:
             raise DriverError(
                 "{name}: the encoder count wraps around after {range} rev, but the spindle may turn "
@@ -182,38 +188,38 @@ class CanEncoder:
 
 
 def _setup_of(config: EncoderConfig, bus: Bus) -> Setup:
-    assert config.node is not None  # else it is the second input of a drive
+    assert config.node is not None  # Otherwise the encoder is the second input of a drive.
     objects = od.dictionary(config.name, config.node.eds, od.encoder_objects)
     return Setup(bus, config.name, config.node.id, objects)
 
 
 class MeasuredSpindle:
-    """``core.ports.Spindle`` of a bus that turns nothing, and measures where it has an encoder.
+    """``core.ports.Spindle`` of a bus without a spindle drive, with the speed of the encoder if there is one.
 
-    An inverter takes its place.
+    An inverter replaces it as the drive.
     """
 
     def __init__(self, encoder: CanEncoder | None) -> None:
         self._encoder = encoder
 
     def run(self, rpm: float) -> None:
-        """There is nothing to turn. Raises DriverError, unless asked to stop."""
+        """Raise DriverError unless ``rpm`` is 0, because the bus does not have a spindle drive."""
         if rpm:
             raise DriverError(
                 "this bus has no spindle drive; check spindle.driver", "spindle-off", reason="no-drive"
             )
 
     def coast(self) -> None:
-        """Nothing is turned here."""
+        """Do nothing, because the bus does not have a spindle drive."""
 
     def speed(self) -> float:
-        """rpm, signed; 0 where nothing measures it."""
+        """Return the measured speed in rpm, signed, or 0 without an encoder."""
         return self._encoder.speed() if self._encoder is not None else 0.0
 
     def angle(self) -> tuple[float, float] | None:
-        """(time, turns); None without an encoder, and before its first answer."""
+        """Return a (time, revolutions) pair, or None without an encoder or before its first reply."""
         return self._encoder.angle() if self._encoder is not None else None
 
     def fault(self) -> str:
-        """Why the encoder is not to be believed."""
+        """Return the reason why the encoder is invalid, or an empty text."""
         return self._encoder.fault() if self._encoder is not None else ""

@@ -1,4 +1,4 @@
-"""Homing by the drives themselves: an axis on its switch, the spindle on its index or where it stands."""
+"""Homing by the drives: an axis on its switch, the spindle on its index or at its present position."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from drivers.canopen.canopen_objects import BIT_12, BIT_13, HALT, HM, NEW, REACH
 from drivers.canopen.cia402_drives import Drive402
 from drivers.canopen.driven_axes import DrivenAxis
 
-_FIRST = 0.1  # s in which "target reached" may still be that of the last move
-_MODE = 0.5  # s for a change of mode
-_SPARE = 10.0  # s beyond the way at homing speed
-_SETTLE = 0.05  # s in which its new count must have been answered: setpoints begin there
-_STILL = 0.1  # s without a count before a drive that was halted counts as standing
+_FIRST = 0.1  # Seconds in which "target reached" may still refer to the last move.
+_MODE = 0.5  # Seconds for a change of mode.
+_SPARE = 10.0  # Seconds in addition to the travel time at homing speed.
+_SETTLE = 0.05  # Seconds until the new count is reported, from which setpoints start.
+_STILL = 0.1  # Seconds without a count before a halted drive is assumed to be at standstill.
 
 
 class _Step(Enum):
@@ -28,7 +28,7 @@ class _Step(Enum):
 
 
 class Homing:
-    """One axis. ``step`` once a tick; ``done`` in the end, found or given up, or ``trouble``."""
+    """Homing of one axis; ``step`` must be called once per tick until ``done`` is true or a fault is set."""
 
     def __init__(self, axis: DrivenAxis, back: int, now: float) -> None:
         self.axis = axis
@@ -43,11 +43,11 @@ class Homing:
 
     @property
     def done(self) -> bool:
-        """The axis stands, and is back in its mode."""
+        """Whether the homing has ended and the drive is back in its previous mode."""
         return self._step is _Step.DONE
 
     def step(self, now: float) -> None:
-        """Look at the status word, and go on."""
+        """Evaluate the status word and continue."""
         drive, waited = self._drive, now - self._since
         if self._step is _Step.MODE and drive.shown_mode == HM:
             drive.extra |= NEW
@@ -64,12 +64,15 @@ class Homing:
             self._fail("the drive stays in mode {shown_mode}", shown_mode=drive.shown_mode)
 
     def give_up(self) -> None:
-        """Halt: the drive brakes. Its mode changes back once it stands; some refuse that in motion."""
+        """Cancel the homing, so that the drive brakes.
+
+        The mode changes back at standstill, because some drives reject a mode change in motion.
+        """
         self._drive.extra = self._drive.extra & ~NEW | HALT
         self._step = _Step.HALT
 
     def _brake(self, now: float, waited: float) -> None:
-        if self.axis.moving or not self._braking:  # the first look after giving up begins the wait
+        if self.axis.moving or not self._braking:  # The first check after the cancellation starts the wait.
             self._since, self._braking = now, True
         elif waited > _STILL:
             self._leave(now)
@@ -101,7 +104,10 @@ class Homing:
         self.trouble = Fault("{name}: homing failed: {why}", "homing", name=self.config.name, why=why)
 
     def _write(self) -> None:
-        """Method, speeds, acceleration and place, as far as the drive has them. Raises DriverError."""
+        """Write method, speeds, acceleration and home offset, as far as the drive has these objects.
+
+        Raises DriverError.
+        """
         config, setup = self.config, self._drive.setup
         slow = config.home_latch or config.home_speed / 10.0
         setup.write(od.HOME_METHOD, 0, config.home_method)
@@ -125,35 +131,35 @@ class Homing:
     _braking = False
 
 
-# --- Where the spindle's drive is: homed on its index or where it stands, followed through all its turning.
+# --- Position of the spindle drive: homed on the index or in place, and tracked while it turns.
 
 
-_CHANGE = 2.0  # s for a change of mode with power
-_SEARCH = 15.0  # s for the index
-_FIRST_REFERENCE = 0.1  # s in which "target reached" may still be that of the last move
-_HERE = (37, 35)  # homing methods "where it stands", the new code and the old one
-_INDEX = 34  # homing method: the index, turning forward
+_CHANGE = 2.0  # Seconds for a change of mode with power.
+_SEARCH = 15.0  # Seconds to find the index.
+_FIRST_REFERENCE = 0.1  # Seconds in which "target reached" may still refer to the last move.
+_HERE = (37, 35)  # Homing methods for the present position: the new code and the old one.
+_INDEX = 34  # Homing method: index, turning forward.
 SEARCH_RPM = 60
 
 
 class Referencing:
-    """One homing of the drive: begun, then asked in every round whether it is done."""
+    """Homing of the spindle drive, which the caller starts and then polls."""
 
     def __init__(self, drive: Drive402) -> None:
         self._drive = drive
         self._limit = 0.0
         self._why = ""
         self._since = 0.0
-        self._told = False  # the drive was told to begin
+        self._told = False  # The drive has received the start command.
 
     def index(self, now: float) -> None:
-        """Look for the index. Raises DriverError."""
+        """Start the search for the index. Raises DriverError."""
         self._limit, self._why = _SEARCH, "no encoder index was found within one revolution"
         self._drive.setup.write(od.HOME_METHOD, 0, _INDEX)
         self._begin(0, now)
 
     def set_position(self, place: int, now: float) -> None:
-        """It counts ``place`` where it stands. Raises DriverError."""
+        """Start to set the present position to ``place`` counts. Raises DriverError."""
         self._limit, self._why = _CHANGE, "the drive does not accept its new position"
         try:
             self._drive.setup.write(od.HOME_METHOD, 0, _HERE[0])
@@ -162,7 +168,7 @@ class Referencing:
         self._begin(place, now)
 
     def done(self, now: float) -> bool:
-        """Whether it is over. Raises DriverError where it has failed."""
+        """Return whether the homing is complete. Raises DriverError if it has failed."""
         drive, waited = self._drive, now - self._since
         if not self._told:
             if drive.enabled and drive.shown_mode == HM:
@@ -192,7 +198,7 @@ class Referencing:
 
 
 class Phase:
-    """Counts from the index within a turn; ``counts`` None: it was never looked for."""
+    """Counts from the index within one revolution; ``counts`` is None before the index is found."""
 
     def __init__(self, per_turn: int) -> None:
         self._per_turn = per_turn
@@ -200,11 +206,14 @@ class Phase:
         self.counts: int | None = None
 
     def index_found(self, position: int) -> None:
-        """The drive counts from its index now."""
+        """Set the phase at a drive position that counts from the index."""
         self.counts, self._last = position % self._per_turn, position
 
     def follow(self, position: int, *, leaps: bool) -> None:
-        """Once a round. ``leaps``: the counter is being set, and the spindle does not turn."""
+        """Track the drive position, once per cycle.
+
+        ``leaps``: the counter is being set while the spindle does not turn, so the change is ignored.
+        """
         moved = (position - self._last + 2**31) % 2**32 - 2**31
         self._last = position
         if self.counts is not None and not leaps:

@@ -1,4 +1,4 @@
-"""The whole machine on one bus: connected in order, then ticked by the one loop that owns it."""
+"""Complete machine on one CANopen bus, driven by the one loop that owns the bus."""
 
 from __future__ import annotations
 
@@ -31,17 +31,18 @@ _NAN = float("nan")
 _UNTRACED = (
     'drive tests are not available, because with [canopen] mode = "pp" the drives plan their own moves'
 )
-_BEFORE, _PART_BEFORE = 0.0004, 0.3  # s, and of a period: before a SYNC its answers are taken in
+# Seconds and fraction of a period before a SYNC at which the replies are read.
+_BEFORE, _PART_BEFORE = 0.0004, 0.3
 _EPSILON = 1e-9
-_ANSWER = 0.01  # s in which they come
-_EARLY = 0.3  # of the time between two SYNCs, by which one may then go out with something else
-_RESTING = 0.1  # s between two answers of every node while the control sleeps
-_QUIET = 1.0  # s between two notes
-_FIRST = 0.5  # s in which everything must have answered a first SYNC
+_ANSWER = 0.01  # Seconds until the replies arrive.
+_EARLY = 0.3  # Fraction of the SYNC period by which a SYNC may be early in this case.
+_RESTING = 0.1  # Seconds between two replies of every node while the control sleeps.
+_QUIET = 1.0  # Seconds between two warnings.
+_FIRST = 0.5  # Seconds in which all nodes must reply to the first SYNC.
 
 
 class CanopenSamples:
-    """``core.ports.SampleSource``: what the drives have answered to each SYNC."""
+    """``core.ports.SampleSource`` with the replies of the drives to each SYNC."""
 
     def __init__(
         self, axes: CanopenAxes, spindle: Spindle, sync: float, spindle_drive: Drive402 | None
@@ -52,7 +53,7 @@ class CanopenSamples:
         self._log = SampleLog(len(axes.axes))
 
     def note(self, now: float) -> None:
-        """Keep the answers of a SYNC that is newer than the last."""
+        """Store the replies to a SYNC that is newer than the last stored one."""
         if self._axes.drives.seen <= self._log.last:
             return
         sample, angle = self._axes.sample(), self._spindle.angle()
@@ -65,24 +66,28 @@ class CanopenSamples:
         )
 
     def take(self, most: int = KEPT) -> FloatArray:
-        """What has been kept since."""
+        """Return at most ``most`` samples since the last call, oldest first."""
         return self._log.take(most)
 
 
 class CanopenMachine:
-    """Connects when made. Raises DriverError with the first node that is not as the machine file says."""
+    """Machine on the bus, connected by its constructor.
+
+    The constructor raises DriverError that names the first node which does not match the machine file.
+    """
 
     def __init__(self, config: CanopenConfig, clock: Clock, idle: Callable[[], None] | None = None) -> None:
         self.config = config
         self.clock = clock
         self.bus = Bus(config.bus, clock, idle)
         self._next = clock.now()
-        self._looked = self._feeding = False  # since the last SYNC; setpoints are being made
-        self._sent = self._next  # the last SYNC
+        # Replies to the last SYNC are read; setpoints are being calculated.
+        self._looked = self._feeding = False
+        self._sent = self._next  # Time of the last SYNC.
         self._early = _EPSILON
-        self.asked = False  # the last round has sent SYNC, and the next takes the answers in
-        self._waits = False  # for answers to it
-        self._count = 0  # SYNCs
+        self.asked = False  # The last cycle has sent a SYNC, and the next reads the replies.
+        self._waits = False  # Waiting for replies to it.
+        self._count = 0  # Number of SYNCs.
         self._told = -_QUIET
         try:
             self.axes = CanopenAxes(config, self.bus)
@@ -130,7 +135,7 @@ class CanopenMachine:
 
     @property
     def ports(self) -> MachinePorts:
-        """What the executor drives; the terminals are the operator station too."""
+        """The ports for the executor; the terminals are also the operator station."""
         return MachinePorts(
             clock=self.clock,
             axes=self.axes,
@@ -146,7 +151,7 @@ class CanopenMachine:
         )
 
     def unknown(self) -> frozenset[Unknown]:
-        """What has not answered of late; of a bus that has failed nothing is known."""
+        """Return the states that are unknown because their devices are silent or the bus has failed."""
         if self.bus.trouble:
             return ALL_UNKNOWN
         found: set[Unknown] = set()
@@ -159,20 +164,27 @@ class CanopenMachine:
         return frozenset(found)
 
     def tick(self) -> None:
-        """One round: take in, supervise, feed, send, SYNC. Call it every few milliseconds, or at ``wake``."""
+        """Run one cycle: receive, supervise, feed, command and SYNC.
+
+        It must be called every few milliseconds, or at the time that ``wake`` returns.
+        """
         if not self.axes.cyclic:
             self._look(exchange=True)
             return
         schedule = self.axes.schedule
         due = self.clock.now() >= schedule.due - _EPSILON
-        if not due or not self._looked:  # answers in hand are those to the last SYNC: they come first
+        # Received replies belong to the last SYNC and must be processed first.
+        if not due or not self._looked:
             self._look(exchange=False)
             self._looked = True
         if due and not self.bus.trouble:
             self._cycle()
 
     def wake(self) -> float | None:
-        """When the next round is due: before a SYNC, to take its answers in, and at it. None: every 5 ms."""
+        """Return the time of the next cycle: shortly before a SYNC to read replies, or at the SYNC.
+
+        None means every 5 ms.
+        """
         if not self.axes.cyclic:
             return None
         schedule = self.axes.schedule
@@ -180,7 +192,7 @@ class CanopenMachine:
         return schedule.due if self._looked else schedule.due - before
 
     def notes(self) -> Sequence[str]:
-        """What is worth telling of late setpoints, at most once a second."""
+        """Return a warning about late setpoints, at most once per second."""
         follower, now = self.axes.follower, self.clock.now()
         if not isinstance(follower, CyclicFollower) or not follower.gaps or now < self._told + _QUIET:
             return ()
@@ -200,7 +212,7 @@ class CanopenMachine:
         )
 
     def _cycle(self) -> None:
-        """SYNC at its time, then what the drives take at the next one."""
+        """Send SYNC at its time, then the commands for the next one."""
         now = self.clock.now()
         waited = self.axes.schedule.sent(now)
         try:
@@ -209,7 +221,7 @@ class CanopenMachine:
             self._count += 1
             counted = self._count % self.config.bus.seldom == 0
             self._sync_sent(now, counted=counted)
-            if not self._feeding:  # else a homing waits for a node meanwhile
+            if not self._feeding:  # Otherwise a homing is waiting for a node.
                 self._feeding = True
                 if waited and isinstance(self.axes.follower, CyclicFollower):
                     self.axes.follower.waited(waited)
@@ -222,20 +234,20 @@ class CanopenMachine:
             self.bus.lost(str(error))
 
     def _meanwhile(self) -> float:
-        """Where something waits for a node: SYNC and setpoints go on."""
+        """Continue SYNC and setpoints during a wait for a node; return the seconds to the next SYNC."""
         left = self.axes.schedule.due - self.clock.now()
         if left <= 0.0 and not self.bus.trouble:
             self._cycle()
         return max(self.axes.schedule.due - self.clock.now(), 0.0)
 
     def _give_way(self) -> None:
-        """While a long path is taken in: SYNC at its time, with the answers to the last before it."""
+        """Send SYNC at its time while a long path is queued, after reading the replies to the last one."""
         if self.clock.now() >= self.axes.schedule.due - _EPSILON and not self.bus.trouble:
             self.bus.pump()
             self._cycle()
 
     def _look(self, *, exchange: bool) -> None:
-        """Take in and supervise; ``exchange``: feed, command and SYNC in one where it is time."""
+        """Receive and supervise; with ``exchange``, also feed, command and send SYNC when it is due."""
         before, self.asked = self.asked, False
         self.bus.pump()
         self._waits = self._waits and not self._answered()
@@ -263,13 +275,14 @@ class CanopenMachine:
                 self._waits, self.asked = (
                     True,
                     not before,
-                )  # where SYNCs follow at once every other one counts
+                )  # If SYNCs follow immediately, every other one counts.
         except DriverError as error:
             self.bus.lost(str(error))
 
     def idle(self, asleep: bool) -> float:
-        """Seconds until SYNC or heartbeat are due, or a SYNC is to have been answered; 0 where a drive is not
-        at rest. Where the control sleeps nothing needs to be heard more than ten times a second.
+        """Return the seconds until the next SYNC, heartbeat or reply is due, or 0 while a drive moves.
+
+        While the control sleeps, replies are needed only ten times per second.
         """
         bus = self.config.bus
         apart = max(bus.sync, _RESTING / bus.seldom if asleep else 0.0)
@@ -280,19 +293,19 @@ class CanopenMachine:
         return max(min(next_, _ANSWER) if self._waits else next_, 0.0)
 
     def close(self) -> None:
-        """Power off as far as the bus still works, and let it go."""
+        """Switch the power off if the bus works, then close the bus."""
         if not self.bus.trouble:
             self.axes.stop(Stop.RAMP_OFF)
             self.io.safe()
             if self.spindle is not None:
                 self.spindle.coast()
                 if self.spindle.drive not in self.axes.drives.drives:
-                    self.spindle.drive.goal = DriveState.OFF  # also on its way to C
+                    self.spindle.drive.goal = DriveState.OFF  # Also during the change to C.
                 self._exchange()
         self.bus.close()
 
     def _connect(self) -> None:
-        """NMT start only after all have been configured."""
+        """Configure all nodes, then start them by NMT."""
         self.axes.connect()
         if self.spindle is not None:
             self.spindle.connect()
@@ -313,7 +326,7 @@ class CanopenMachine:
         self.bus.wait(self._answered, _FIRST)
 
     def _reconnect(self) -> None:
-        """As at a start, whatever became of the nodes meanwhile: what only counts has no home."""
+        """Reopen the bus and configure all nodes; axes with incremental encoders lose their home."""
         self.bus.reopen()
         try:
             self._connect()
@@ -341,7 +354,10 @@ class CanopenMachine:
             self.spindle.drive.command()
 
     def _sync_sent(self, now: float, *, counted: bool) -> None:
-        """``counted``: who answers seldom is to have answered once since."""
+        """Record a SYNC at all devices.
+
+        With ``counted``, slow devices must have replied once since the last counted SYNC.
+        """
         self.axes.drives.sync_sent(now)
         if self.spindle is not None and self.spindle.drive not in self.axes.drives.drives:
             self.spindle.drive.sync_sent(now, counted=counted)

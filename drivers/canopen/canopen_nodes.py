@@ -1,4 +1,4 @@
-"""The bus and its nodes as the machine file has them: profiles, families, objects, addresses of terminals."""
+"""Nodes of the machine file: device profiles, drive families, objects and terminal addresses."""
 
 from __future__ import annotations
 
@@ -20,30 +20,31 @@ from core.table_schema import (
 )
 from drivers.canopen.drive_profiles import PROFILES
 
-PLAIN_MODULE = "401"  # means the first I/O module
-DRIVE, MODULE, ENCODER_PROFILE = 402, 401, 406  # profiles of CiA
+PLAIN_MODULE = "401"  # Stands for the first I/O module in addresses.
+DRIVE, MODULE, ENCODER_PROFILE = 402, 401, 406  # Profiles of CiA.
 NODES, SDO, SPINDLE = "canopen.nodes", "canopen.sdo", "spindle"
 _ADDRESS = re.compile(r"([A-Za-z0-9_]+)\.([0-9A-Fa-f]{4})\.(\d{1,3})(?:\.(\d{1,2}))?")
 _OBJECT = re.compile(r"([0-9A-Fa-f]{4}):(\d{1,3})")
-INPUT, BITS = 0x6000, 8  # the object of a module's inputs; bits of a byte
+INPUT, BITS = 0x6000, 8  # The object of a module's inputs, and the bits of a byte.
 _WINDOW, _OFF = 0x6065, 0xFFFFFFFF
-_LOW, _HIGH = -(2**31), 2**32 - 1  # of an object
+_LOW, _HIGH = -(2**31), 2**32 - 1  # Range of an object value.
 _SELDOM = 0.01  # s
 
-CYCLIC = ("csp", "ip")  # modes with a setpoint each SYNC
-EVENED_OUT = 0.25  # of a period that a SYNC may be late
+CYCLIC = ("csp", "ip")  # Modes with one setpoint per SYNC.
+EVENED_OUT = 0.25  # Fraction of a period by which a SYNC may be late.
 SDO_REFERENCE = TableReference(
     "canopen.sdo.…",
     "Objects that TurnDesk writes to a node at each start and reads back; the last word "
     "of the heading is the node, or `all` for every drive. The key is index:sub-index, "
     'such as `"6007:0"`, with the index in hexadecimal; the value is a 32-bit integer.',
 )
-Objects = tuple[tuple[int, int, int], ...]  # index, sub-index, value: written at every start and read back
+# Index, sub-index and value, written at every start and read back.
+Objects = tuple[tuple[int, int, int], ...]
 
 
 @key_table
 class CanNode:
-    """One node of the bus: ``name`` is an axis, ``spindle`` or the name of an I/O module."""
+    """One node of the bus; ``name`` is an axis, ``spindle`` or the name of an I/O module."""
 
     name: str
     id: int = file_key(Range(1, 127), meaning="Node number set at the device.")
@@ -70,7 +71,7 @@ class CanNode:
         "of speed. 0: the drive uses counts/s. For the spindle: counts per spindle revolution, needed for "
         "threads and C.",
     )
-    sdo: Objects = ()  # those for all nodes of its profile, then its own
+    sdo: Objects = ()  # First the objects for all nodes of its profile, then its own.
 
 
 NODE_REFERENCE = TableReference(
@@ -83,7 +84,7 @@ NODE_REFERENCE = TableReference(
 
 @dataclass(frozen=True, slots=True)
 class CanTerminal:
-    """One bit (``bit`` from 0) or one whole number (``bit`` -1) of an object of a module or an axis."""
+    """One bit, or with ``bit`` -1 a whole number, of an object of a module or an axis drive."""
 
     node: str
     index: int
@@ -93,7 +94,7 @@ class CanTerminal:
 
 
 def seldom(sync: float) -> int:
-    """Return the SYNCs from one answer to the next of what need not be known at each: about 10 ms."""
+    """Return the number of SYNCs between two replies of slow values, which corresponds to about 10 ms."""
     return max(1, round(_SELDOM / sync))
 
 
@@ -101,7 +102,7 @@ def seldom(sync: float) -> int:
 
 
 def can_terminal(text: str) -> CanTerminal | None:
-    """``401.6200.1.0`` as node, object, sub-index and bit; None where it is no address."""
+    """Parse ``401.6200.1.0`` into node, object, sub-index and bit; return None if it is not an address."""
     found = _ADDRESS.fullmatch(text)
     if found is None:
         return None
@@ -110,7 +111,7 @@ def can_terminal(text: str) -> CanTerminal | None:
 
 
 def sdo_address(text: str) -> tuple[int, int] | None:
-    """``6007:0`` as index and sub-index, or None."""
+    """Parse ``6007:0`` into index and sub-index; return None if it is not an address."""
     found = _OBJECT.fullmatch(text)
     if found is None or int(found[2]) > 255:
         return None
@@ -118,7 +119,7 @@ def sdo_address(text: str) -> tuple[int, int] | None:
 
 
 def terminal(file: FileReading, text: str) -> CanTerminal | None:
-    """401 is the first module, and hexadecimal has two cases."""
+    """Parse a terminal address and replace 401 by the name of the first module."""
     found = can_terminal(text)
     if found is None or found.node != PLAIN_MODULE:
         return found
@@ -126,7 +127,7 @@ def terminal(file: FileReading, text: str) -> CanTerminal | None:
 
 
 def input_addresses() -> Iterator[str]:
-    """Of the first module, bit by bit."""
+    """Yield the input addresses of the first module, bit by bit."""
     return (f"{PLAIN_MODULE}.{INPUT:04X}.{n // BITS + 1}.{n % BITS}" for n in itertools.count())
 
 
@@ -134,7 +135,7 @@ def input_addresses() -> Iterator[str]:
 
 
 def read_nodes(file: FileReading) -> Iterator[Finding]:
-    """Reads [canopen.nodes]; what is wrong there and in [canopen.sdo]."""
+    """Read [canopen.nodes] and yield the findings there and in [canopen.sdo]."""
     nodes, objects = file.raw(NODES), file.raw(SDO)
     yield from read_named({} if nodes is None else nodes, CanNode, NODES, file.values)
     if objects is None:
@@ -154,7 +155,7 @@ def read_nodes(file: FileReading) -> Iterator[Finding]:
 
 
 def _wrong_object(key: str, value: object) -> str:
-    """What was expected instead; empty where the entry is good."""
+    """Return the expected form of a wrong entry, or an empty text for a valid entry."""
     address = sdo_address(key)
     if address is None:
         return 'the key must be an object address with the index in hexadecimal, such as "6007:0"'
@@ -170,7 +171,7 @@ def _whole(value: object) -> TypeGuard[int]:
 
 
 def objects_of(file: FileReading, node: str) -> Objects:
-    """The good entries of one node's objects, or of ``all``."""
+    """Return the valid entries of [canopen.sdo] for one node or for ``all``."""
     entries = file.raw(f"{SDO}.{node}")
     found = entries.items() if isinstance(entries, dict) else ()
     return tuple(
@@ -181,12 +182,12 @@ def objects_of(file: FileReading, node: str) -> Objects:
 
 
 def object_path(node: str, index: int, sub: int) -> str:
-    """The path of an object of a node, as the machine file writes it."""
+    """Return the path of a node's object as in the machine file."""
     return f'{SDO}.{node}."{index:04X}:{sub}"'
 
 
 def node_of(file: FileReading, name: str) -> CanNode:
-    """A node with all that is written to it; the file is good."""
+    """Build a node with all objects that are written to it, from a valid file."""
     shared = objects_of(file, "all") if profile_of(file, name) == DRIVE else ()
     return file.values.model(
         CanNode,
@@ -198,7 +199,7 @@ def node_of(file: FileReading, name: str) -> CanNode:
 
 
 def family_of(file: FileReading, name: str) -> str:
-    """Of the node, or that of all drives."""
+    """Return the drive family of a node, or the default for all drives; empty if it is not a drive."""
     if profile_of(file, name) != DRIVE:
         return ""
     paths = (f"{NODES}.{name}.drive", "canopen.drive")
@@ -206,16 +207,16 @@ def family_of(file: FileReading, name: str) -> str:
 
 
 def said(file: FileReading, path: str) -> str:
-    """The text of a key; empty where there is none, or a bad one."""
+    """Return the text of a key, or an empty text if it is missing or invalid."""
     return file.values.text(path) if file.values.has(path) else ""
 
 
 def profile_of(file: FileReading, node: str) -> int:
-    """Profile of CiA; 0 where the file does not say one."""
+    """Return the CiA profile of a node, or 0 if the file does not specify one."""
     path = f"{NODES}.{node}.profile"
     return file.values.whole(path) if file.values.has(path) else 0
 
 
 def module_names(file: FileReading) -> list[str]:
-    """Names of the I/O modules, in the order of the file."""
+    """Return the names of the I/O modules in the order of the file."""
     return [name for name in file.names(NODES) if profile_of(file, name) == MODULE]

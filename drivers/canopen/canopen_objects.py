@@ -1,4 +1,4 @@
-"""Objects of CiA 301, 401, 402 and 406 that are used, dictionaries of them, states of CiA 402."""
+"""Objects of CiA 301, 401, 402 and 406, object dictionaries, and the states of CiA 402."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ PROFILE_SPEED, PROFILE_ACCEL, PROFILE_DECEL, QUICK_DECEL = 0x6081, 0x6083, 0x608
 HOME_METHOD, HOME_SPEEDS, HOME_ACCEL = 0x6098, 0x6099, 0x609A
 IP_SUBMODE, IP_RECORD, IP_TIME, BUFFER = 0x60C0, 0x60C1, 0x60C2, 0x60C4
 INPUTS_402, FOLLOWING, TARGET_SPEED, SUPPORTED = 0x60FD, 0x60F4, 0x60FF, 0x6502
-TORQUE = 0x6077  # actual, per mille of the motor's rated one
+TORQUE = 0x6077  # Actual torque in per mille of the rated torque.
 HOME_METHODS, MOTOR_TURN, GEAR, FEED = 0x60E3, 0x608F, 0x6091, 0x6092
 DIGITAL_IN, DIGITAL_OUT, ERROR_MODE, ERROR_VALUE = 0x6000, 0x6200, 0x6206, 0x6207
 ENCODER_MODE, ENCODER_STEPS, ENCODER_RANGE, ENCODER_POSITION = 0x6000, 0x6001, 0x6002, 0x6004
@@ -41,8 +41,8 @@ ENCODER_RESOLUTION, ENCODER_TURNS, SECOND_POSITION = 0x6501, 0x6502, 0x60E4
 ANALOG_IN, ANALOG_EVENTS, ANALOG_DELTA = 0x6401, 0x6423, 0x6426
 
 _log = logging.getLogger(__name__)
-_LARGEST = 16 * MB  # of an EDS file
-_FLAWS = 50  # objects that an EDS file may leave without a type
+_LARGEST = 16 * MB  # Maximum size of an EDS file.
+_FLAWS = 50  # Maximum number of objects without a type in an EDS file.
 _VARIABLES_301 = ((DEVICE_TYPE, U32), (ERROR_REGISTER, U8), (SYNC_PERIOD, U32), (HEARTBEAT, U16))
 _ARRAYS_301 = ((WATCHED, U32, 2), (ON_ERROR, U8, 1))
 _VARIABLES_402 = (
@@ -75,13 +75,13 @@ _EPOS4_HAS_NOT = (SYNC_PERIOD, HOME_OFFSET, IP_SUBMODE, IP_RECORD, BUFFER, MOTOR
 
 
 def drive_objects(profile: DriveProfile = CIA402) -> ObjectDictionary:
-    """The dictionary of a drive without an EDS file: what the profile's family has of the standard."""
+    """Build the dictionary of a drive without an EDS file from the standard objects of its family."""
     found = _dictionary((*_VARIABLES_301, *_VARIABLES_402), (*_ARRAYS_301, *_ARRAYS_402))
     found.add_object(_record(IP_TIME, _TIME_PERIOD))
     found.add_object(_record(BUFFER, _BUFFER))
     for index in {"epos2": _EPOS2_HAS_NOT, "epos4": _EPOS4_HAS_NOT}.get(profile.name, ()):
         del found[index]
-    if profile.words:  # neither of maxon's has a time-out for what it receives
+    if profile.words:  # The maxon drives have no timeout for received PDOs.
         for number in range(4):
             record = found[COMMANDED + number]
             assert isinstance(record, ODRecord)
@@ -100,17 +100,17 @@ def drive_objects(profile: DriveProfile = CIA402) -> ObjectDictionary:
 
 
 def module_objects() -> ObjectDictionary:
-    """The dictionary of an I/O module without an EDS file."""
+    """Build the dictionary of an I/O module without an EDS file."""
     return _dictionary((*_VARIABLES_301, (ANALOG_EVENTS, U8)), (*_ARRAYS_301, *_ARRAYS_401))
 
 
 def encoder_objects() -> ObjectDictionary:
-    """The dictionary of an encoder without an EDS file."""
+    """Build the dictionary of an encoder without an EDS file."""
     return _dictionary((*_VARIABLES_301, *_VARIABLES_406), _ARRAYS_301)
 
 
 def drive_dictionary(node: CanNode) -> tuple[ObjectDictionary, DriveProfile]:
-    """What a drive has, and of which family it is. Raises DriverError."""
+    """Return the object dictionary and the family profile of a drive. Raises DriverError."""
     if not node.eds:
         profile = profile_of(node.drive, None, None)
         return drive_objects(profile), profile
@@ -120,7 +120,10 @@ def drive_dictionary(node: CanNode) -> tuple[ObjectDictionary, DriveProfile]:
 
 
 def dictionary(name: str, eds: str, standard: Callable[[], ObjectDictionary]) -> ObjectDictionary:
-    """That of the EDS file, or the standard one. Raises DriverError naming the node and the file."""
+    """Load the dictionary of the EDS file, or build the standard one without a file.
+
+    Raises DriverError that names the node and the file.
+    """
     if not eds:
         return standard()
     try:
@@ -140,11 +143,11 @@ def dictionary(name: str, eds: str, standard: Callable[[], ObjectDictionary]) ->
 
 
 def _read(path: Path) -> ObjectDictionary:
-    """An EDS or DCF file; an object that it leaves without a type is as good as not there."""
+    """Read an EDS or DCF file; objects without a type are omitted."""
     text = input_text(path, _LARGEST, "latin-1")
     for _ in range(_FLAWS):
         stream = io.StringIO(text)
-        stream.name = str(path)  # the library looks for its ending
+        stream.name = str(path)  # The library evaluates the file extension.
         try:
             found: ObjectDictionary = import_od(stream)
         except configparser.NoOptionError as error:
@@ -210,11 +213,11 @@ def _mapping(index: int) -> ODArray:
     return array
 
 
-# --- The state machine of CiA 402: what a status word means, and the next control word on the way to a goal.
+# --- State machine of CiA 402: the meaning of status words, and the next control word toward a goal.
 
 
 class DriveState(StrEnum):
-    """States as the profile names them."""
+    """States of a drive as CiA 402 names them."""
 
     NOT_READY = "not ready to switch on"
     OFF = "switch on disabled"
@@ -237,22 +240,23 @@ _MASKS = (
     (0x4F, 0x08, DriveState.FAULT),
 )
 SHUTDOWN, SWITCH_ON, ENABLE, DISABLE, QUICK, RESET = 0x06, 0x07, 0x0F, 0x00, 0x02, 0x80
-NEW, AT_ONCE, HALT = 0x10, 0x20, 0x100  # bit 4 new set-point, homing start or interpolation active; 5; 8
+# Bit 4: new setpoint, homing start or interpolation active; bits 5 and 8.
+NEW, AT_ONCE, HALT = 0x10, 0x20, 0x100
 REACHED, LIMITED, BIT_12, BIT_13 = 0x400, 0x800, 0x1000, 0x2000
 PP, PV, HM, IP, CSP = 1, 3, 6, 7, 8
-MODE_BITS = {PP: 0x01, PV: 0x04, HM: 0x20, IP: 0x40, CSP: 0x80}  # in 0x6502
+MODE_BITS = {PP: 0x01, PV: 0x04, HM: 0x20, IP: 0x40, CSP: 0x80}  # Bits of 0x6502.
 
 _LADDER = {
     DriveState.OFF: SHUTDOWN,
     DriveState.READY: SWITCH_ON,
     DriveState.ON: ENABLE,
     DriveState.ENABLED: ENABLE,
-    DriveState.QUICK_STOP: DISABLE,  # leaving it upwards would be a restart out of an emergency
+    DriveState.QUICK_STOP: DISABLE,  # Leaving this state upward would restart the drive after an emergency.
 }
 
 
 def state_of(word: int) -> DriveState:
-    """What a status word says; a word that fits no mask is a drive that is not ready."""
+    """Return the state in a status word; a word that matches no mask is "not ready to switch on"."""
     for mask, bits, state in _MASKS:
         if word & mask == bits:
             return state
@@ -260,12 +264,12 @@ def state_of(word: int) -> DriveState:
 
 
 def towards_enabled(state: DriveState) -> int:
-    """The control word of the next step up. A fault is never left here: only its reset does that."""
+    """Return the control word for the next step toward operation enabled; it never leaves a fault."""
     return _LADDER.get(state, DISABLE)
 
 
 def reset_step(state: DriveState, last: int) -> int:
-    """The control word that clears a fault: the edge of bit 7, and then nothing that energises."""
+    """Return the control word that clears a fault by an edge of bit 7, without switching on power."""
     if state is DriveState.FAULT and last != RESET:
         return RESET
     return DISABLE

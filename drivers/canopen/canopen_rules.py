@@ -1,7 +1,7 @@
-"""Rules of [canopen]: load of the bus, times, node numbers, drives and their families, terminals.
+"""Rules of [canopen]: bus load, times, node numbers, drives with their families, and terminals.
 
-A frame of 11-bit identifier and n bytes is at most 47 + 8 n + (34 + 8 n - 1) / 4 bits long: with all that
-stuffing can add, and the three bits to the next frame.
+A frame with an 11-bit identifier and n bytes has at most 47 + 8 n + (34 + 8 n - 1) / 4 bits. This includes
+bit stuffing and the three bits between frames.
 """
 
 from __future__ import annotations
@@ -33,35 +33,39 @@ from drivers.canopen.canopen_nodes import (
 )
 from drivers.canopen.drive_profiles import IN_RPM, PROFILES, QUEUED
 
-_COMMAND, _ANSWER, _MORE = 7, 7, 8  # bytes: of RPDO1, TPDO1, and of PDOs that are seldom sent
-_MOST_USED = 0.75  # of the time; the rest is for SDO, heartbeats, emergencies, and a frame that is under way
+_COMMAND, _ANSWER, _MORE = 7, 7, 8  # Bytes of RPDO1, of TPDO1, and of PDOs that are sent less often.
+_MOST_USED = 0.75  # Fraction of the time; the rest is for SDO, heartbeats, EMCY and a frame in transit.
 
 
 class Load(NamedTuple):
-    """Bits from SYNC to SYNC that are sent each time, and those that are sent seldom, in the mean."""
+    """Bus load in bits per SYNC period, split into frames at each SYNC and the mean of rarer frames."""
 
     each: float
     seldom: float
-    room: float  # bits that fit between two SYNCs
+    room: float  # Bits that fit between two SYNCs.
 
     @property
     def share(self) -> float:
-        """Of the bus."""
+        """The fraction of the bus capacity that is used."""
         return (self.each + self.seldom) / self.room
 
     @property
     def fits(self) -> bool:
-        """With what has to stay free."""
+        """Whether the load leaves the required reserve."""
         return self.share <= _MOST_USED
 
 
 def frame_bits(size: int) -> int:
-    """The longest that a frame with ``size`` bytes can be."""
+    """Return the maximum length in bits of a frame with ``size`` bytes."""
     return 47 + 8 * size + (34 + 8 * size - 1) // 4
 
 
 def cyclic_load(slides: int, others: int, bitrate: int, sync: float, seldom: int) -> Load:
-    """``slides`` are told and answer at each SYNC; ``others`` and second answers come every ``seldom``."""
+    """Return the bus load of cyclic modes.
+
+    Each of the ``slides`` axis drives receives a command and replies at every SYNC. The ``others`` and second
+    replies are sent every ``seldom`` SYNCs.
+    """
     told = frame_bits(_COMMAND) + frame_bits(_ANSWER)
     each = frame_bits(0) + slides * told
     rare = slides * frame_bits(_MORE) + others * 2 * frame_bits(_MORE)
@@ -70,15 +74,15 @@ def cyclic_load(slides: int, others: int, bitrate: int, sync: float, seldom: int
 
 _ANALOG, _OUTPUT, _DRIVE_INPUT = 0x6401, 0x6200, 0x60FD
 _LIMITS, _WATCH = 0x607D, 0x1016
-_BYTES, _WORDS = 8, 4  # of a module: what one PDO of each kind carries
-_MOST = 2**31 - 1  # a count of 32 bits with a sign
-_CYCLES, _CYCLIC_LEAST = 4, 0.02  # SYNCs, and s, that setpoints of a cyclic mode are on their way
-_RESTART = 0.04  # s that a drive needs between the end of one PVT motion and the start of the next
-_RECORDS = 3  # a FIFO with fewer than two records is empty to the drive
+_BYTES, _WORDS = 8, 4  # Contents of one PDO of each kind of a module.
+_MOST = 2**31 - 1  # Maximum of a signed 32-bit count.
+_CYCLES, _CYCLIC_LEAST = 4, 0.02  # SYNCs and seconds for the transfer of cyclic setpoints.
+_RESTART = 0.04  # Seconds that a drive needs between two PVT motions.
+_RECORDS = 3  # A drive treats a queue with fewer than two records as empty.
 
 
 def bus_rules(file: FileReading) -> Iterator[Finding]:
-    """What is wrong with [canopen], and with axes and terminals that it is to serve."""
+    """Yield findings about [canopen] and about the axes and terminals on the bus."""
     yield from _outside(file)
     if "canopen" not in file.tables:
         return
@@ -124,7 +128,7 @@ def _queue(record: float, commit: float, values: Values) -> Iterator[Finding]:
 
 
 def _families(file: FileReading) -> Iterator[Finding]:
-    """Queues and counts a turn that the families of the drives need."""
+    """Yield findings about queues and counts per revolution that the drive families need."""
     values, moved = file.values, file.axes
     queued = " or ".join(written(name) for name in QUEUED)
     for name in file.names(NODES):
@@ -152,7 +156,7 @@ def _families(file: FileReading) -> Iterator[Finding]:
 
 
 def _cyclic(file: FileReading) -> Iterator[Finding]:
-    """Setpoints at each SYNC: whole milliseconds, ahead in time, and with room on the bus."""
+    """Yield findings about cyclic setpoints: whole milliseconds, commit time and bus load."""
     values = file.values
     if said(file, "canopen.mode") not in CYCLIC or not values.has("canopen.sync_ms", "canopen.bitrate"):
         return
@@ -191,7 +195,7 @@ def _fits(slides: int, others: int, bitrate: int, ms: int) -> bool:
 
 
 def _numbers(file: FileReading) -> Iterator[Finding]:
-    """Numbers, names and profiles of the nodes."""
+    """Yield findings about numbers, names and profiles of the nodes."""
     values, moved = file.values, (*file.axes, SPINDLE)
     taken: dict[int, str] = {}
     if values.has("canopen.host_id"):
@@ -220,7 +224,7 @@ def _numbers(file: FileReading) -> Iterator[Finding]:
 
 
 def _heartbeat(file: FileReading) -> Iterator[Finding]:
-    """0x1016 must watch this computer, and not less patiently than it speaks."""
+    """Yield findings if 0x1016 does not monitor this computer, or has too short a timeout."""
     values = file.values
     if not values.has("canopen.host_id", "canopen.heartbeat_ms"):
         return
@@ -249,7 +253,7 @@ _C_WITHOUT = (
 
 
 def _drives(file: FileReading) -> Iterator[Finding]:
-    """A drive for every axis, and how each looks for home."""
+    """Yield findings about axes without a drive or without a homing method."""
     values, nodes = file.values, file.names(NODES)
     for axis in file.axes:
         if axis == "C" and not (values.has("axis.C.enabled") and values.flag("axis.C.enabled")):
@@ -276,7 +280,7 @@ def _drives(file: FileReading) -> Iterator[Finding]:
 
 
 def _turned_by_spindle(file: FileReading) -> bool:
-    """Whether C of a lathe can be the spindle's own drive: one that counts, and queues positions."""
+    """Return whether C of a lathe can be the spindle drive, which needs counts and a position queue."""
     values, counts = file.values, f"{NODES}.{SPINDLE}.counts_per_rev"
     own = values.has("axis.C.own_drive") and values.flag("axis.C.own_drive")
     drives = values.says("spindle.driver", "cia402") and values.says("canopen.mode", "pvt")
@@ -284,7 +288,7 @@ def _turned_by_spindle(file: FileReading) -> bool:
 
 
 def _outside(file: FileReading) -> Iterator[Finding]:
-    """Axes that could be sent where their drives do not go, by what the file tells these."""
+    """Yield findings about axes whose travel exceeds the range or the software limits of their drives."""
     values = file.values
     for axis in file.axes:
         path, counted = f"axis.{axis}.travel", f"axis.{axis}.count"
@@ -292,7 +296,7 @@ def _outside(file: FileReading) -> Iterator[Finding]:
             continue
         count, ends = values.number(counted), values.pair(path)
         if math.inf in map(abs, ends):
-            continue  # a rotary axis without an end
+            continue  # A rotary axis without limits.
         if max(map(abs, ends)) / count > _MOST:
             yield Finding(
                 path,
@@ -320,13 +324,13 @@ def _outside(file: FileReading) -> Iterator[Finding]:
                     yield Finding(object_path(node, index, sub), str(value), why)
 
 
-# --- terminals: bits and words that the modules can have ---------------------------------------------------
+# --- terminals: bits and words of the modules --------------------------------------------------------------
 
 
 def _wired(file: FileReading) -> Iterator[Finding]:
-    """A finding for every signal and pot whose terminal is no address on the bus."""
+    """Yield a finding for every signal and pot whose terminal is not an address on the bus."""
     if any(path.endswith(".profile") for path in file.values.wrong):
-        return  # which of the nodes are modules is not known
+        return  # The nodes that are modules are not known.
     for path, terminal in file.terminals.items():
         if why := _wrong_terminal(file, terminal, output=path.startswith("io.out."), analog=False):
             yield Finding(f"{path}.at", written(terminal), why)

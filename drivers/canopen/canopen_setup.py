@@ -1,4 +1,4 @@
-"""What every node goes through before it may run: checked, written, read back, mapped."""
+"""Setup of a node before it runs: checks, configuration with read-back, and PDO mapping."""
 
 from __future__ import annotations
 
@@ -23,29 +23,29 @@ _Answer = TypeVar("_Answer")
 
 _PROFILE = 0xFFFF
 _AT_ONCE = 255
-_INVALID, _NO_REMOTE = 1 << 31, 1 << 30  # a PDO that is being mapped; one that cannot be asked for
-_NO_SUCH_OBJECT = frozenset((0x06020000, 0x06090011))  # abort codes of SDO: the object, its sub-index
-# It has the object, and nothing was ever put in, or something that is none of its values.
+_INVALID, _NO_REMOTE = 1 << 31, 1 << 30  # A PDO that is being mapped; a PDO without remote request.
+_NO_SUCH_OBJECT = frozenset((0x06020000, 0x06090011))  # SDO abort codes: object or sub-index does not exist.
+# SDO abort codes: the object exists, but has no value or an invalid value.
 _NO_VALUE = frozenset((0x060A0023, 0x08000024, 0x08000000))
-_READ_ONLY = frozenset((0x06010000, 0x06010002))  # abort codes: no access of this kind, read-only
-_MAPS = 0x200  # from the communication record of a PDO to its mapping
-_SYNCS_AWAY, _LEAST_AWAY = 5, 20  # SYNCs, and ms, that setpoints may be away before the node is to stop
+_READ_ONLY = frozenset((0x06010000, 0x06010002))  # SDO abort codes: unsupported access, read-only.
+_MAPS = 0x200  # Distance from the communication record of a PDO to its mapping.
+_SYNCS_AWAY, _LEAST_AWAY = 5, 20  # SYNCs and ms without setpoints after which the node must stop.
 _NAMES = {1: "profile position", 3: "profile velocity", 6: "homing", 7: "interpolated position", 8: "CSP"}
 
 
 class Setup:
-    """SDO work on one node; each failure names node, object and what was answered."""
+    """Setup of one node by SDO; each error names the node, the object and the response."""
 
     def __init__(self, bus: Bus, name: str, number: int, objects: canopen.ObjectDictionary) -> None:
         self._bus = bus
         self._name = name
         self.node = Node(number, objects)
         bus.add_node(self.node)
-        self.lacks: dict[int, str] = {}  # objects that it has not, and what it means
+        self.lacks: dict[int, str] = {}  # Missing objects with the consequence.
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """One sentence with everything that this node has to do without."""
+        """One sentence about all objects that the node lacks, or an empty tuple."""
         if not self.lacks:
             return ()
         told = "; ".join(f"{index:04X}h {what}" for index, what in sorted(self.lacks.items()))
@@ -59,20 +59,21 @@ class Setup:
         )
 
     def pre_operational(self) -> None:
-        """PDO mapping may only change there."""
+        """Set the node to PRE-OPERATIONAL, the only state in which PDO mapping may change."""
         self.node.nmt.state = "PRE-OPERATIONAL"
 
     def read(self, index: int, sub: int = 0) -> int:
-        """One object as a number; signed where the dictionary says so."""
+        """Return one object as a number, signed if the dictionary says so."""
         data = self._sdo(index, sub, lambda: self.node.sdo.upload(index, sub))
         return self._number(index, sub, data)
 
     def write(self, index: int, sub: int, value: int) -> None:
-        """Write one object that has another value, and read it back. Raises DriverError when the node cannot
-        change it or keeps something else.
+        """Write one object if its value differs, and read it back.
+
+        Raises DriverError if the node rejects the value or stores another one.
         """
         variable = self.node.object_dictionary.get_variable(index, sub)
-        blind = variable is not None and not variable.readable  # such as the order to empty a queue
+        blind = variable is not None and not variable.readable  # For example, the command to clear a queue.
         there = None if blind else self._value(index, sub)
         size = len(variable) // 8 if there is None and variable is not None else len(there or b"")
         data = (value % (1 << 8 * size)).to_bytes(size, "little")
@@ -91,14 +92,14 @@ class Setup:
             )
 
     def write_bytes(self, index: int, sub: int, data: bytes) -> None:
-        """Write what cannot be read back. Raises DriverError."""
+        """Write an object that cannot be read back. Raises DriverError."""
         self._sdo(index, sub, lambda: self.node.sdo.download(index, sub, data))
 
     def configure(self, standing: Objects, own: Objects = (), needed: Iterable[int] = ()) -> None:
-        """What this control writes, then what the machine file says. Only what the node has is written.
+        """Write TurnDesk's values, then those of the machine file, to the objects that the node has.
 
-        ``lacks`` is what it does without. Raises DriverError where one of ``needed`` is lacking, or what the
-        machine file names and nobody can do without: one sentence with all of them.
+        ``lacks`` lists the missing objects. Raises DriverError that names all missing objects of ``needed``,
+        or those of the machine file that are not optional.
         """
         self.lacks = {}
         named = {(index, sub) for index, sub, _ in own}
@@ -121,7 +122,7 @@ class Setup:
             )
 
     def try_write(self, index: int, sub: int, value: int) -> bool:
-        """Write an object that the node may lack; whether it has it. Raises DriverError."""
+        """Write an object if the node has it, and return whether it has. Raises DriverError."""
         if self.has(index, sub):
             self.write(index, sub, value)
             return True
@@ -129,7 +130,7 @@ class Setup:
         return False
 
     def watch_setpoints(self, period: float) -> None:
-        """Let the node notice a SYNC or a setpoint that does not come, by whatever it has for that."""
+        """Make the node detect a missing SYNC or setpoint, by the means that it supports."""
         longest = max(round(1000 * _SYNCS_AWAY * period), _LEAST_AWAY)
         watched = False
         for index, sub, value in ((od.SYNC_PERIOD, 0, round(1e6 * period)), (od.COMMANDED, 5, longest)):
@@ -140,7 +141,7 @@ class Setup:
             self.lacks[od.COMMANDED] = WITHOUT[od.COMMANDED]
 
     def demand_profile(self, profile: int) -> None:
-        """Is it the kind of device that the machine file says? Raises DriverError."""
+        """Raise DriverError if the device profile differs from the machine file."""
         found = self.read(od.DEVICE_TYPE) & _PROFILE
         if found != profile:
             raise self._unfit(
@@ -151,7 +152,7 @@ class Setup:
             )
 
     def demand_modes(self, modes: int, known: int = 0) -> None:
-        """Does it offer what is needed, by 0x6502 or as ``known``? Raises DriverError naming what is not."""
+        """Raise DriverError if a needed mode is neither in 0x6502 nor in ``known``."""
         offered = known | (self.read(od.SUPPORTED) if self.has(od.SUPPORTED, 0) else modes)
         lacking = [_NAMES[mode] for mode, bit in MODE_BITS.items() if modes & bit and not offered & bit]
         if lacking:
@@ -161,7 +162,7 @@ class Setup:
             )
 
     def demand(self, *entries: Entry) -> None:
-        """Objects that nothing goes without. Raises DriverError naming all that are not there."""
+        """Raise DriverError that names all missing objects of ``entries``."""
         missing = [
             f"{entry.object:04X}:{entry.sub}" for entry in entries if not self.has(entry.object, entry.sub)
         ]
@@ -173,7 +174,7 @@ class Setup:
             )
 
     def demand_homing(self, method: int) -> None:
-        """Is it one of the methods that the drive lists (0x60E3)? Raises DriverError with the list."""
+        """Raise DriverError if the homing method is not in the drive's list (0x60E3)."""
         listed = [self.read(od.HOME_METHODS, sub + 1) for sub in range(self.entries(od.HOME_METHODS))]
         offered = sorted({each for each in listed if each})
         if offered and method not in offered:
@@ -187,7 +188,7 @@ class Setup:
             )
 
     def demand_turn(self, counts: int) -> None:
-        """Are there so many counts in a turn of its motor, by its gear and feed? Raises DriverError."""
+        """Raise DriverError if gear and feed of the drive give other counts per motor revolution."""
         places = [(od.GEAR, 1), (od.GEAR, 2), (od.FEED, 1), (od.FEED, 2)]
         if not all(self.has(*place) for place in places):
             return
@@ -205,18 +206,21 @@ class Setup:
             )
 
     def entries(self, index: int) -> int:
-        """How many entries an array of the node has; 0 where the node has no such object."""
+        """Return the number of entries of an array, or 0 if the node does not have the object."""
         return self.read(index, 0) if self.has(index, 0) else 0
 
     def has(self, index: int, sub: int) -> bool:
-        """By its dictionary, and by its own word: an EDS file may be younger than the device."""
+        """Return whether the node has an object, by its dictionary and by a test read.
+
+        The test is necessary because an EDS file may be newer than the device.
+        """
         variable = self.node.object_dictionary.get_variable(index, sub)
         if variable is None:
             return False
         return not variable.readable or not self._refused(index, sub)
 
     def _value(self, index: int, sub: int) -> bytes | None:
-        """Return the value of an object; None where the node has it and has no value in it yet."""
+        """Return the value of an object, or None if the object does not have a value yet."""
         variable = self.node.object_dictionary.get_variable(index, sub)
         try:
             return self._upload(index, sub)
@@ -226,10 +230,10 @@ class Setup:
         return None
 
     def _put(self, index: int, sub: int, data: bytes, there: bytes | None) -> bool:
-        """Write ``data`` unless it is already ``there``; whether it was written. Raises DriverError.
+        """Write ``data`` unless the object already has this value; return whether it was written.
 
-        Every value that configures a node goes through here: many drives have read-only objects, or ones that
-        are locked in some states, which already have the value that is wanted.
+        Raises DriverError. All configuration uses this method, because many drives have objects that are
+        read-only or locked but already have the required value.
         """
         if there == data:
             return False
@@ -251,7 +255,7 @@ class Setup:
         return True
 
     def _refused(self, index: int, sub: int) -> bool:
-        """Whether the node says that it has no such object."""
+        """Return whether the node reports that it does not have the object."""
         try:
             self._upload(index, sub)
         except DriverError as error:
@@ -266,19 +270,19 @@ class Setup:
         return data
 
     def receive(self, number: int, *entries: tuple[int, int], at_once: bool = False) -> None:
-        """Map what the node receives in PDO ``number``: (object + sub · 65536, bits)."""
+        """Map the objects that the node receives in PDO ``number`` as (object + sub · 65536, bits)."""
         self._map(self._pdo(self.node.rpdo, number), entries, _AT_ONCE if at_once else 1)
 
     def transmit(
         self, number: int, heard: Callable[[PdoMap], None], *entries: tuple[int, int], every: int = 1
     ) -> None:
-        """Map what the node sends in PDO ``number`` at each SYNC, or ``every`` so many of them."""
+        """Map the objects that the node sends in PDO ``number`` at every ``every``-th SYNC."""
         pdo = self._pdo(self.node.tpdo, number)
         self._map(pdo, entries, every)
         pdo.callbacks[:] = [heard]
 
     def _unfit(self, text: str, *, reason: str = "", **values: object) -> DriverError:
-        """Return the error of a node that is not as it has to be; the text may name node and number."""
+        """Return the error for a node that does not match; the text may contain name and number."""
         return DriverError(text, "drive-setup", reason=reason, name=self._name, node=self.node.id, **values)
 
     def _pdo(self, pdos: PdoBase, number: int) -> PdoMap:
@@ -292,9 +296,9 @@ class Setup:
         return found
 
     def _map(self, pdo: PdoMap, entries: tuple[tuple[int, int], ...], kind: int) -> None:
-        """The library's own ``save`` writes no entries where the dictionary has them as an array.
+        """Map a PDO unless it already has the required mapping, because many modules have a fixed mapping.
 
-        A mapping that is already there is left alone: many modules have none that can be changed.
+        The library's ``save`` writes no entries if the dictionary has them as an array.
         """
         base = pdo.com_record.od.index
         pdo.clear()
@@ -303,7 +307,8 @@ class Setup:
         cob = pdo.predefined_cob_id
         pdo.cob_id, pdo.trans_type, pdo.enabled = cob, kind, True
         assert cob is not None
-        cob |= self.read(base, 1) & _NO_REMOTE  # where it cannot be asked for, that bit cannot be changed
+        # If a PDO does not support remote requests, this bit cannot be changed.
+        cob |= self.read(base, 1) & _NO_REMOTE
         wanted = [(index & 0xFFFF) << 16 | (index >> 16) << 8 | bits for index, bits in entries]
         mapped = self._mapped(base + _MAPS) == wanted
         if not mapped or self.read(base, 1) != cob or self.read(base, 2) != kind:
@@ -321,7 +326,7 @@ class Setup:
         self._put_number(index, 0, len(wanted), 1)
 
     def _mapped(self, index: int) -> list[int]:
-        """What a PDO carries so far."""
+        """Return the present mapping of a PDO."""
         return [self.read(index, sub) for sub in range(1, self.read(index, 0) + 1)]
 
     def _put_number(self, index: int, sub: int, value: int, size: int) -> None:
@@ -333,7 +338,7 @@ class Setup:
         return int.from_bytes(data, "little", signed=signed)
 
     def _sdo(self, index: int, sub: int, do: Callable[[], _Answer]) -> _Answer:
-        """Do something with one object; what can go wrong becomes one sentence."""
+        """Perform an SDO operation on one object and convert its errors into DriverError."""
         where = Message(
             "{name}: node {node}, object {index}:{sub}",
             name=self._name,
@@ -359,16 +364,16 @@ class Setup:
 
 
 def _abort(error: DriverError) -> int:
-    """The abort code of SDO behind it; 0 where there is none."""
+    """Return the SDO abort code that caused an error, or 0."""
     cause = error.__cause__
     return cause.code if isinstance(cause, SdoAbortedError) else 0
 
 
-# --- What every drive is told at each start unless the machine file says otherwise: stops, limits, watching.
+# --- Default objects written to every drive at each start: stops, limits and monitoring.
 
 
 def axis_objects(config: AxisConfig, bus: CanopenTable) -> Objects:
-    """For one axis drive, in its own units."""
+    """Return the objects written to an axis drive, in its own units."""
     return (
         *config.profile.units,
         *stopping(bus),
@@ -380,7 +385,7 @@ def axis_objects(config: AxisConfig, bus: CanopenTable) -> Objects:
 
 
 def stopping(bus: CanopenTable) -> Objects:
-    """For any drive: quick stop when our heartbeat is missing, then no power."""
+    """Return the objects for any drive: a quick stop without a heartbeat of TurnDesk, then power off."""
     return (
         (od.ABORT_OPTION, 0, 3),
         (od.QUICK_OPTION, 0, 2),
@@ -390,7 +395,7 @@ def stopping(bus: CanopenTable) -> Objects:
 
 
 def watching(bus: CanopenTable) -> Objects:
-    """For any node: its heartbeat, and ours, which it misses after three."""
+    """Return the objects for any node: its heartbeat, and a timeout of three heartbeats of TurnDesk."""
     return (
         (od.HEARTBEAT, 0, round(1000 * bus.heartbeat)),
         (od.WATCHED, 1, bus.host_id << 16 | round(3000 * bus.heartbeat)),
@@ -398,7 +403,7 @@ def watching(bus: CanopenTable) -> Objects:
 
 
 def limits(config: AxisConfig) -> Objects:
-    """The drive's own software limits; they mean something once it knows where home is."""
+    """Return the software limits of the drive, which are valid only after homing."""
     if config.travel is None:
         return ()
     low, high = config.travel

@@ -1,8 +1,8 @@
-"""The spindle on the bus: a drive in profile velocity mode, which makes its own ramps, and that may be C too.
+"""Spindle drive on the bus in profile velocity mode, which may also be the C axis.
 
-It is changed over at standstill from turning to positioning, and back. Free, the drive turns as the spindle.
-Held, it is one more axis of the set: powered, fed and stopped with the others. Where C then stands is what
-the control last counted; oriented, the spindle first turns so far that this is also its place from the index.
+The drive changes between both modes at standstill. As the spindle, it makes its own ramps. As C, it is one
+more axis that is powered, fed and stopped with the others. C then starts at the position that the control
+last counted. With orientation, the spindle first turns until this position is also correct from the index.
 """
 
 from __future__ import annotations
@@ -25,26 +25,27 @@ from drivers.port_parts import demand_free_drive, demand_spindle
 from drivers.setpoint_queue import straight
 
 _STANDS = 2.0  # rpm
-_KEPT_TURNING = (od.ABORT_OPTION, od.WATCHED)  # without these it turns on when this computer falls silent
-_POWER = 1.0  # s in which the drive must come on
+# Without these objects, the spindle would continue to turn if this computer stops responding.
+_KEPT_TURNING = (od.ABORT_OPTION, od.WATCHED)
+_POWER = 1.0  # Seconds in which the drive must switch on.
 
 
 class CanopenSpindle:
-    """``core.ports.Spindle``. The drive is without power unless it turns or is asked to."""
+    """``core.ports.Spindle`` of a CiA 402 drive, which has power only while it turns or must turn."""
 
     def __init__(self, config: SpindleConfig, bus: Bus) -> None:
         self._config = config
         self._bus = bus
         self._came_on = False
         self._last = self._counts = 0
-        self._ordered = 0.0  # s, when power was last asked for
-        self.lent = False  # to C: it does not turn as the spindle
-        self.kept = False  # and shall stay so
-        self.blind = False  # its counter leaps by homing: that is no turning
+        self._ordered = 0.0  # Time of the last power request in s.
+        self.lent = False  # Used as C, so the drive does not turn as the spindle.
+        self.kept = False  # Must remain C.
+        self.blind = False  # Ignore changes of the counter during homing.
         self.drive = Drive402(bus, config.node, SPEED_TARGET, (SPEED,))
 
     def connect(self) -> None:
-        """Configure it. Raises DriverError."""
+        """Configure the drive. Raises DriverError."""
         config = self._config
         queue = self.drive.profile.queue if config.is_c else None
         standing = (
@@ -69,7 +70,7 @@ class CanopenSpindle:
         self.drive.mode, self.drive.target = PV, 0
 
     def tick(self) -> None:
-        """Supervise; power goes when it stands and is to stand, and never comes back by itself."""
+        """Supervise the drive; switch it off at standstill, and never switch it on automatically."""
         drive = self.drive
         drive.look(3.0 * self._bus.config.heartbeat)
         lost = self._came_on and not drive.enabled
@@ -82,7 +83,10 @@ class CanopenSpindle:
             self._watch(lost)
 
     def _watch(self, lost: bool) -> None:
-        """Power that E-stop took, or that does not come, is not waited for: its return would start it."""
+        """Switch off after a loss of power, or set a fault if the drive does not switch on.
+
+        Waiting is not permitted, because a return of the power would start the spindle.
+        """
         drive, now = self.drive, self._bus.clock.now()
         if lost:
             drive.goal, drive.target = DriveState.OFF, 0
@@ -96,7 +100,10 @@ class CanopenSpindle:
             drive.goal = DriveState.OFF
 
     def run(self, rpm: float) -> None:
-        """Turn at ``rpm``, signed. Raises DriverError with a fault, unless asked to stop."""
+        """Turn the spindle at ``rpm``, signed; 0 stops it.
+
+        Raises DriverError with a fault, or while the drive is engaged as C, if the speed is not 0.
+        """
         if rpm:
             demand_spindle(self._bus.trouble or self.drive.trouble)
         if rpm and self.kept:
@@ -109,33 +116,33 @@ class CanopenSpindle:
         limit = self._config.rpm_max
         self.drive.target = round(min(max(rpm, -limit), limit))
         if rpm and self.lent:
-            return  # it turns as soon as it is no longer C
+            return  # The spindle turns after C is released.
         if rpm and self.drive.goal is not DriveState.ENABLED:
             self.drive.goal, self._ordered = DriveState.ENABLED, self._bus.clock.now()
 
     def coast(self) -> None:
-        """No torque: it runs down by itself."""
+        """Remove the torque, so that the spindle coasts to a stop."""
         self.drive.target = 0
         if not self.lent:
             self.drive.goal = DriveState.OFF
 
     @property
     def counts_per_rev(self) -> int:
-        """Of its encoder; 0: not known."""
+        """The encoder counts per revolution, or 0 if not specified."""
         return self._config.node.counts_per_rev
 
     @property
     def commanded(self) -> bool:
-        """Whether it is told to turn."""
+        """Whether a speed other than 0 is commanded."""
         return self.drive.target != 0
 
     def resume(self) -> None:
-        """It is no longer C: what it was told meanwhile is done."""
+        """Execute the speed command that was given while the drive was C."""
         if self.drive.target:
             self.drive.goal, self._ordered = DriveState.ENABLED, self._bus.clock.now()
 
     def clear_fault(self) -> None:
-        """Forget and reset a fault, without power. Raises DriverError where it has to be configured anew."""
+        """Clear the fault without power, and configure a restarted drive again. Raises DriverError."""
         if self.drive.rebooted or self.drive.missing:
             self.connect()
             self.drive.operational()
@@ -143,39 +150,40 @@ class CanopenSpindle:
         self.drive.clear()
 
     def speed(self) -> float:
-        """Measured rpm, signed; as C it does not turn as the spindle."""
+        """Return the measured speed in rpm, signed, or 0 while the drive is C."""
         return 0.0 if self.lent else float(self.drive.speed)
 
     def angle(self) -> tuple[float, float] | None:
-        """(time, turns) by the drive's encoder, of the last answer; None without counts a turn."""
+        """Return a (time, revolutions) pair of the last reply, or None without counts per revolution."""
         if not self.counts_per_rev:
             return None
         now = self.drive.position
         if self.blind:
             return self.drive.answered, self._counts / self.counts_per_rev
-        self._counts += (now - self._last + 2**31) % 2**32 - 2**31  # its counter goes round every few hours
+        # The counter wraps around every few hours.
+        self._counts += (now - self._last + 2**31) % 2**32 - 2**31
         self._last = now
         return self.drive.answered, self._counts / self.counts_per_rev
 
     def leapt(self) -> None:
-        """Its counter stands elsewhere now: it goes on from there."""
+        """Accept a counter that was set by homing, without counting the jump as rotation."""
         if self.blind:
             self._last, self.blind = self.drive.position, False
 
     def fault(self) -> str:
-        """What is wrong with it; empty when well."""
+        """Return the fault of the drive or bus, or an empty text."""
         return self._bus.trouble or (self.drive.trouble and Fault(self.drive.trouble, "spindle"))
 
 
-# --- C on the spindle's own drive.
+# --- C on the spindle drive.
 
 
-_CHANGE = 2.0  # s for a change of mode with power
+_CHANGE = 2.0  # Seconds for a change of mode with power.
 _TURN = 360.0
 
 
 class Step(Enum):
-    """How far the change-over is."""
+    """Steps of the change between spindle and C."""
 
     FREE = "the drive is running as the spindle drive"
     REST = "waiting until the axis drives have executed their queued motion"
@@ -189,7 +197,10 @@ class Step(Enum):
 
 
 class SpindleC:
-    """``core.ports.SpindleHold``. ``tick`` with the bus's rounds; ``trouble`` stops all axes."""
+    """``core.ports.SpindleHold`` of the spindle drive; a fault stops all axes.
+
+    ``tick`` is called once per cycle of the bus.
+    """
 
     def __init__(self, axes: CanopenAxes, spindle: CanopenSpindle, name: str) -> None:
         self._axes, self._spindle, self._drive = axes, spindle, spindle.drive
@@ -206,13 +217,18 @@ class SpindleC:
         self._since = 0.0
         self._homing = Referencing(spindle.drive)
         self._phase = Phase(spindle.counts_per_rev)
-        self._off = 0.0  # degrees that it has to turn to its place
-        self._goal: float | None = None  # what C shall count when it is held, through broken off tries
+        self._off = 0.0  # Degrees to turn to the position.
+        # Required C position when engaged, preserved across canceled attempts.
+        self._goal: float | None = None
 
     # --- the port ----------------------------------------------------------------------------------------
 
     def hold(self, on: bool, orient: bool = False) -> None:
-        """Hold it as C, or let it turn again. Raises DriverError where it cannot be held now."""
+        """Engage the drive as C, or release it as the spindle.
+
+        With ``orient``, the spindle first turns to its position from the index. Raises DriverError if the
+        drive cannot be engaged now.
+        """
         if on and self.trouble:
             raise DriverError(self.trouble)
         if on and not self._wanted:
@@ -222,18 +238,18 @@ class SpindleC:
         self._want(on)
 
     def held(self) -> bool:
-        """Whether C may move."""
+        """Return whether C is engaged and may move."""
         return self.step is Step.HELD and self._wanted
 
-    # --- every round -------------------------------------------------------------------------------------
+    # --- each cycle --------------------------------------------------------------------------------------
 
     def tick(self, now: float) -> None:
-        """Go on with whatever is under way."""
+        """Continue the change that is in progress."""
         self._phase.follow(self._drive.position, leaps=self.step in {Step.INDEX, Step.HERE})
         if self._drive.rebooted:
             self._phase.counts = None
         if self.step is not Step.FREE and (self._drive.trouble or not self._axes.sample().enabled):
-            self._want(False)  # power is gone, or will be: C ends with it
+            self._want(False)  # Without power, C ends.
         steps: dict[Step, Callable[[float], None]] = {
             Step.FREE: self._free,
             Step.REST: self._rest,
@@ -251,7 +267,7 @@ class SpindleC:
             self._fail(error.fault)
 
     def clear_fault(self) -> None:
-        """The operator has seen it."""
+        """Clear the fault and release the drive."""
         self.trouble = ""
         self._want(False)
 
@@ -279,7 +295,7 @@ class SpindleC:
             self._tell_place(now)
 
     def _tell_place(self, now: float) -> None:
-        """Its counter begins anew, so that it counts as C does: the drive stays where it is."""
+        """Set the drive's counter to the position of C without motion."""
         self._off = self._beside()
         place = self._place() - self._off
         self._spindle.blind = True
@@ -300,7 +316,7 @@ class SpindleC:
             self._enter(Step.POWER, now)
 
     def _referenced(self, now: float) -> bool:
-        """Whether its homing is done; a wish that has gone breaks it off. Raises DriverError."""
+        """Return whether the homing is complete; a canceled request ends it. Raises DriverError."""
         if self._wanted:
             return self._homing.done(now)
         self._drive.extra = 0
@@ -330,7 +346,7 @@ class SpindleC:
             self._enter(Step.LEAVE, now)
 
     def _leave(self, now: float) -> None:
-        """At rest, and the drives' queues ended: nothing is left in this one."""
+        """Release the drive when the axes are at rest and the queues of the drives have ended."""
         if self._axes.follower_rests(now):
             self._part()
             self._enter(Step.BACK, now)
@@ -355,14 +371,14 @@ class SpindleC:
         return self._demand() if self._goal is None else self._goal
 
     def _beside(self) -> float:
-        """How far the spindle must still turn to its place, degrees, by the short way."""
+        """Return the angle in degrees from the spindle to its position, by the shortest path."""
         if not self._orient or self._phase.counts is None:
             return 0.0
         off = self._place() - self._phase.counts * self._axis.config.count
         return (off + _TURN / 2.0) % _TURN - _TURN / 2.0
 
     def _join(self) -> None:
-        """From here on it is one of the axes."""
+        """Add the drive to the set of axis drives."""
         drives = self._axes.drives
         drives.axes.append(self._axis)
         drives.indices.append(self._number)

@@ -1,4 +1,4 @@
-"""Who is on the bus: each node of the machine file asked what it is. Nothing is switched, nothing is set."""
+"""Survey of the bus that identifies each node of the machine file without changing anything."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from drivers.canopen.canopen_setup import Setup
 from drivers.canopen.drive_profiles import DriveProfile
 from drivers.canopen.driven_axes import MOTIONS, axis_work
 
-_PATIENCE = 0.4  # s for an answer; nodes of a bus that works need milliseconds
+_PATIENCE = 0.4  # Seconds for a response; nodes on a working bus need milliseconds.
 _IDENTITY = (("vendor", 1), ("product", 2), ("revision", 3), ("serial", 4))
 _SHORT = {1: "PP", 3: "PV", 6: "homing", 7: "IP", 8: "CSP"}
 
 
 class Answer(NamedTuple):
-    """What one node says; ``trouble`` is empty where it is what the machine file says it is."""
+    """Survey result of one node; its error text is empty if the node matches the machine file."""
 
     name: str
     node: int
@@ -32,16 +32,16 @@ class Answer(NamedTuple):
 
 
 class _Quiet(Bus):
-    """Without our heartbeat: nodes begin to watch it with the first that they hear, and miss it later."""
+    """Bus without a heartbeat, which nodes would start to monitor and later miss."""
 
     def beat(self, *, at_once: bool = False) -> None:
-        """Nothing goes out."""
+        """Send nothing."""
 
 
 def survey(config: CanopenConfig, clock: Clock, idle: Callable[[], None] | None = None) -> list[Answer]:
-    """Every node of the machine file, in its order; ``idle`` as for the bus.
+    """Identify every node of the machine file in its order; ``idle`` is as for the bus.
 
-    Raises DriverError where the bus cannot be opened.
+    Raises DriverError if the bus cannot be opened.
     """
     bus = _Quiet(config.bus, clock, idle)
     axes = {axis.name: axis for axis in config.axes}
@@ -80,7 +80,10 @@ def _asked(bus: Bus, config: CanNode, axis: AxisConfig | None, mode: str) -> Ans
 
 
 def _fits(setup: Setup, family: DriveProfile, axis: AxisConfig | None, mode: str, bus: Bus) -> Iterator[str]:
-    """The mode it would run in, and the objects that it has not. Raises DriverError without that mode."""
+    """Yield the mode that the drive would run in, and its missing objects.
+
+    Raises DriverError if the drive does not support the mode.
+    """
     if axis is None:
         return
     work = axis_work(replace(axis, profile=family), bus.config, MOTIONS[mode])
@@ -109,7 +112,7 @@ def _modes(setup: Setup, family: DriveProfile) -> Iterator[str]:
 
 
 def _read(setup: Setup, index: int, sub: int) -> int:
-    """An object that a node may have or not."""
+    """Return an object, or 0 if the node does not have it."""
     try:
         return setup.read(index, sub)
     except DriverError:

@@ -1,4 +1,4 @@
-"""[canopen] and [spindle.encoder] of the machine file: keys of the bus and of an encoder on it."""
+"""Tables [canopen] and [spindle.encoder] of the machine file."""
 
 from __future__ import annotations
 
@@ -28,14 +28,15 @@ from drivers.canopen.canopen_rules import bus_rules
 from drivers.canopen.drive_profiles import PROFILES
 
 _ANSWERS, _ANSWER_TIME = 3, 0.02  # SYNCs, s
-ENCODER, POSITION = "spindle.encoder", "6004:0"  # the table, and where a node of CiA 406 has its counts
-_LEAST = 16  # counts a turn of an encoder
+# Name of the table, and the position object of a CiA 406 node.
+ENCODER, POSITION = "spindle.encoder", "6004:0"
+_LEAST = 16  # Minimum counts per revolution.
 MODES = ("pvt", "csp", "ip", "pp")
 
 
 @key_table
 class CanopenTable:
-    """The CAN bus and what hangs on it. Times in seconds."""
+    """Settings of the CAN bus and its nodes; times in seconds."""
 
     _: KW_ONLY
     interface: str = file_key(
@@ -81,23 +82,26 @@ class CanopenTable:
 
     @property
     def seldom(self) -> int:
-        """SYNCs from one answer to the next of what need not be known at each: about 10 ms."""
+        """The number of SYNCs between two replies of slow values, which corresponds to about 10 ms."""
         return seldom(self.sync)
 
     @property
     def patience(self) -> int:
-        """Answers to SYNC that a slide may leave out before it counts as silent: 3, or 20 ms."""
+        """The number of missing replies after which an axis drive counts as silent: 3, or those of 20 ms."""
         return max(_ANSWERS, round(_ANSWER_TIME / self.sync))
 
     @property
     def own_process(self) -> bool:
-        """Whether another process can own it; python-can's virtual bus lives in one."""
+        """Whether another process can own the bus.
+
+        The virtual bus of python-can exists in one process only.
+        """
         return self.interface != "virtual"
 
 
 @key_table
 class EncoderTable:
-    """An encoder on the spindle, on the bus: a node of its own, or a drive's second input."""
+    """Settings of a spindle encoder on the bus: a separate node, or the second input of a drive."""
 
     _: KW_ONLY
     node: str = file_key(
@@ -116,7 +120,7 @@ class EncoderTable:
 
     @property
     def address(self) -> tuple[int, int]:
-        """Index and sub-index of the object."""
+        """The index and sub-index of the position object."""
         return sdo_address(self.object or POSITION) or (0, 0)
 
 

@@ -1,4 +1,4 @@
-"""Inputs, outputs, pots and the operator station by the names of the machine file, on CiA 401 modules."""
+"""Inputs, outputs, pots and the operator station on CiA 401 modules, with the names from the machine file."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ from drivers.canopen.cia402_drives import Drive402
 from drivers.operator_station import station_of
 from drivers.port_parts import FirstTouch, demand_output, output_of
 
-# --- A CiA 401 module: inputs, outputs with a safe state of their own, analog words.
+# --- A CiA 401 module: inputs, outputs with safe states, and analog words.
 
 
-BYTES = 8  # of inputs, and of outputs, that one PDO carries
-_WORDS = 4  # analog ones
+BYTES = 8  # Bytes of inputs or outputs in one PDO.
+_WORDS = 4  # Analog words in one PDO.
 _DELTA = 328  # 1 % of an analog word
-_AGAIN = 0.1  # s after which outputs are sent although nothing has changed
-_SYNCS, _BEATS = 3, 3.0  # answers to SYNC, heartbeats that may be missing
+_AGAIN = 0.1  # Seconds after which unchanged outputs are sent again.
+_SYNCS, _BEATS = 3, 3.0  # Replies to SYNC and heartbeats that may be missing.
 _KINDS = ((od.DIGITAL_IN, "input bytes"), (od.DIGITAL_OUT, "output bytes"), (od.ANALOG_IN, "pots"))
 
 
 class Module401:
-    """One module, of the size that it says it has: at most what its first PDOs carry."""
+    """CiA 401 module with the number of terminals that it reports, limited to those of its first PDOs."""
 
     def __init__(self, config: CanNode, bus: Bus) -> None:
         self.config = config
@@ -40,7 +40,7 @@ class Module401:
         self.inputs = bytearray(BYTES)
         self.outputs = bytearray(BYTES)
         self.analog = [0] * _WORDS
-        self.counting: set[int] = set()  # sub-indices of analog words that count: each count matters
+        self.counting: set[int] = set()  # Sub-indices of analog words that are counters.
         self.sizes = {od.DIGITAL_IN: 0, od.DIGITAL_OUT: 0, od.ANALOG_IN: 0}
         self.heard = self.answered = bus.clock.now()
         self.missing = 0
@@ -48,7 +48,7 @@ class Module401:
         self._sent = (-1e9, b"")
 
     def measure(self, needed: Iterable[CanTerminal]) -> None:
-        """Ask how much there is of it. Raises DriverError for a terminal that it does not have."""
+        """Read the number of terminals. Raises DriverError if a needed terminal does not exist."""
         self.setup.pre_operational()
         self.setup.demand_profile(401)
         most = {od.DIGITAL_IN: BYTES, od.DIGITAL_OUT: BYTES, od.ANALOG_IN: _WORDS}
@@ -66,10 +66,13 @@ class Module401:
                 )
 
     def connect(self, safe: bytes, keep: bytes) -> None:
-        """Configure: what the outputs do when this computer falls silent; the mapping. DriverError."""
+        """Configure the outputs' states after a loss of this computer, and the PDO mapping.
+
+        Raises DriverError.
+        """
         inputs, outputs, words = self.sizes.values()
         for i in range(outputs):
-            self.setup.write(od.ERROR_MODE, i + 1, 0xFF & ~keep[i])  # 1: takes the value, 0: keeps its state
+            self.setup.write(od.ERROR_MODE, i + 1, 0xFF & ~keep[i])  # 1: set the error value, 0: no change.
             self.setup.write(od.ERROR_VALUE, i + 1, safe[i])
         if words:
             self.setup.write(od.ANALOG_EVENTS, 0, 1)
@@ -85,17 +88,17 @@ class Module401:
             self.setup.transmit(2, self._words, *_entries(od.ANALOG_IN, words, 16), every=every)
         self.node.nmt.add_heartbeat_callback(self._heartbeat)
         self.outputs[:outputs] = bytes(self.setup.read(od.DIGITAL_OUT, i + 1) for i in range(outputs))
-        # A pot stands somewhere before its first PDO comes; at 0 a cycle that begins at once would hold.
+        # Read the pots before their first PDO, because a pot at 0 would stop a cycle that starts immediately.
         self.analog[:words] = [_signed(self.setup.read(od.ANALOG_IN, i + 1)) for i in range(words)]
         self.heard, self.missing, self.trouble = self._bus.clock.now(), 0, ""
 
     def sync_sent(self) -> None:
-        """A SYNC is about to go out; who has nothing to send is known by its heartbeat alone."""
+        """Record that a SYNC is sent; a module without inputs is monitored by its heartbeat only."""
         if self.sizes[od.DIGITAL_IN] or self.sizes[od.ANALOG_IN]:
             self.missing += 1
 
     def send(self, now: float) -> None:
-        """The outputs, when they have changed or it is time to say them again."""
+        """Send the outputs after a change, and periodically."""
         when, what = self._sent
         outputs = bytes(self.outputs[: self.sizes[od.DIGITAL_OUT]])
         if outputs and (outputs != what or now - when >= _AGAIN):
@@ -104,7 +107,7 @@ class Module401:
 
     @property
     def silent(self) -> bool:
-        """Whether nothing has been heard of it for too long: its terminals are as they were before."""
+        """Whether replies or heartbeats are missing for too long, so that the inputs are old."""
         return self.missing > _SYNCS or self._without_beat > _BEATS * self._bus.config.heartbeat
 
     @property
@@ -112,7 +115,7 @@ class Module401:
         return self._bus.clock.now() - self.heard
 
     def look(self) -> None:
-        """Supervise; ``trouble`` stays until the module is connected anew."""
+        """Set a fault if heartbeats or replies are missing; it remains until ``connect``."""
         name, silent = self.config.name, self._without_beat
         if silent > _BEATS * self._bus.config.heartbeat:
             self._wrong(
@@ -147,7 +150,7 @@ class Module401:
 
 
 def _signed(word: int) -> int:
-    """An analog word as the number that it is, whichever way it was read."""
+    """Convert a 16-bit analog word into a signed number."""
     return (word + 2**15) % 2**16 - 2**15
 
 
@@ -155,11 +158,11 @@ def _entries(index: int, count: int, bits: int) -> list[tuple[int, int]]:
     return [(index | sub << 16, bits) for sub in range(1, count + 1)]
 
 
-_FULL = 32767.0  # of an analog word
+_FULL = 32767.0  # Full scale of an analog word.
 
 
 class CanopenIO:
-    """``core.ports.DigitalIO`` and ``Station`` on the modules, by the names of the machine file."""
+    """``core.ports.DigitalIO`` and ``Station`` on the modules, with the names from the machine file."""
 
     def __init__(self, config: CanopenConfig, bus: Bus, drives: Mapping[str, Drive402]) -> None:
         self._config = config
@@ -170,9 +173,9 @@ class CanopenIO:
         if wheel is not None:
             self._module(wheel.terminal).counting.add(wheel.terminal.sub)
         self._written: dict[str, bool] = {}
-        self._heard: tuple[object, ...] = ()  # words of the inputs, as they were last read
+        self._heard: tuple[object, ...] = ()  # Last received words of the inputs.
         self._inputs: Mapping[str, bool] = {}
-        self._wheel: tuple[int, int] | None = None  # its counter at the last look, and what was counted
+        self._wheel: tuple[int, int] | None = None  # Counter at the last reading, and accumulated counts.
 
     def connect(self) -> None:
         """Configure every module with the safe states of its outputs. Raises DriverError."""
@@ -197,19 +200,19 @@ class CanopenIO:
             self._written[name] = self._bit(self._module(output.terminal).outputs, output.terminal)
 
     def _needed(self) -> Iterator[CanTerminal]:
-        """All terminals of the machine file, those of drives too."""
+        """Yield all terminals of the machine file, including those of drives."""
         config = self._config
         yield from config.inputs.values()
         yield from (output.terminal for output in config.outputs.values())
         yield from (pot.terminal for pot in config.pots.values())
 
     def operational(self) -> None:
-        """NMT start of the modules."""
+        """Start the modules by NMT."""
         for module in self.modules.values():
             module.node.nmt.state = "OPERATIONAL"
 
     def tick(self, now: float) -> str:
-        """Supervise and send; what is wrong with a module, or nothing."""
+        """Supervise the modules and send the outputs; return the first fault, or an empty text."""
         trouble: str = ""
         for module in self.modules.values():
             module.look()
@@ -218,13 +221,13 @@ class CanopenIO:
         return trouble
 
     def clear_fault(self) -> None:
-        """Configure anew what has restarted or was silent. Raises DriverError."""
+        """Configure modules again after a restart or silence. Raises DriverError."""
         if any(module.trouble for module in self.modules.values()):
             self.connect()
             self.operational()
 
     def inputs(self) -> Mapping[str, bool]:
-        """All inputs by name; active is True."""
+        """Return all inputs by name; True is active."""
         heard = (
             *(bytes(module.inputs) for module in self.modules.values()),
             *(drive.inputs for drive in self._drives.values()),
@@ -235,11 +238,11 @@ class CanopenIO:
         return self._inputs
 
     def outputs(self) -> Mapping[str, bool]:
-        """All outputs as last written."""
+        """Return all outputs by name, as last written."""
         return dict(self._written)
 
     def write(self, name: str, on: bool) -> None:
-        """Switch one output; it goes out with the next tick. Raises DriverError."""
+        """Switch one output, which is sent at the next tick. Raises DriverError."""
         output = output_of(name, self._config.outputs)
         module = self._module(output.terminal)
         demand_output(name, on, self._bus.trouble or module.trouble)
@@ -253,7 +256,7 @@ class CanopenIO:
         self._written[name] = on
 
     def safe(self) -> None:
-        """Every output to its safe state; at once, as far as the bus is alive."""
+        """Set every output to its safe state, immediately if the bus works."""
         for name, output in self._config.outputs.items():
             if output.safe is not None:
                 self._switch(name, output.terminal, output.safe)
@@ -262,7 +265,7 @@ class CanopenIO:
                 module.send(self._bus.clock.now())
 
     def snapshot(self) -> StationState:
-        """The operator station as its inputs have it; its age is that of the oldest module."""
+        """Return the state of the operator station; its age is that of the oldest module."""
         now = self._bus.clock.now()
         age = max((now - module.answered for module in self.modules.values()), default=0.0)
         return station_of(
@@ -274,7 +277,10 @@ class CanopenIO:
         )
 
     def _turned(self) -> int:
-        """The wheel's counter goes round after 16 bits; nobody turns half of that between two looks."""
+        """Return the handwheel counts.
+
+        The 16-bit counter wraps around. Less than half of its range can pass between two calls.
+        """
         if "handwheel" not in self._config.pots:
             return 0
         raw = self._word("handwheel")
@@ -286,7 +292,7 @@ class CanopenIO:
         return count
 
     def _word(self, name: str) -> int:
-        """The analog word of a pot or wheel."""
+        """Return the analog word of a pot or handwheel."""
         where = self._config.pots[name].terminal
         return self._module(where).analog[where.sub - 1]
 
@@ -305,16 +311,16 @@ class CanopenIO:
         return bool(data[where.sub - 1] >> where.bit & 1)
 
 
-# --- The probe.
+# --- Probe.
 
 
-_LATE = 2  # SYNCs: a module answers one with what it had at the one before
+_LATE = 2  # SYNCs: a module replies with its inputs of the previous SYNC.
 
 
 class CanopenProbe(FirstTouch):
-    """Touches by the answers to each SYNC.
+    """Touch input by the replies to each SYNC.
 
-    The drives' own latch (60B8) is not used: few have its input free.
+    The position latch of the drives (60B8) is not used, because its input is rarely free.
     """
 
     def __init__(self, axes: CanopenAxes, io: CanopenIO, sync: float) -> None:
@@ -322,7 +328,7 @@ class CanopenProbe(FirstTouch):
         self._axes, self._io, self._sync = axes, io, sync
 
     def note(self) -> None:
-        """Once a round of the loop that owns the bus."""
+        """Latch the positions at the first touch; called once per cycle of the bus."""
         if self._touches(self._io.inputs()[PROBE]):
             sample = self._axes.sample()
             self._kept = Latch(sample.t, sample.actual, _LATE * self._sync)

@@ -1,4 +1,4 @@
-"""A CiA 402 drive: configured and read back by SDO, driven by PDO."""
+"""CiA 402 drive, configured by SDO and controlled by PDO."""
 
 from __future__ import annotations
 
@@ -25,12 +25,13 @@ from drivers.canopen.canopen_setup import Setup
 from drivers.canopen.drive_profiles import Entry
 
 _FOLLOWING = 0x8611  # EMCY
-SYNCS = 3  # answers that may be missing of what answers every 10 ms
+SYNCS = 3  # Replies that may be missing from a device that replies every 10 ms.
 _COMMAND = struct.Struct("<Hbi")  # control word, mode, target
 _SHOWN = struct.Struct("<Hbi")  # status word, mode, position
-_TORQUE = struct.Struct("<h")  # per mille of the rated one
+_TORQUE = struct.Struct("<h")  # Per mille of the rated torque.
 _NAN = float("nan")
-_RARER, _MOST_RARE = 5, 240  # times what need not be known at each SYNC; SYNCs, as CiA 301 counts them
+# Factor of the interval of slow values, and the maximum interval in SYNCs by CiA 301.
+_RARER, _MOST_RARE = 5, 240
 SPEED_TARGET, SPEED = Entry(od.TARGET_SPEED, 0, 32), Entry(od.VELOCITY, 0, 32, signed=True)
 _NEEDED = (
     Entry(od.CONTROL, 0, 16),
@@ -41,10 +42,11 @@ _NEEDED = (
 
 
 class Drive402:
-    """``word`` and ``goal`` are what is wanted; ``exchange`` sends it, the answers come with the bus's pump.
+    """CiA 402 drive with its commanded and reported values.
 
-    ``target`` is the object that the command carries: a position, or a speed for a spindle. ``told`` is what
-    the drive tells besides, as far as it has it.
+    ``goal``, ``mode``, ``extra`` and ``target`` are the commanded values, which ``command`` sends. ``target``
+    is a position, or a speed for a spindle. The dictionary of reported values holds optional objects by
+    index.
     """
 
     def __init__(self, bus: Bus, config: CanNode, target: Entry, told: tuple[Entry, ...]) -> None:
@@ -56,63 +58,67 @@ class Drive402:
         self.node = self.setup.node
         self._target_object = target
         self._asked_for = (*told, self.profile.inputs)
-        self._told_as: tuple[Entry, ...] = ()  # what of it the drive has
-        self.told: dict[int, int] = {}  # by object
-        self.tracks: int | None = None  # in any mode but this one its target is the place where it stands
+        self._told_as: tuple[Entry, ...] = ()  # Optional objects that the drive has.
+        self.told: dict[int, int] = {}  # By object index.
+        self.tracks: int | None = None  # In all other modes, the target is the present position.
         self.goal = DriveState.OFF
         self.extra = 0  # bits 4, 5, 6, 8 of the control word, while enabled
         self.mode = 0
         self.target = 0
-        self.word = 0  # of the last command
+        self.word = 0  # Control word of the last command.
         self.status = 0
         self.shown_mode = 0
         self.position = 0  # counts
         self._load = _NAN
         self.missing = 0  # SYNCs without an answer
-        self.heard = self.asked = self.answered = bus.clock.now()  # answered: the SYNC that it shows
+        # The last one is the time of the SYNC of the last reply.
+        self.heard = self.asked = self.answered = bus.clock.now()
         self.trouble: Fault | str = ""
         self.rebooted = False
         self._resetting = False
-        self._patience = bus.config.patience  # answers that it may leave out
-        self._beats = True  # it has a heartbeat that can be watched
+        self._patience = bus.config.patience  # Number of replies that may be missing.
+        self._beats = True  # The drive has a heartbeat.
 
     @property
     def state(self) -> DriveState:
-        """As the last status word has it."""
+        """The state in the last status word."""
         return state_of(self.status)
 
     @property
     def enabled(self) -> bool:
-        """Power is on and the drive obeys."""
+        """Whether the drive has power and follows commands."""
         return self.state is DriveState.ENABLED
 
     @property
     def silent(self) -> bool:
-        """Whether it has left too many SYNCs unanswered: what it shows is of before."""
+        """Whether too many replies to SYNC are missing, so that the reported values are old."""
         return self.missing > self._patience
 
     @property
     def tells_inputs(self) -> bool:
-        """Whether it has digital inputs that can be read."""
+        """Whether the drive reports digital inputs."""
         return self.profile.inputs in self._told_as
 
     @property
     def inputs(self) -> int:
-        """Its digital inputs; none are on where it tells none."""
+        """The digital inputs as bits, or 0 if the drive does not report them."""
         return self.told.get(self.profile.inputs.object, 0)
 
     @property
     def speed(self) -> int:
-        """What it turns at, in its unit, where it was asked for that."""
+        """The measured speed in the drive's unit, or 0 if it is not mapped."""
         return self.told.get(od.VELOCITY, 0)
 
     @property
     def load(self) -> float:
-        """Per cent of the rated torque, signed; nan where it tells none, and while it is silent."""
+        """The torque in percent of the rated torque, signed.
+
+        The value is nan if the drive does not report its torque, or while the drive is silent.
+        """
         return _NAN if self.silent else self._load
 
     def connect(self, work: DriveWork) -> None:
-        """Check, configure and map it in PRE-OPERATIONAL. Raises DriverError with what does not fit."""
+        """Check, configure and map the drive in PRE-OPERATIONAL. Raises DriverError if it does not match."""
         setup, records = self.setup, work.records
         setup.pre_operational()
         setup.demand_profile(402)
@@ -140,39 +146,42 @@ class Drive402:
         self.heard, self.missing, self.rebooted, self.trouble = self.bus.clock.now(), 0, False, ""
 
     def _ask_load(self) -> None:
-        """Have it tell its torque where it can: a figure for the scope, for which no start is refused."""
+        """Map the torque for the scope if possible; a failure does not prevent operation."""
         self._load = _NAN
         if self.setup.has(od.TORQUE, 0):
             every = min(_RARER * self.bus.config.seldom, _MOST_RARE)
-            with suppress(DriverError):  # some map it nowhere, or have no fourth PDO
+            with suppress(DriverError):  # Some drives cannot map the torque or have no fourth PDO.
                 self.setup.transmit(4, self._torque, (od.TORQUE, 16), every=every)
 
     def operational(self) -> None:
-        """NMT start; only after every node has been configured."""
+        """Start the drive by NMT, after all nodes are configured."""
         self.node.nmt.state = "OPERATIONAL"
 
     def command(self) -> None:
-        """Send what is wanted; the drive applies it at the next SYNC."""
+        """Send the commanded values, which the drive applies at the next SYNC."""
         if self.tracks is not None and not (self.enabled and self.shown_mode == self.tracks):
-            self.target = self.position  # it begins where it stands, whatever moved it meanwhile
+            self.target = self.position  # The drive starts at its present position.
         self.word = self._next_word()
         data = _COMMAND.pack(self.word, self.mode, self.target)
         self.bus.send_message(0x200 + self.id, data)
 
     def sync_sent(self, now: float, *, counted: bool = True) -> None:
-        """A SYNC goes out; ``counted``: an answer to it is waited for."""
+        """Record that a SYNC is sent; with ``counted``, a reply is expected."""
         self.missing, self.asked = self.missing + counted, now
 
     def push(self, record: bytes) -> None:
-        """One more record for the queue in the drive."""
+        """Send one record to the queue in the drive."""
         self.bus.send_message(0x300 + self.id, record)
 
     def clear(self) -> None:
-        """Begin to reset a fault; ends without power, whatever was wanted before."""
+        """Start to reset a fault; the drive is without power afterwards."""
         self.goal, self.extra, self._resetting = DriveState.OFF, 0, True
 
     def look(self, patience: float) -> None:
-        """Supervise: heartbeat, answers, status. ``trouble`` stays until ``forget``."""
+        """Set a fault for missing heartbeats or replies, or a drive fault; it remains until ``forget``.
+
+        ``patience`` is the heartbeat timeout in seconds.
+        """
         now = self.bus.clock.now()
         if self._beats and now - self.heard > patience:
             self._wrong(
@@ -191,7 +200,7 @@ class Drive402:
             self._wrong("{name}: drive fault", "axis", name=self.name)
 
     def forget(self) -> None:
-        """The operator has seen it."""
+        """Clear the stored fault."""
         self.trouble = ""
 
     def _next_word(self) -> int:
@@ -247,15 +256,16 @@ class Drive402:
 
 
 def _mapped(entry: Entry) -> tuple[int, int]:
-    """As a PDO's entries are written: object + sub · 65536, bits."""
+    """Return a PDO entry as (object + sub · 65536, bits)."""
     return entry.object | entry.sub << 16, entry.bits
 
 
 @dataclass(frozen=True, slots=True)
 class DriveWork:
-    """What a drive is configured for: bits of 0x6502, what is written, and the object of its queue.
+    """Configuration of a drive: modes as bits of 0x6502, written objects, and the object of its queue.
 
-    ``needed`` are objects without which it cannot be used; ``period`` of setpoints that it has to watch.
+    ``needed`` lists objects without which the drive cannot be used. ``period`` is the setpoint period in
+    seconds that the drive must monitor.
     """
 
     modes: int
@@ -264,4 +274,4 @@ class DriveWork:
     needed: tuple[int, ...] = ()
     records: int = 0
     period: float = 0.0
-    axis: bool = True  # it answers each SYNC; a spindle every 10 ms
+    axis: bool = True  # Replies to each SYNC; a spindle replies every 10 ms.

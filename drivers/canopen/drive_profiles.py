@@ -1,7 +1,7 @@
-"""Drives as they are sold: the few facts of each family that its EDS does not say.
+"""Drive families with the facts that their EDS files do not contain.
 
-Objects and data types are those of the vendors' EDS files and manuals: maxon EPOS2 and EPOS4, Copley Accelnet
-and Xenus; everything else is a drive of CiA 402 alone, as Schunk's and Pilz's are.
+Objects and data types are from the vendors' EDS files and manuals: maxon EPOS2 and EPOS4, Copley Accelnet and
+Xenus. All other drives, such as those of Schunk and Pilz, are plain CiA 402 drives.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 
 class Entry(NamedTuple):
-    """An object that a PDO carries."""
+    """Object that a PDO contains."""
 
     object: int
     sub: int
@@ -21,7 +21,7 @@ class Entry(NamedTuple):
 
 
 class Records(Enum):
-    """How a queue of position, velocity and time takes its records."""
+    """Record formats of queues with position, velocity and time."""
 
     EPOS2 = "20C1"
     COPLEY = "2010"
@@ -31,7 +31,7 @@ INPUTS = Entry(0x60FD, 0, 32)
 
 
 class Queue(NamedTuple):
-    """A queue in the drive: the object its records go to, sub-mode in 0x60C0, records it may be given."""
+    """Queue in a drive: record format, object, sub-mode for 0x60C0, and the number of records to use."""
 
     records: Records
     object: int
@@ -41,17 +41,17 @@ class Queue(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class DriveProfile:
-    """``rpm``: it counts speeds in rpm and accelerations in rpm/s, and so needs its counts a turn."""
+    """Drive family; with ``rpm``, its units are rpm and rpm/s, which requires counts per revolution."""
 
     name: str
     title: str
     rpm: bool = False
-    modes: int = 0  # bits of 0x6502 that it has whatever it says there
+    modes: int = 0  # Bits of 0x6502 that apply even if not reported.
     inputs: Entry = INPUTS  # digital inputs
-    home_place: int = 0x607C  # what it shall count at home
+    home_place: int = 0x607C  # Object of the home offset.
     queue: Queue | None = None
-    units: tuple[tuple[int, int, int], ...] = ()  # written first, so that it counts as is said here
-    vendor: int = 0  # of its EDS, with words of the product's name
+    units: tuple[tuple[int, int, int], ...] = ()  # Written first to select these units.
+    vendor: int = 0  # Vendor in the EDS file; `words` are parts of the product name.
     words: tuple[str, ...] = ()
 
 
@@ -66,7 +66,7 @@ PROFILES = {
             "maxon EPOS2",
             rpm=True,
             inputs=Entry(0x2071, 1, 16),
-            queue=Queue(Records.EPOS2, 0x20C1, -1, 56),  # it takes 64
+            queue=Queue(Records.EPOS2, 0x20C1, -1, 56),  # The drive accepts 64.
             vendor=_MAXON,
             words=("EPOS2",),
         ),
@@ -76,7 +76,7 @@ PROFILES = {
             rpm=True,
             modes=0x01 | 0x04 | 0x20 | 0x80,  # PP, PV, homing, CSP
             home_place=0x30B0,
-            # positions in increments, speeds in rpm, accelerations in rpm/s: their SI units
+            # SI unit codes: positions in increments, speeds in rpm, accelerations in rpm/s.
             units=((0x60A8, 0, 0x00B50000), (0x60A9, 0, 0x00B44700), (0x60AA, 0, 0x00C00300)),
             vendor=_MAXON,
             words=("EPOS4",),
@@ -84,7 +84,7 @@ PROFILES = {
         DriveProfile(
             "copley",
             "Copley Accelnet or Xenus",
-            queue=Queue(Records.COPLEY, 0x2010, -2, 26),  # it takes 32
+            queue=Queue(Records.COPLEY, 0x2010, -2, 26),  # The drive accepts 32.
             vendor=_COPLEY,
         ),
     )
@@ -94,7 +94,7 @@ IN_RPM = tuple(name for name, profile in PROFILES.items() if profile.rpm)
 
 
 def profile_of(name: str, vendor: int | None, product: str | None) -> DriveProfile:
-    """By the name in the machine file; without one, by what the EDS file says of itself."""
+    """Return the family by its name, or without a name by vendor and product of the EDS file."""
     if name:
         return PROFILES[name]
     for profile in PROFILES.values():

@@ -1,4 +1,4 @@
-"""The axis drives together: powered and stopped as one at one SYNC, with the PVT queue of each drive.
+"""Set of axis drives that are powered and stopped together at one SYNC, with the PVT queue of each drive.
 
 Records of position, velocity and time (PVT) are those of EPOS2 (20C1h) and of Copley (2010h).
 """
@@ -29,21 +29,21 @@ from drivers.canopen.cia402_drives import Drive402, DriveWork
 from drivers.canopen.drive_profiles import Entry, Queue, Records
 
 _RECORD = struct.Struct("<i")
-_TOP = 2**23 - 1  # of 24 bits with a sign
-_CLEAR, _COUNT_ANEW = 0x80, 0x83  # orders to a queue of Copley: empty and stop, count segments from 0
-_TENTHS = 10.0  # its velocities are in 0.1 counts/s
-_SEGMENTS = 8  # its integrity counter goes round
+_TOP = 2**23 - 1  # Maximum of a signed 24-bit number.
+_CLEAR, _COUNT_ANEW = 0x80, 0x83  # Commands to a Copley queue: clear and stop, restart the segment count.
+_TENTHS = 10.0  # Copley velocities are in 0.1 counts/s.
+_SEGMENTS = 8  # Range of the integrity counter.
 POSITION_TARGET, POINT_TARGET = Entry(od.TARGET, 0, 32), Entry(od.IP_RECORD, 1, 32)
-_POWER = 1.5  # s in which the drives must come on, or leave their faults
-_REST, _LOOKS = 2, 0.0095  # counts in so many s at least; less is standing
-_REACTION = 1.0  # s in which a drive that has lost its host is at rest: three heartbeats and its ramp
+_POWER = 1.5  # Seconds in which the drives must switch on or clear their faults.
+_REST, _LOOKS = 2, 0.0095  # Counts within at least this number of seconds; fewer mean standstill.
+_REACTION = 1.0  # Seconds until a drive without host is at rest: three heartbeats and its ramp.
 _FAULTS = frozenset((DriveState.FAULT, DriveState.REACTING))
 
 
 def packed(ms: int, velocity: float, position: float) -> bytes:
-    """One record of EPOS2: position in the low 32 bits, then velocity in 24, then the time in 8.
+    """Pack one EPOS2 record: position in the low 32 bits, velocity in 24 bits, time in 8 bits.
 
-    Raises ValueError for what does not fit.
+    Raises ValueError for values out of range.
     """
     speed, place = round(velocity), round(position)
     if abs(speed) > _TOP or not 0 <= ms <= 255:
@@ -52,14 +52,14 @@ def packed(ms: int, velocity: float, position: float) -> bytes:
 
 
 def unpacked(data: bytes) -> tuple[int, int, int]:
-    """Milliseconds, velocity and position of a record of EPOS2."""
+    """Return milliseconds, velocity and position of an EPOS2 record."""
     return data[7], _signed(data[4:7]), _RECORD.unpack(data[:4])[0]
 
 
 def segment(number: int, ms: int, velocity: float, position: float) -> bytes:
-    """One segment of Copley, format 0: its count, time, place, velocity in 0.1 counts/s.
+    """Pack one Copley segment of format 0: count, time, position, and velocity in 0.1 counts/s.
 
-    Raises ValueError for what does not fit in 24 bits.
+    Raises ValueError for values that exceed 24 bits.
     """
     speed, place = round(_TENTHS * velocity), round(position)
     if abs(speed) > _TOP or abs(place) > _TOP or not 0 <= ms <= 255:
@@ -68,21 +68,21 @@ def segment(number: int, ms: int, velocity: float, position: float) -> bytes:
 
 
 def unpacked_segment(data: bytes) -> tuple[int, int, float, int]:
-    """Count, milliseconds, velocity in counts/s and position of a segment of Copley."""
+    """Return count, milliseconds, velocity in counts/s and position of a Copley segment."""
     return data[0] & 0x07, data[1], _signed(data[5:8]) / _TENTHS, _signed(data[2:5])
 
 
 class RecordQueue:
-    """The queue of one drive. ``push`` raises ValueError for what its records cannot carry."""
+    """PVT queue of one drive."""
 
     def __init__(self, config: AxisConfig, queue: Queue, setup: Setup, send: Callable[[bytes], None]) -> None:
-        """``send`` brings a record to the drive at once."""
+        """Create the queue; ``send`` transmits a record to the drive immediately."""
         self._config, self._setup, self._send = config, setup, send
         self.queue = queue
         self._pushed = 0
 
     def clear(self) -> None:
-        """Nothing old is played. Raises DriverError."""
+        """Clear the queue in the drive. Raises DriverError."""
         self._pushed = 0
         if self.queue.records is Records.COPLEY:
             for order in (_CLEAR, _COUNT_ANEW):
@@ -92,7 +92,10 @@ class RecordQueue:
                 self._setup.write(od.BUFFER, 6, clear)
 
     def push(self, ms: int, velocity: float, position: float) -> None:
-        """One more record; mm or degrees, and their speed."""
+        """Send one record with position in mm or degrees and velocity per second.
+
+        Raises ValueError for values that do not fit into a record.
+        """
         config = self._config
         place = position / config.count
         if self.queue.records is Records.COPLEY:
@@ -112,14 +115,14 @@ def _signed(data: bytes) -> int:
 
 @dataclass(frozen=True, slots=True)
 class Motion:
-    """How the drives follow: mode of CiA 402, object of the setpoints, and whether one comes each SYNC."""
+    """Motion mode: CiA 402 mode, object of the setpoints, and whether one setpoint is sent per SYNC."""
 
     mode: int
     target: Entry = POSITION_TARGET
     cyclic: bool = False
 
 
-MOTIONS = {  # by the words of the machine file
+MOTIONS = {  # By the mode in the machine file.
     "pvt": Motion(IP),
     "csp": Motion(CSP, cyclic=True),
     "ip": Motion(IP, POINT_TARGET, cyclic=True),
@@ -129,17 +132,17 @@ MOTIONS = {  # by the words of the machine file
 
 @dataclass(slots=True)
 class DrivenAxis:
-    """One axis and its drive; homed: its counts mean machine positions."""
+    """One axis with its drive; ``homed`` means that its counts are machine positions."""
 
     config: AxisConfig
     drive: Drive402
     homed: bool = False
-    last: int = 0  # counts at the answer before
+    last: int = 0  # Counts at the previous reply.
     moving: bool = False
-    records: RecordQueue | None = None  # its queue, where its family has one
+    records: RecordQueue | None = None  # Queue of the drive if its family has one.
 
     def __post_init__(self) -> None:
-        """The queue of its drive."""
+        """Create the queue of the drive if its family has one."""
         queue = self.config.profile.queue
         self.records = None
         if queue is not None:
@@ -147,12 +150,12 @@ class DrivenAxis:
 
     @property
     def ready(self) -> bool:
-        """Powered, and the mode read back."""
+        """Whether the drive has power and reports the commanded mode."""
         return self.drive.enabled and self.drive.shown_mode == self.drive.mode
 
 
 class DriveSet:
-    """``mode`` is the one in which they follow setpoints."""
+    """Set of all axis drives with their common motion mode."""
 
     def __init__(self, axes: tuple[AxisConfig, ...], bus: Bus, how: Motion) -> None:
         self._bus = bus
@@ -163,55 +166,59 @@ class DriveSet:
         ]
         for axis in self.axes:
             axis.drive.tracks = how.mode if how.cyclic else None
-        self.seen = self._sent = bus.clock.now()  # the SYNC of the last answers, of the last exchange
-        self._compared = self.seen  # when positions were last compared
+        # Times of the SYNC of the last replies and of the last exchange.
+        self.seen = self._sent = bus.clock.now()
+        self._compared = self.seen  # Time of the last comparison of positions.
 
     @property
     def drives(self) -> list[Drive402]:
-        """Without what they move."""
+        """The drives of the axes."""
         return [axis.drive for axis in self.axes]
 
     @property
     def powered(self) -> bool:
-        """Every one of them."""
+        """Whether all drives have power."""
         return all(axis.drive.enabled for axis in self.axes)
 
     @property
     def moving(self) -> bool:
-        """Any of them, by its counts."""
+        """Whether any axis moves, according to its counts."""
         return any(axis.moving for axis in self.axes)
 
     def connect(self) -> None:
-        """Configure every drive; NMT start comes later. Raises DriverError."""
+        """Configure every drive before the NMT start. Raises DriverError."""
         for axis in self.axes:
             self._connect(axis)
 
     def operational(self) -> None:
-        """NMT start."""
+        """Start all drives by NMT."""
         for axis in self.axes:
             axis.drive.operational()
 
     def command(self) -> None:
-        """Send every drive its command; the bus's SYNC makes them act together."""
+        """Send the commands of all drives, which take effect together at the next SYNC."""
         for axis in self.axes:
             axis.drive.command()
 
     def sync_sent(self, now: float) -> None:
-        """A SYNC goes out, and every drive is to answer it."""
+        """Record that a SYNC is sent, to which every drive must reply."""
         for axis in self.axes:
             axis.drive.sync_sent(now)
 
     def exchange(self) -> None:
-        """Command and SYNC, whatever was answered."""
+        """Send the commands and a SYNC immediately."""
         self._sent = self._bus.clock.now()
         self.command()
         self.sync_sent(self._sent)
         self._bus.synchronise()
 
     def answered(self) -> list[DrivenAxis]:
-        """For waiting: one exchange, not before the last was answered or its time is over."""
+        """Exchange once if the last exchange has been answered or has timed out, and return the axes.
+
+        Used as the polling step of a wait. In cyclic modes, the SYNC continues independently.
+        """
         if self._how.cyclic and not self._bus.stepped:
-            return self.axes  # the SYNC goes on meanwhile, by the bus's own wait
+            return self.axes  # The wait of the bus continues the SYNC.
         waiting = any(axis.drive.missing for axis in self.axes)
         if not waiting or self._bus.clock.now() - self._sent >= 2 * self._bus.config.sync:
             self.exchange()
@@ -219,12 +226,15 @@ class DriveSet:
         return self.axes
 
     def aim(self, goal: DriveState) -> None:
-        """What all of them shall come to, and no bits of motion left."""
+        """Set the goal state of all drives and clear their motion bits."""
         for axis in self.axes:
             axis.drive.goal, axis.drive.extra = goal, 0
 
     def power_on(self) -> None:
-        """Walk up, and wait. Raises DriverError naming the drive that does not come; then all are off."""
+        """Switch all drives on and wait.
+
+        Raises DriverError that names the drives that fail; then all are switched off.
+        """
         for axis in self.axes:
             axis.drive.mode, axis.drive.goal = self._how.mode, DriveState.ENABLED
         if not self._bus.wait(lambda: all(axis.ready for axis in self.answered()), _POWER):
@@ -242,12 +252,15 @@ class DriveSet:
             raise DriverError(why, "no-power")
 
     def power_off(self) -> None:
-        """Wait a little for it."""
+        """Switch all drives off and wait up to 0.3 s."""
         self.aim(DriveState.OFF)
         self._bus.wait(lambda: not any(axis.drive.enabled for axis in self.answered()), 0.3)
 
     def clear(self) -> None:
-        """Reset faults, configure anew what was away. Raises DriverError; no drive has power afterwards."""
+        """Reset faults and configure drives that have restarted; afterwards no drive has power.
+
+        Raises DriverError if a fault remains.
+        """
         for axis in self.axes:
             if axis.drive.rebooted or axis.drive.missing:
                 self._connect(axis)
@@ -263,12 +276,12 @@ class DriveSet:
             raise DriverError(why, "drive-keeps-fault")
 
     def lose_home(self) -> None:
-        """Behind an E-stop only encoders that are absolute are believed."""
+        """Clear the home of all axes without an absolute encoder, as required after an E-stop."""
         for axis in self.axes:
             axis.homed = axis.config.absolute
 
     def look(self) -> str:
-        """Supervise; the first thing that is wrong, or nothing."""
+        """Supervise the drives and return the first fault, or an empty text."""
         trouble: str = ""
         for axis in self.axes:
             axis.drive.look(3.0 * self._bus.config.heartbeat)
@@ -278,9 +291,9 @@ class DriveSet:
         return trouble
 
     def note_motion(self, now: float) -> None:
-        """Whether they move, by two answers; without drives there is nothing to wait for.
+        """Update which axes move, by comparing the positions of two replies.
 
-        One that no longer answers keeps nobody waiting once its own reaction must be over.
+        A silent drive counts as stopped when the time for its own stop reaction has passed.
         """
         speaking = [axis for axis in self.axes if not axis.drive.silent]
         for axis in self.axes:
@@ -309,7 +322,7 @@ class DriveSet:
 
 
 def axis_work(config: AxisConfig, bus: CanopenTable, how: Motion) -> DriveWork:
-    """What the drive of an axis is configured for."""
+    """Return the configuration of an axis drive."""
     queue = config.profile.queue if how.mode == IP and not how.cyclic else None
     submode: Objects = ((od.IP_SUBMODE, 0, queue.submode if queue is not None else 0),)
     return DriveWork(
@@ -326,7 +339,7 @@ def axis_work(config: AxisConfig, bus: CanopenTable, how: Motion) -> DriveWork:
 
 
 def _driven(config: AxisConfig, drive: Drive402) -> DrivenAxis:
-    """The axis with the figures of its drive's family. Raises DriverError where one of them is missing."""
+    """Create an axis with the profile of its drive. Raises DriverError if required counts are missing."""
     profile = drive.profile
     if profile.rpm and not config.counts_per_rev:
         where = f"canopen.nodes.{config.name}.counts_per_rev"
@@ -342,5 +355,5 @@ def _driven(config: AxisConfig, drive: Drive402) -> DrivenAxis:
 
 
 def every(period: float) -> Objects:
-    """0x60C2: the time from setpoint to setpoint."""
+    """Return the objects that set the setpoint period (0x60C2)."""
     return ((od.IP_TIME, 1, round(1000 * period)), (od.IP_TIME, 2, -3))

@@ -1,9 +1,8 @@
-"""How setpoints reach the drives: profile position (PP), or one setpoint each SYNC (CSP, IP by 60C1h).
+"""Transfer of setpoints in profile position mode (PP), or one setpoint per SYNC (CSP, IP by 60C1h).
 
-With a setpoint each SYNC the drives go in a straight line from setpoint to setpoint in the time that 0x60C2
-says; at the last one they stand. A SYNC that comes late is not leapt over: the path goes on where it was,
-later, and makes good by going faster by a fiftieth. More than 10 ms is a fault: the drives have stood still
-in the middle of a cut.
+With one setpoint per SYNC, the drives move linearly between setpoints in the time of 0x60C2 and stop at the
+last one. After a late SYNC, the path continues without a jump and catches up by running 2 % faster. A delay
+of more than 10 ms is a fault, because the drives have stopped within a cut.
 """
 
 from __future__ import annotations
@@ -23,58 +22,58 @@ from drivers.setpoint_queue import SetpointQueue
 
 
 class Follower(ABC):
-    """Keeps the drives on the queue; the drives begin where they stand."""
+    """Base class that makes the drives follow the setpoint queue from their present positions."""
 
-    mode: int  # of CiA 402
+    mode: int  # Mode of CiA 402.
 
     def __init__(self, axes: Sequence[DrivenAxis], indices: Sequence[int], queue: SetpointQueue) -> None:
-        """``indices`` are those of the axes in the queue."""
+        """Create the follower; ``indices`` are the positions of the axes in the queue."""
         self._axes = axes
         self._indices = indices
         self._queue = queue
-        self.trouble: Fault | str = ""  # why it cannot keep them on it
-        self.urgent = False  # the commands must go out in this tick
-        self.off_path = 0.0  # counts, the worst deviation that could not be avoided
+        self.trouble: Fault | str = ""  # Reason why the drives cannot follow the queue.
+        self.urgent = False  # The commands must be sent in this tick.
+        self.off_path = 0.0  # Largest unavoidable deviation in counts.
 
     @property
     def playing(self) -> bool:
-        """The drives still have something of it to do."""
+        """Whether the drives have not yet completed the transferred setpoints."""
         return False
 
     def path_time(self, t: float) -> float:
-        """The place in the queue that the drives had reached at ``t``: what is late is not leapt over."""
+        """Return the time in the queue that the drives had reached at time ``t``."""
         return t
 
     def check(self, segments: Segments) -> None:
-        """Refuse, by DriverError, what these drives cannot follow; most follow any path."""
+        """Raise DriverError if the drives cannot follow ``segments``; the default accepts any path."""
 
     def braked(self, at: float) -> None:
-        """The queue brakes from ``at`` on, without anything spliced: most take that up by the next feed."""
+        """Handle a queue that brakes from ``at`` on; the default relies on the next ``feed``."""
 
     @abstractmethod
     def feed(self, now: float) -> None:
-        """Once a tick, before the commands go out."""
+        """Transfer setpoints; called once per tick before the commands are sent."""
 
     def prepare(self) -> None:
-        """Before the drives get power."""
+        """Set the targets to the present positions before the drives are switched on."""
         for axis in self._axes:
             axis.drive.target = axis.drive.position
 
     def abort(self) -> None:
-        """The drives stop by themselves: nothing is fed any more."""
+        """Stop transferring setpoints, because the drives stop on their own."""
         self.trouble = ""
 
 
-# --- Profile position: the drive plans. For jogging and single moves where a drive has no queue for paths.
+# --- Profile position: the drive plans jogs and single moves, for drives without a path queue.
 
 
-_ANSWER = 0.2  # s in which a drive must have taken a target
+_ANSWER = 0.2  # Seconds in which a drive must acknowledge a target.
 
 
 class ProfiledFollower(Follower):
-    """Gives each drive the end of the queue as its target, with the speeds of the path there.
+    """Follower that sends each drive the end of the queue as its target, with the speeds of the path.
 
-    Only straight moves: each drive plans for itself, and on a line all of them keep in step.
+    It supports straight moves only, because each drive plans its own motion.
     """
 
     mode = PP
@@ -86,11 +85,11 @@ class ProfiledFollower(Follower):
 
     @property
     def playing(self) -> bool:
-        """A target waits, or was not acknowledged yet."""
+        """Whether a target is pending or not yet acknowledged."""
         return self._pending is not None or self._told >= 0.0
 
     def check(self, segments: Segments) -> None:
-        """Refuse what is no straight line."""
+        """Store a straight move. Raises DriverError if the path is not straight."""
         dt = segments.dt[-1]
         end = segments.p[-1] + (segments.v[-1] + 0.5 * segments.a[-1] * dt) * dt
         way = end - segments.p[0]
@@ -109,22 +108,22 @@ class ProfiledFollower(Follower):
         self._pending = (float(segments.t[0]), segments)
 
     def braked(self, at: float) -> None:
-        """The end of the queue is another now, and is reached by braking as hard as the axes may."""
+        """Send the new end of the queue as the target, with maximum deceleration."""
         self._pending = (at, None)
 
     def prepare(self) -> None:
-        """No target is waiting."""
+        """Discard the pending target and set the targets to the present positions."""
         self._pending = None
         super().prepare()
 
     def abort(self) -> None:
-        """No target is waiting any more."""
+        """Discard the pending target."""
         self._pending, self._told, self.trouble = None, -1.0, ""
         for axis in self._axes:
             axis.drive.extra &= ~(NEW | AT_ONCE)
 
     def feed(self, now: float) -> None:
-        """Hand a target over when its time has come, then see that it was taken."""
+        """Send a target at its time, then wait for the acknowledgment."""
         if self._told >= 0.0:
             self._finish(now)
         elif self._pending is not None and now >= self._pending[0]:
@@ -148,7 +147,7 @@ class ProfiledFollower(Follower):
             drive.extra |= NEW | AT_ONCE
 
     def _finish(self, now: float) -> None:
-        """The drives acknowledge by bit 12; then bit 4 may fall."""
+        """Clear bit 4 after the drives have acknowledged by bit 12."""
         late = [a.config.name for a in self._axes if not a.drive.status & BIT_12]
         if not late:
             self._told = -1.0
@@ -160,27 +159,27 @@ class ProfiledFollower(Follower):
             )
 
 
-# --- One setpoint each SYNC: cyclic synchronous position, and interpolated position.
+# --- One setpoint per SYNC: cyclic synchronous position, and interpolated position.
 
 
-LONGEST = 0.01  # s without a setpoint in motion; more is a fault
-_MADE_GOOD = 0.02  # of a period, in each
-_BEGIN = 0.3  # s in which a drive must have begun to interpolate
+LONGEST = 0.01  # Seconds without a setpoint in motion; more is a fault.
+_MADE_GOOD = 0.02  # Fraction of a period, per period.
+_BEGIN = 0.3  # Seconds in which a drive must start to interpolate.
 
 
 class SyncSchedule:
-    """When each SYNC is due; they keep their beat, whatever came late."""
+    """Schedule of the SYNCs, which remain in phase even if one is late."""
 
     def __init__(self, period: float, now: float) -> None:
         self.period = period
         self.due = now
-        self.worst = 0.0  # s, the latest so far since somebody asked
-        self._late = 0.0  # of the last
+        self.worst = 0.0  # Largest delay in s since the last report.
+        self._late = 0.0  # Delay of the last SYNC.
 
     def sent(self, now: float) -> float:
-        """A SYNC goes out now: how much longer than a period, s, the drives have waited for it.
+        """Record a SYNC at ``now`` and return the extra seconds that the drives have waited.
 
-        0 for what a drive evens out; one that comes back to its beat is none either.
+        The result is 0 for a delay that a drive tolerates, and for the return to the schedule.
         """
         late = max(now - self.due, 0.0)
         self.worst = max(self.worst, late)
@@ -192,7 +191,10 @@ class SyncSchedule:
 
 
 class CyclicFollower(Follower):
-    """``mode`` is CSP, or IP, which has to be let begin by bit 4 and tells by bit 12 that it goes."""
+    """Follower with one setpoint per SYNC, in mode CSP or IP.
+
+    Mode IP must be started by bit 4 and is confirmed by bit 12.
+    """
 
     def __init__(
         self,
@@ -205,29 +207,29 @@ class CyclicFollower(Follower):
         super().__init__(axes, indices, queue)
         self.mode = mode
         self.schedule = schedule
-        self.lag = 0.0  # s that the path is behind the clock
-        self._fed = -math.inf  # the path up to which the drives have setpoints
-        self.gaps = 0  # times that the drives stood at a setpoint in motion
-        self._asked: float | None = None  # s, when the drives were told to interpolate
+        self.lag = 0.0  # Delay of the path relative to the clock in s.
+        self._fed = -math.inf  # Time in the queue up to which the drives have setpoints.
+        self.gaps = 0  # Number of times that the drives waited at a setpoint in motion.
+        self._asked: float | None = None  # Time of the start command for interpolation in s.
         queue.handed_out = lambda: self._fed
 
     @property
     def playing(self) -> bool:
-        """The path is behind, and has not ended yet."""
+        """Whether the path is delayed and has not ended yet."""
         return self.lag > 0.0 and not at_rest(self._queue.horizon(-1e9), self.path_time(self.schedule.due))
 
     def path_time(self, t: float) -> float:
-        """Behind the clock by what came late."""
+        """Return the time in the queue at ``t``, which is reduced by the lag."""
         return t - self.lag
 
     def abort(self) -> None:
-        """The drives stop by themselves, or another mode takes them."""
+        """Stop transferring setpoints and clear the lag."""
         self.lag, self.trouble, self._asked = 0.0, "", None
         for axis in self._axes:
             axis.drive.extra &= ~NEW
 
     def waited(self, away: float) -> None:
-        """The drives have stood at a setpoint for so many s: the path waits for them."""
+        """Delay the path by the seconds that the drives have waited at a setpoint."""
         if at_rest(self._queue.horizon(-1e9), self.path_time(self.schedule.due) - away):
             self.lag = 0.0
             return
@@ -241,7 +243,7 @@ class CyclicFollower(Follower):
             )
 
     def feed(self, now: float) -> None:
-        """What the drives take at the next SYNC, and reach by the one behind it."""
+        """Set the targets for the next SYNC, which the drives reach at the SYNC after it."""
         standing = at_rest(self._queue.horizon(-1e9), self.path_time(now))
         self.lag = 0.0 if standing else max(self.lag - _MADE_GOOD * self.schedule.period, 0.0)
         self._fed = self.path_time(self.schedule.due + self.schedule.period)
@@ -252,7 +254,7 @@ class CyclicFollower(Follower):
             self._interpolate(now)
 
     def _interpolate(self, now: float) -> None:
-        """Bit 4 rises once they have power in this mode, with setpoints where they stand."""
+        """Set bit 4 when the drives have power in this mode, and check that they start."""
         if self._asked is None:
             self._asked = now
             for axis in self._axes:

@@ -1,4 +1,4 @@
-"""Interpolated position: setpoints as PVT records through the queue in each drive, which ends at rest."""
+"""Interpolated position mode with PVT records in a queue of each drive, which ends at rest."""
 
 from __future__ import annotations
 
@@ -16,28 +16,29 @@ from drivers.canopen.driven_axes import DrivenAxis, RecordQueue
 from drivers.canopen.position_modes import Follower
 from drivers.setpoint_queue import SetpointQueue
 
-# --- From setpoints to PVT records: points of the path in counts, times in whole milliseconds.
-# A drive goes from point to point on a cubic. Where the acceleration changes between two points the cubic
-# leaves the path, so such a piece is cut until it stays within half a count, down to the shortest record.
+# --- Conversion of setpoints to PVT records: path points in counts, times in whole milliseconds. A drive
+# interpolates between points with a cubic. Where the acceleration changes between two points, the cubic
+# deviates from the path. Such a piece is divided until its deviation is at most half a count, or until it has
+# the shortest record time.
 
 
-Demand = Callable[[float], tuple[tuple[float, ...], tuple[float, ...]]]  # t → positions, velocities
+Demand = Callable[[float], tuple[tuple[float, ...], tuple[float, ...]]]  # Time to positions and velocities.
 
-SHORTEST = 2  # ms; shorter ones would fill queue and bus
+SHORTEST = 2  # Milliseconds; shorter records would overload queue and bus.
 _LOOKS = (0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875)
 
 
 class Span(NamedTuple):
-    """How long the piece from ``t`` on lasts, and how far its cubic leaves the path, in counts."""
+    """Piece of the path: its duration, and the deviation of its cubic from the path in counts."""
 
     ms: int
     off: float
 
 
 def span(demand: Demand, t: float, longest: int, counts: Sequence[float]) -> Span:
-    """The longest piece of at most ``longest`` ms whose cubic keeps within half a count of the path.
+    """Return the longest piece of at most ``longest`` ms whose cubic stays within half a count of the path.
 
-    ``counts`` is the length of a count by axis. The shortest piece is taken whatever it costs.
+    ``counts`` is the length of a count for each axis. The shortest piece is used regardless of its deviation.
     """
     ms = longest
     while True:
@@ -48,7 +49,7 @@ def span(demand: Demand, t: float, longest: int, counts: Sequence[float]) -> Spa
 
 
 def deviation(demand: Demand, t: float, dt: float, counts: Sequence[float]) -> float:
-    """How far the cubic from ``t`` to ``t + dt`` leaves the path, in counts of the worst axis."""
+    """Return the largest deviation of the cubic from ``t`` to ``t + dt`` in counts of the worst axis."""
     p0, v0 = demand(t)
     p1, v1 = demand(t + dt)
     worst = 0.0
@@ -61,7 +62,7 @@ def deviation(demand: Demand, t: float, dt: float, counts: Sequence[float]) -> f
 
 
 def hermite(p0: float, v0: float, p1: float, v1: float, dt: float, s: float) -> float:
-    """The cubic through two points with their velocities, at fraction ``s`` of ``dt``."""
+    """Return the cubic through two points with their velocities, at fraction ``s`` of ``dt``."""
     r = 1.0 - s
     return r * r * (p0 + s * (2.0 * p0 + v0 * dt)) + s * s * (p1 + r * (2.0 * p1 - v1 * dt))
 
@@ -70,11 +71,11 @@ _log = logging.getLogger(__name__)
 
 _BY_NAME = " or ".join(f'"{name}"' for name in QUEUED)
 _DRY = "the drives' queues ran empty because this computer stalled for too long"
-LOW_WATER = 2  # records; with fewer a drive faults
-RESTART = 0.04  # s between the last point of one PVT motion and the first of the next
-_LINGER = 0.5  # s at rest after which the drives' queues are ended; until then points of rest are fed
-_BEGIN = 0.3  # s in which a drive must have begun
-_PREFILL = 2  # records of rest before the queues are let go
+LOW_WATER = 2  # Records; with fewer, a drive faults.
+RESTART = 0.04  # Seconds between the last point of one PVT motion and the first of the next.
+_LINGER = 0.5  # Seconds at rest after which the queues are ended; until then, points at rest are sent.
+_BEGIN = 0.3  # Seconds in which a drive must start.
+_PREFILL = 2  # Records at rest before the queues are started.
 
 
 class _Phase(Enum):
@@ -84,7 +85,10 @@ class _Phase(Enum):
 
 
 class PvtFollower(Follower):
-    """Records of whole milliseconds, all axes at the same points, a fixed time ahead and never empty."""
+    """Follower that fills the drives' queues a fixed time ahead, with the same points for all axes.
+
+    The duration of each record is a whole number of milliseconds.
+    """
 
     mode = IP
 
@@ -100,31 +104,31 @@ class PvtFollower(Follower):
         self._ahead = ahead - RESTART
         self._longest = round(1000 * record)
         self._phase = _Phase.REST
-        self.front = 0.0  # time of the next point
+        self.front = 0.0  # Time of the next point.
         self._begun = 0.0
-        self._sent: deque[float] = deque()  # when each record that was sent is over
-        self.lowest = float("inf")  # s, the least that was ever queued in the drives
+        self._sent: deque[float] = deque()  # End time of each sent record.
+        self.lowest = float("inf")  # Shortest time that was queued in the drives, in s.
 
     @property
     def playing(self) -> bool:
-        """The drives' queues are running."""
+        """Whether the queues of the drives are running."""
         return self._phase is not _Phase.REST
 
     def prepare(self) -> None:
-        """Empty queues, so that nothing old is played."""
+        """Clear the queues of the drives."""
         for axis in self._axes:
             _records(axis).clear()
         self.abort()
 
     def abort(self) -> None:
-        """Nothing is fed any more."""
+        """Stop filling the queues."""
         self._phase, self.trouble = _Phase.REST, ""
         self._sent.clear()
         for axis in self._axes:
             axis.drive.extra &= ~NEW
 
     def feed(self, now: float) -> None:
-        """Begin, go on or end."""
+        """Start, fill or end the queues."""
         if self._phase is _Phase.REST and not at_rest(self._queue.horizon(now), now):
             self._begin(now)
         elif self._phase is _Phase.PLAYING:
@@ -132,10 +136,10 @@ class PvtFollower(Follower):
             self._top_up(now)
         elif self._phase is _Phase.ENDING and now > self.front and not self._active(any):
             self.abort()
-            self.urgent = True  # bit 4 must be seen to fall before it rises again
+            self.urgent = True  # The drives must detect the fall of bit 4 before it rises again.
 
     def _begin(self, now: float) -> None:
-        """Points of rest, then all drives at one SYNC: the first point is where the slides stand."""
+        """Send points at rest, then start all drives at one SYNC from their present positions."""
         if any(self._queue.demand_at(now)[1]):
             self.trouble = Fault("the drives started late, after the path had begun", "queue-dry")
             return
@@ -144,7 +148,7 @@ class PvtFollower(Follower):
             self._push(self._longest)
         for axis in self._axes:
             axis.drive.extra |= NEW
-        self._phase, self.urgent = _Phase.PLAYING, True  # the time of that SYNC is the first point's
+        self._phase, self.urgent = _Phase.PLAYING, True  # The time of this SYNC is that of the first point.
         self._top_up(now)
 
     def _watch(self, now: float) -> None:
@@ -174,7 +178,7 @@ class PvtFollower(Follower):
             self._push(piece.ms)
 
     def _in_drives(self, now: float) -> int:
-        """Records that have not been played."""
+        """Return the number of records that are not yet executed."""
         while self._sent and self._sent[0] < now:
             self._sent.popleft()
         return len(self._sent)
@@ -190,7 +194,7 @@ class PvtFollower(Follower):
         self._sent.append(self.front)
 
     def _counts(self) -> list[float]:
-        """Lengths of a count: C may have joined."""
+        """Return the length of a count for each axis, including C while it is engaged."""
         return [axis.config.count for axis in self._axes]
 
     def _demand(self, t: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
@@ -203,7 +207,7 @@ class PvtFollower(Follower):
 
 
 def _records(axis: DrivenAxis) -> RecordQueue:
-    """The queue in its drive. Raises DriverError where its family has none."""
+    """Return the queue of a drive. Raises DriverError if its family does not have one."""
     if axis.records is None:
         raise DriverError(
             '{name}: {title} has no queue for [canopen] mode = "pvt"; choose "csp" or "ip", or '

@@ -1,1 +1,1 @@
-"""The drivers in a process of their own: it owns the bus and the queue, and outlives a control that dies."""
+"""Driver host: a separate process that owns bus and queue and survives a crash of the control."""

@@ -1,7 +1,6 @@
-"""The line to the driver host, by a socket to its process or within one thread: requests, answers, its last
-look.
+"""Connection to the driver host, by a socket or within one thread, with the last polled state.
 
-A driver host that is gone is a fault.
+A driver host that has ended is a fault.
 """
 
 from __future__ import annotations
@@ -24,30 +23,30 @@ from drivers.driver_host.host_server import DriverHost
 from drivers.waiting import Bell, Opening
 
 _log = logging.getLogger(__name__)
-_FRESH = 0.002  # s for which one look serves all ports
-_RESTS = 0.02  # s for which it does while the control sleeps: one tick, and what is new rings
-_BATCHES = 200  # of samples that wait for whoever records them
+_FRESH = 0.002  # Seconds for which one poll serves all ports.
+_RESTS = 0.02  # The same while the control sleeps: one tick, because changes cause a wake-up.
+_BATCHES = 200  # Maximum number of sample batches waiting for the recorder.
 
 
 class Link(Protocol):
-    """Carries a request to the driver host and its answer back; ``files`` are what can be waited for."""
+    """Connection that transports requests and replies; ``files`` become readable when it ends."""
 
     @property
     def files(self) -> Sequence[int]: ...
 
     def ask(self, message: Message) -> Message:
-        """Raises DriverError when there is no answer."""
+        """Send a request and return the reply. Raises DriverError without a reply."""
         ...
 
     def hang_up(self) -> None:
-        """From any thread: nothing is said or heard any more."""
+        """Disconnect, from any thread."""
         ...
 
     def close(self) -> None: ...
 
 
 def cleared(link: Link) -> Link:
-    """The Reset that has asked for another driver host is meant for its drives too. Raises DriverError."""
+    """Clear the faults of the drives after a restart of the driver host. Raises DriverError."""
     answer = link.ask(Message({"do": "do", "what": "clear_fault"}, NOTHING))
     if why := fault_of(answer.head, "error", "driver"):
         raise DriverError(why)
@@ -55,10 +54,10 @@ def cleared(link: Link) -> Link:
 
 
 class Line:
-    """Requests in words, and the last look at everything.
+    """Connection that sends requests and caches the last polled state.
 
-    ``again`` begins to start another driver host in the place of one that is gone: there is no other way
-    back. ``bell`` is rung by the driver host too, while the control sleeps.
+    ``again`` starts another driver host in place of a lost one. The driver host also uses ``bell`` while the
+    control sleeps.
     """
 
     def __init__(
@@ -73,15 +72,19 @@ class Line:
         self._opening: Opening[Link] | None = None
         self.clock = clock
         self.bell = bell
-        self._asleep = self._sleeps = False  # as the driver host has been told, and as the next look says
-        self.fault: Fault | str = ""  # why the driver host cannot be asked any more
+        self._asleep = self._sleeps = False  # State known to the driver host, and state for the next poll.
+        self.fault: Fault | str = ""  # Reason why the driver host is lost.
         self._state: Mapping[str, object] = {}
         self._at = -1.0
         self._posted: queue.SimpleQueue[Message] = queue.SimpleQueue()
-        self.sampled: deque[FloatArray] = deque(maxlen=_BATCHES)  # since they were last taken
+        self.sampled: deque[FloatArray] = deque(maxlen=_BATCHES)  # Batches since the last reading.
 
     def ask(self, message: Message) -> Message:
-        """The answer. Raises DriverError with what the drivers refuse, or that the driver host is gone."""
+        """Send a request and return the reply.
+
+        Raises DriverError if the drivers reject the request or the driver host is lost, and TrippedError
+        after a trip.
+        """
         if self.fault:
             raise DriverError(self.fault)
         if self._opening is not None:
@@ -99,33 +102,33 @@ class Line:
         return answer
 
     def order(self, what: str, **values: object) -> None:
-        """Something that changes the machine; the next look is a new one."""
+        """Send a command that changes the machine, and invalidate the polled state."""
         self._at = -1.0
         self.ask(Message({"do": "do", "what": what, **values}, NOTHING))
 
     def post(self, message: Message) -> None:
-        """From any thread: goes out before the next look, unanswered."""
+        """Queue a message from any thread, which is sent before the next poll."""
         self._posted.put(message)
         if self.bell is not None:
             self.bell.ring()
 
     def sleep(self) -> None:
-        """Have the driver host ring for news until anything but a look is asked. Raises DriverError."""
+        """Let the driver host send wake-ups for changes until the next other request. Raises DriverError."""
         if not self._asleep:
             self.ask(Message({"do": "rest"}, NOTHING))
         self._asleep = self._sleeps = True
 
     def awake(self) -> None:
-        """Looks come as ever, and the next one is a new one."""
+        """End the sleep, and invalidate the polled state."""
         self._sleeps, self._at = False, -1.0
 
     @property
     def files(self) -> Sequence[int]:
-        """Of the link: nothing comes there that is not asked for, but its end."""
+        """The files of the connection, which become readable only when it ends."""
         return self._link.files
 
     def look(self, *, anew: bool = False) -> Mapping[str, object]:
-        """Everything that can be seen, of this tick; the last known when the driver host is gone."""
+        """Poll the state, at most once per tick unless forced; return the last state after a loss."""
         if self._opening is not None:
             self._reopen(self._opening)
         now = self.clock.now()
@@ -149,12 +152,13 @@ class Line:
 
     @property
     def lost(self) -> bool:
-        """Whether there is no driver host to ask."""
+        """Whether no driver host is available."""
         return self.fault != "" or self._opening is not None
 
     def restart(self) -> None:
-        """Begin to start another driver host; why that fails is the next fault. Raises DriverError where
-        there is none to start.
+        """Start another driver host; a later failure becomes the next fault.
+
+        Raises DriverError if a restart is not possible.
         """
         if self._again is None:
             words = Text("{fault}; restart TurnDesk", fault=self.fault)
@@ -162,7 +166,7 @@ class Line:
         self.fault, self._opening = "", self._again()
 
     def greet(self) -> Mapping[str, object]:
-        """What the driver host says of itself. Raises DriverError for one of another version."""
+        """Return the properties of the driver host. Raises DriverError for another version."""
         hello = self.ask(Message({"do": "hello"}, NOTHING)).head
         if hello.get("version") != VERSION:
             raise DriverError(
@@ -185,56 +189,56 @@ class Line:
             self._opening, self.fault = None, error.fault
 
     def unknown(self) -> frozenset[Unknown]:
-        """What the drivers do not hear of; of a driver host that is gone nothing is known."""
+        """Return the unknown states; all of them if the driver host is lost."""
         if self.lost:
             return ALL_UNKNOWN
         return frozenset(map(Unknown, texts(self.look().get("unknown"))))
 
     def hang_up(self) -> None:
-        """From any thread: the driver host sees that its control is gone, and stops the machine for good."""
+        """Disconnect from any thread; the driver host detects the loss and stops the machine."""
         self._link.hang_up()
 
     def close(self) -> None:
-        """End it."""
+        """Close the connection, which ends the driver host."""
         self._link.close()
 
 
 # --- Two links to the driver host: within one thread, and by a socket.
 
 
-_QUICK = 0.5  # s for an answer; the driver host's loop takes milliseconds
-_AT_ONCE = 0.05  # s that one look counts of it at most: who stood still himself blames nobody
-# s for orders that wait for a drive; a fault that is cleared may mean to configure all of a bus
+_QUICK = 0.5  # Seconds for a reply; the driver host needs milliseconds.
+_AT_ONCE = 0.05  # Maximum in s that one wait counts, so that a delay of this process is not counted.
+# Seconds for commands that wait for a drive; clearing a fault may configure a complete bus.
 _SLOW = {"enable": 5.0, "home": 5.0, "clear_fault": 15.0}
 _CHUNK = 1 << 16
 
 
 class LoopLink:
-    """Calls the driver host in the same thread, with the bytes of the socket: for tests and headless runs."""
+    """Link to a driver host in the same thread that uses the same bytes, for tests and headless runs."""
 
-    files = ()  # it cannot end unseen
+    files = ()  # Its end is always detected.
 
     def __init__(self, host: DriverHost) -> None:
         self._host = host
 
     def ask(self, message: Message) -> Message:
-        """There and back as bytes; the driver host's loop goes round before."""
+        """Run one cycle of the driver host, then encode, handle and decode the message."""
         self._host.tick()
         (request,) = Inbox().feed(packed(message))
         (answer,) = Inbox().feed(packed(self._host.handle(request)))
         return answer
 
     def hang_up(self) -> None:
-        """The control has gone."""
+        """Mark the driver host as orphaned."""
         self._host.orphaned = True
 
     def close(self) -> None:
-        """The same."""
+        """Mark the driver host as orphaned."""
         self.hang_up()
 
 
 class SocketLink:
-    """A driver host in its own process. One request at a time, each answered within its time or never."""
+    """Link to a driver host in its own process, with one request at a time and a time limit for each."""
 
     def __init__(self, sock: socket.socket) -> None:
         self._socket = sock
@@ -243,11 +247,11 @@ class SocketLink:
 
     @property
     def files(self) -> tuple[int, ...]:
-        """Readable when the driver host has ended."""
+        """The file of the socket, which becomes readable when the driver host ends."""
         return (self._socket.fileno(),)
 
     def ask(self, message: Message) -> Message:
-        """Raises DriverError when the driver host has gone or does not answer in time."""
+        """Send a request and return the reply. Raises DriverError after a loss or a timeout."""
         limit = _SLOW.get(text(message.head, "what"), _QUICK)
         try:
             self._socket.settimeout(limit)
@@ -265,12 +269,12 @@ class SocketLink:
             ) from error
 
     def hang_up(self) -> None:
-        """Both directions end, whoever waits on it."""
+        """Shut down both directions, even while another thread waits for a reply."""
         with suppress(OSError):
             self._socket.shutdown(socket.SHUT_RDWR)
 
     def close(self) -> None:
-        """The driver host sees the end and stops what is left; who waits for its answer waits no longer."""
+        """Disconnect and close the socket; the driver host then stops the machine."""
         self.hang_up()
         self._socket.close()
 

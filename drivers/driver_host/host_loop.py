@@ -1,4 +1,4 @@
-"""The driver host's process: one loop, real-time where the system permits, awake every few milliseconds."""
+"""Loop of the driver host process, which runs every few milliseconds with real-time priority if allowed."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ from drivers.waiting import RealClock
 PRIORITY = 50
 _CHUNK = 1 << 16
 TRIAL = 0.3  # s
-_LAST = 30.0  # s that an orphaned driver host has to bring the slides to rest; no queue is longer
+_LAST = 30.0  # Seconds for an orphaned driver host to bring the axes to rest; no queue is longer.
 
 
 def real_time(priority: int = PRIORITY) -> list[str]:
-    """Ask for SCHED_FIFO; what was refused, in words for the operator."""
+    """Request SCHED_FIFO and return a message for the operator if it was refused."""
     cause = ask_real_time("SCHED_FIFO", priority)
     words = "the driver host runs without real-time priority ({cause}); see docs/integrator/computer.md"
     return [Message(words, cause=cause)] if cause else []
 
 
 def late_at_trial(period: float) -> float:
-    """Seconds by which a process that only waits, once each period, wakes up too late at most; takes .3 s."""
+    """Return the longest wake-up delay in seconds of a loop that only waits; the trial takes 0.3 s."""
     clock = RealClock()
     due, most = 0.0, 0.0
     while due < TRIAL:
@@ -40,7 +40,7 @@ def late_at_trial(period: float) -> float:
 
 
 def keep_memory() -> list[str]:
-    """Lock the memory once the drivers stand; what was refused, in words for the operator."""
+    """Lock the memory after the drivers are created; return messages for the operator about limits."""
     cause, limit = lock_memory()
     if cause:
         return [Message("the driver host's memory is not locked ({cause})", cause=cause)]
@@ -62,11 +62,14 @@ def serve(
     refresh: Mapping[str, float] | None = None,
     bell: socket.socket | None = None,
 ) -> None:
-    """Until the control has gone and the slides are at rest; ``bell`` wakes a control that sleeps."""
+    """Run the driver host until the control has ended and the axes are at rest.
+
+    ``bell`` wakes a control that sleeps.
+    """
     host = DriverHost(driven, warnings, refresh, partial(_ring, bell))
     try:
         _rounds(sock, host, driven)
-    finally:  # whatever happens here: slides stopped, power off, bus closed
+    finally:  # In all cases: stop the axes, switch off, close the bus.
         driven.close()
 
 
@@ -80,7 +83,7 @@ def _rounds(sock: socket.socket, host: DriverHost, driven: Driven) -> None:
     clock = driven.ports.clock
     ear = Ear(sock, host, clock)
     due = clock.now()
-    gone: float | None = None  # since when the control has been
+    gone: float | None = None  # Time since which the control is lost.
     while not host.done:
         host.late(clock.now() - due)
         host.tick()
@@ -92,13 +95,13 @@ def _rounds(sock: socket.socket, host: DriverHost, driven: Driven) -> None:
                 break
 
 
-_TALK = 0.0003  # s that an answer takes
-EARLY = 0.03  # s by which a round may come before its time with a look of a control that sleeps: one wake-up
-_DEAF = 0.005  # s after which a control is listened to, however late the drivers are
+_TALK = 0.0003  # Duration of a reply in s.
+EARLY = 0.03  # Seconds by which a cycle may be early to combine it with a poll in one wake-up.
+_DEAF = 0.005  # Seconds after which messages are read even if the drivers are late.
 
 
 class Ear:
-    """Listens to the control between two rounds."""
+    """Listener for messages of the control between two cycles."""
 
     def __init__(self, sock: socket.socket, host: DriverHost, clock: Clock) -> None:
         self._sock, self._host, self._clock = sock, host, clock
@@ -107,9 +110,9 @@ class Ear:
         sock.setblocking(False)
 
     def listen(self, due: float, *, punctual: bool) -> float:
-        """Answer until the next round is due, and say when that is: at once where a control wakes up.
+        """Reply to messages until the next cycle is due and return its time, at once if a control wakes up.
 
-        ``punctual``: nothing is begun that would be over behind that time.
+        ``punctual`` prevents starting a reply that would end after this time.
         """
         host, clock = self._host, self._clock
         keep = _TALK if punctual else 0.0
@@ -131,7 +134,7 @@ class Ear:
 
 
 def _talk(sock: socket.socket, inbox: Inbox, host: DriverHost) -> bool:
-    """Answer what has come; False when the other side has gone."""
+    """Reply to the received messages; return False if the control has ended."""
     try:
         data = sock.recv(_CHUNK)
         if not data:
@@ -146,7 +149,7 @@ def _talk(sock: socket.socket, inbox: Inbox, host: DriverHost) -> bool:
 
 
 def _send(sock: socket.socket, data: bytes) -> None:
-    """Whole or not at all: a control that does not read its answers has gone."""
+    """Send all bytes or fail; a control that does not read its replies counts as ended."""
     sock.settimeout(0.05)
     try:
         sock.sendall(data)

@@ -1,4 +1,4 @@
-"""One message on the socket: two lengths, a JSON head, and numbers as they lie in memory."""
+"""Messages on the socket of the driver host: two lengths, a JSON head, and numbers in binary form."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ import numpy as np
 from core.faults import code_of
 from core.ports import Cam, DriverError, Fault, FaultCode, FloatArray, Segments
 
-_LENGTHS = struct.Struct("<II")  # of the head, of the numbers, in bytes
-LARGEST = 64_000_000  # bytes; more is no message
-_HUGE = 1e300  # a number beyond is none, and NaN neither
+_LENGTHS = struct.Struct("<II")  # Lengths of the head and of the numbers in bytes.
+LARGEST = 64_000_000  # Maximum size of a message in bytes.
+_HUGE = 1e300  # Larger numbers and NaN are invalid.
 _NO_MESSAGE: tuple[str, FaultCode] = "the driver host's socket received an invalid message", "feeder-silent"
-VERSION = 5  # of what is asked and answered; both sides say it in their first words
+VERSION = 5  # Version of the protocol, which both sides exchange first.
 
 
 class Message(NamedTuple):
-    """What is asked or answered, and the numbers that belong to it, one flat row."""
+    """Request or reply with its numbers in one flat row."""
 
     head: Mapping[str, object]
     numbers: FloatArray
@@ -30,20 +30,20 @@ NOTHING: FloatArray = np.empty(0)
 
 
 def packed(message: Message) -> bytes:
-    """The bytes of one message."""
+    """Return the bytes of one message."""
     head = json.dumps(message.head).encode()
     numbers = np.ascontiguousarray(message.numbers, dtype="<f8").tobytes()
     return _LENGTHS.pack(len(head), len(numbers)) + head + numbers
 
 
 class Inbox:
-    """Bytes in, whole messages out."""
+    """Decoder of messages from received bytes."""
 
     def __init__(self) -> None:
         self._bytes = bytearray()
 
     def feed(self, data: bytes) -> Iterator[Message]:
-        """Every message that is whole now. Raises DriverError for what is none."""
+        """Add bytes and yield every complete message. Raises DriverError for invalid data."""
         self._bytes += data
         while len(self._bytes) >= _LENGTHS.size:
             head, numbers = _LENGTHS.unpack_from(self._bytes)
@@ -69,12 +69,12 @@ def _head(text: bytes) -> Mapping[str, object]:
 
 
 def rows(segments: Segments | None) -> FloatArray:
-    """Segments in one row: t, dt, p, v, a."""
+    """Return segments in one flat row: t, dt, p, v, a."""
     return NOTHING if segments is None else np.concatenate([part.ravel() for part in segments])
 
 
 def segments(numbers: FloatArray, axes: int) -> Segments:
-    """The segments of one row. Raises DriverError for a row of another length."""
+    """Return the segments of one flat row. Raises DriverError for an invalid length or value."""
     width = 2 + 3 * axes
     count, left = divmod(len(numbers), width)
     if left or not count or not np.isfinite(numbers).all():
@@ -89,14 +89,14 @@ def segments(numbers: FloatArray, axes: int) -> Segments:
 
 
 def cam_message(cam: Cam) -> Message:
-    """A request to follow the spindle."""
+    """Return a request to follow the spindle."""
     way = rows(cam.way)
     head = {"do": "mesh", "zero": cam.zero, "sign": cam.sign, "way": len(way)}
     return Message(head, np.concatenate([way, rows(cam.then)]))
 
 
 def number(head: Mapping[str, object], key: str) -> float:
-    """A finite number of the head. Raises DriverError where there is none."""
+    """Return a finite number of the head. Raises DriverError if it is missing or invalid."""
     value = head.get(key)
     if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) < _HUGE:
         raise DriverError(
@@ -109,13 +109,13 @@ def number(head: Mapping[str, object], key: str) -> float:
 
 
 def text(head: Mapping[str, object], key: str) -> str:
-    """A text of the head; empty where there is none."""
+    """Return a text of the head, or an empty text if it is missing."""
     value = head.get(key)
     return value if isinstance(value, str) else ""
 
 
 def cam_of(message: Message, axes: int) -> Cam:
-    """The cam of a request. Raises DriverError."""
+    """Return the cam of a request. Raises DriverError if it is invalid."""
     split = int(number(message.head, "way"))
     way, then = message.numbers[:split], message.numbers[split:]
     return Cam(
@@ -127,7 +127,7 @@ def cam_of(message: Message, axes: int) -> Cam:
 
 
 def floats(values: object) -> tuple[float, ...]:
-    """A list of numbers as it comes out of JSON. Raises DriverError."""
+    """Return a list of numbers from JSON as a tuple. Raises DriverError if it is invalid."""
     if not isinstance(values, Sequence) or not all(isinstance(v, int | float) for v in values):
         raise DriverError(
             "the driver host returned values that are not numbers", "feeder-silent", reason="no-numbers"
@@ -136,21 +136,21 @@ def floats(values: object) -> tuple[float, ...]:
 
 
 def items(value: object) -> list[object]:
-    """A list as it comes out of JSON; an empty one for anything else."""
+    """Return a list from JSON, or an empty list for any other value."""
     return value if isinstance(value, list) else []
 
 
 def fault_of(head: Mapping[str, object], key: str, otherwise: FaultCode) -> Fault:
-    """A fault of the head, its code beside it; empty where there is none."""
+    """Return a fault of the head with its code, or an empty fault."""
     code = next((each for each in get_args(FaultCode) if each == head.get(f"{key}_code")), otherwise)
     return Fault(text(head, key), code)
 
 
 def with_code(key: str, fault: str, otherwise: FaultCode) -> Mapping[str, str]:
-    """A fault as it goes into a head."""
+    """Return a fault and its code as entries of a head."""
     return {key: fault, f"{key}_code": code_of(fault, otherwise)}
 
 
 def texts(value: object) -> list[str]:
-    """The texts of a list."""
+    """Return the texts of a list."""
     return [one for one in items(value) if isinstance(one, str)]

@@ -1,4 +1,4 @@
-"""The control's side of the driver host: ``core.ports`` and the station's hands as messages to it."""
+"""Ports and station controls of the control's side, which send messages to the driver host."""
 
 from __future__ import annotations
 
@@ -36,14 +36,14 @@ from drivers.waiting import Bell
 
 
 class _OnLine:
-    """What asks the driver host."""
+    """Base class of the ports on a connection."""
 
     def __init__(self, line: Line) -> None:
         self._line = line
 
 
 class HostAxes(_OnLine):
-    """``core.ports.AxisSink``."""
+    """``core.ports.AxisSink`` of the driver host."""
 
     def __init__(self, line: Line, hello: Mapping[str, object]) -> None:
         super().__init__(line)
@@ -51,25 +51,25 @@ class HostAxes(_OnLine):
         self.commit = number(hello, "commit")
 
     def now(self) -> float:
-        """The machine's clock: the same in both processes."""
+        """Return the time of the machine's clock in seconds, which is the same in both processes."""
         return self._line.clock.now()
 
     def horizon(self) -> float:
-        """End of what is queued."""
+        """Return the end time of the setpoint queue."""
         return number(self._line.ask(Message({"do": "horizon"}, NOTHING)).head, "value")
 
     def splice(self, segments: Segments) -> None:
-        """Queue setpoints. Raises DriverError as the port says."""
+        """Splice setpoints into the queue. Raises DriverError if the driver rejects them."""
         self._line.ask(Message({"do": "splice"}, rows(segments)))
 
     def demand_at(self, t: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Queued position and velocity at ``t``."""
+        """Return the queued positions and velocities at time ``t``."""
         numbers = self._line.ask(Message({"do": "demand", "t": t}, NOTHING)).numbers.tolist()
         half = len(self.axes)
         return tuple(numbers[:half]), tuple(numbers[half:])
 
     def sample(self) -> AxisSample:
-        """The axes now. A driver host that is gone is a fault of all of them."""
+        """Return the present state of the axes; a lost driver host is a fault of all axes."""
         raw = self._line.look(anew=True).get("sample")
         shown = raw if isinstance(raw, dict) else {}
         none = (0.0,) * len(self.axes)
@@ -85,19 +85,19 @@ class HostAxes(_OnLine):
         )
 
     def enable(self, on: bool) -> None:
-        """Drives on or off."""
+        """Switch the drives on or off."""
         self._line.order("enable", on=on)
 
     def stop(self, how: Stop) -> None:
-        """The drives' own stop."""
+        """Stop the axes by the drives."""
         self._line.order("stop", how=how.value)
 
     def home(self, axis: str) -> None:
-        """Start homing."""
+        """Start to home an axis."""
         self._line.order("home", name=axis)
 
     def clear_fault(self) -> None:
-        """Forget the fault; a driver host that is gone is started again. Raises DriverError."""
+        """Clear the fault, or restart a lost driver host. Raises DriverError."""
         if self._line.fault:
             self._line.restart()
         else:
@@ -105,41 +105,41 @@ class HostAxes(_OnLine):
 
 
 class HostGear(_OnLine):
-    """``core.ports.Gear``."""
+    """``core.ports.Gear`` of the driver host."""
 
     def mesh(self, cam: Cam) -> None:
-        """Follow the spindle. Raises DriverError."""
+        """Make the axes follow the spindle. Raises DriverError."""
         self._line.ask(cam_message(cam))
 
     def geared(self) -> Geared | None:
-        """Where on its cam the driver host's driver is."""
+        """Return the position of the axes on the cam, or None if they do not follow the spindle."""
         shown = self._line.look(anew=True).get("geared")
         return None if shown is None or self._line.lost else Geared(*floats(shown))
 
 
 class HostSpindle(_OnLine):
-    """``core.ports.Spindle``."""
+    """``core.ports.Spindle`` of the driver host."""
 
     def run(self, rpm: float) -> None:
-        """Turn at ``rpm``, signed."""
+        """Turn the spindle at ``rpm``, signed."""
         self._line.order("run", rpm=rpm)
 
     def coast(self) -> None:
-        """No torque."""
+        """Remove the torque."""
         self._line.order("coast")
 
     def speed(self) -> float:
-        """Measured rpm; what is not known counts as standing."""
+        """Return the measured speed in rpm, or 0 if it is unknown."""
         shown = self._line.look()
         return number(shown, "speed") if shown else 0.0
 
     def lag(self) -> float:
-        """Return the seconds by which the wire to the spindle's drive delays commands and speeds."""
+        """Return the seconds by which the line to the spindle drive delays commands and speeds."""
         shown = self._line.look()
         return number(shown, "spindle_lag") if shown else 0.0
 
     def angle(self) -> tuple[float, float] | None:
-        """(time, turns) from the encoder, or None without one."""
+        """Return a (time, revolutions) pair of the encoder, or None without an encoder."""
         shown = self._line.look().get("angle")
         if shown is None:
             return None
@@ -147,12 +147,12 @@ class HostSpindle(_OnLine):
         return t, turns
 
     def fault(self) -> str:
-        """What is wrong with it."""
+        """Return the fault of the spindle, or an empty text."""
         return self._line.fault or fault_of(self._line.look(), "spindle", "spindle")
 
 
 class HostWakeup(_OnLine):
-    """``core.ports.Wakeup``: the driver host goes on looking, and rings."""
+    """``core.ports.Wakeup`` of the driver host, which polls the drivers and sends wake-ups."""
 
     def __init__(self, line: Line, bell: Bell) -> None:
         super().__init__(line)
@@ -160,15 +160,15 @@ class HostWakeup(_OnLine):
         self.ring = bell.ring
 
     def settled(self) -> bool:
-        """Whatever changes there, it rings."""
+        """Return whether the driver host sends a wake-up for each change."""
         return not self._line.lost
 
     def wait(self, seconds: float) -> bool:
-        """Until it rings, so long at most; whether it has. A driver host that ends rings too."""
+        """Wait for a wake-up or the end of the driver host; return whether there was one."""
         try:
             self._line.sleep()
         except DriverError:
-            return True  # the next look tells why
+            return True  # The next poll has the reason.
         rung = self._bell.wait(seconds, self._line.files)
         if rung:
             self._line.awake()
@@ -176,7 +176,7 @@ class HostWakeup(_OnLine):
 
 
 class HostSamples(_OnLine):
-    """``core.ports.SampleSource``: they have come with the looks."""
+    """``core.ports.SampleSource`` of the driver host, whose polls contain the samples."""
 
     def __init__(self, line: Line, hello: Mapping[str, object]) -> None:
         super().__init__(line)
@@ -184,7 +184,7 @@ class HostSamples(_OnLine):
         self._width = 5 + 3 * len(texts(hello.get("axes")))
 
     def take(self, most: int = 8192) -> FloatArray:  # noqa: ARG002  an answer has few enough
-        """What has come since; what does not fit is none."""
+        """Return the samples since the last call; batches of the wrong length are ignored."""
         waiting = self._line.sampled
         told = [waiting.popleft() for _ in range(len(waiting))]
         whole = [rows.reshape(-1, self._width) for rows in told if not len(rows) % self._width]
@@ -192,42 +192,42 @@ class HostSamples(_OnLine):
 
 
 class HostLock(_OnLine):
-    """``core.ports.SpindleHold``."""
+    """``core.ports.SpindleHold`` of the driver host."""
 
     def hold(self, on: bool, orient: bool = False) -> None:
-        """Ask for the spindle's drive as C, or let it turn again."""
+        """Engage the spindle drive as C, or release it."""
         self._line.order("hold", on=on, orient=orient)
 
     def held(self) -> bool:
-        """Whether C may move."""
+        """Return whether C may move."""
         return self._line.look().get("held") is True and not self._line.lost
 
 
 class HostOrientation(_OnLine):
-    """``core.ports.SpindleOrientation``."""
+    """``core.ports.SpindleOrientation`` of the driver host."""
 
     def orient(self, angle: float, sense: int = 0) -> None:
-        """Ask for an angle."""
+        """Turn the spindle to an angle in degrees."""
         self._line.order("orient", angle=angle, sense=sense)
 
     def release(self) -> None:
-        """Hold it no longer."""
+        """Cancel the orientation."""
         self._line.order("release")
 
     def oriented(self) -> bool:
-        """Whether it is held at its angle; of a driver host that is gone, as it last was."""
+        """Return whether the spindle is at the commanded angle; after a loss, the last known state."""
         return self._line.look().get("oriented") is True
 
 
 class HostIO(_OnLine):
-    """``core.ports.DigitalIO``."""
+    """``core.ports.DigitalIO`` of the driver host."""
 
     def inputs(self) -> Mapping[str, bool]:
-        """All inputs by name."""
+        """Return all inputs by name."""
         return _flags(self._line.look().get("inputs"))
 
     def outputs(self) -> Mapping[str, bool]:
-        """All outputs as last written."""
+        """Return all outputs by name."""
         return _flags(self._line.look().get("outputs"))
 
     def write(self, name: str, on: bool) -> None:
@@ -235,15 +235,15 @@ class HostIO(_OnLine):
         self._line.order("write", name=name, on=on)
 
     def safe(self) -> None:
-        """Every output to its safe state."""
+        """Set every output to its safe state."""
         self._line.order("safe")
 
 
 class HostStation(_OnLine):
-    """``core.ports.Station``."""
+    """``core.ports.Station`` of the driver host."""
 
     def snapshot(self) -> StationState:
-        """The station now; without the driver host nothing is pressed, and it has been silent for ever."""
+        """Return the present state of the station; after a loss, no button is pressed and the age is inf."""
         shown = self._line.look().get("station")
         if self._line.lost or not isinstance(shown, dict):
             return StationState(age=float("inf"))
@@ -251,14 +251,14 @@ class HostStation(_OnLine):
 
 
 class HostTouch(_OnLine):
-    """``core.ports.TouchInput``."""
+    """``core.ports.TouchInput`` of the driver host."""
 
     def arm(self) -> None:
-        """Forget what was kept."""
+        """Clear the latched touch."""
         self._line.order("arm")
 
     def latched(self) -> Latch | None:
-        """The first touch since."""
+        """Return the first touch since ``arm``, or None."""
         shown = self._line.look().get("latch")
         if shown is None or self._line.lost:
             return None
@@ -268,10 +268,13 @@ class HostTouch(_OnLine):
 
 
 class HostTrips(_OnLine):
-    """``core.faults.Tripping``."""
+    """``core.faults.Tripping`` of the driver host."""
 
     def tripped(self) -> Trip | None:
-        """What the driver host has switched off since it was last acknowledged."""
+        """Return the functions that the driver host has switched off since the last acknowledgment.
+
+        The result is None without a trip.
+        """
         shown = self._line.look().get("trip")
         if shown is None:
             return None
@@ -281,12 +284,12 @@ class HostTrips(_OnLine):
         return Trip(int(number_), away_s, spindle is True, tuple(texts(outputs)), found is True)
 
     def acknowledge(self, trip: Trip) -> None:
-        """It may go on: the control knows."""
+        """Acknowledge a trip, so that the machine may continue."""
         self._line.order("acknowledge", number=trip.number)
 
 
 def host_ports(line: Line) -> MachinePorts:
-    """The ports of whatever the driver host drives. Raises DriverError when it does not answer."""
+    """Build the ports of the driver host. Raises DriverError without a reply."""
     hello, spindle = line.greet(), HostSpindle(line)
     return MachinePorts(
         clock=line.clock,
@@ -313,21 +316,24 @@ def _flags(value: object) -> dict[str, bool]:
     return {name: on is True for name, on in value.items()} if isinstance(value, dict) else {}
 
 
-# --- The hands at a station that lives in the driver host: the simulated one, or the one on the screen.
+# --- Controls of a station in the driver host: the simulated one, or the one on the screen.
 
 
 class HostHands(PostedHands):
-    """Any thread may act; what an act means stands at ``app.desk.station_hands.StationPanel``."""
+    """Station controls whose actions are sent to the driver host, from any thread.
+
+    ``app.desk.station_hands.StationPanel`` explains the actions.
+    """
 
     def __init__(self, line: Line) -> None:
         self._line = line
 
     def set_input(self, name: str, on: bool) -> None:
-        """Make an input of a simulated machine true or false, at once. Raises DriverError."""
+        """Set an input of a simulated machine at once. Raises DriverError."""
         self._line.ask(_act("set_input", name, on))
 
     def post(self, name: str, *values: object) -> None:
-        """Use the method of this name at the station."""
+        """Send the name of a station method and its arguments, without waiting."""
         self._line.post(_act(name, *values))
 
 

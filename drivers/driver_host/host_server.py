@@ -1,4 +1,7 @@
-"""The driver host: answers the control, runs the drivers, stops the machine if the control ends."""
+"""Server of the driver host, which handles messages and runs the drivers.
+
+The server stops the machine if the control ends.
+"""
 
 from __future__ import annotations
 
@@ -24,17 +27,17 @@ from drivers.driver_host.host_messages import (
 )
 
 _Part = TypeVar("_Part")
-# Why an optional part of the machine is missing, and the reason.
+# Text and reason code for each missing optional part of the machine.
 _NO_C = "the spindle drive of this machine is not used as the C axis", "no-c"
 _UNORIENTED = "this machine's spindle driver cannot orient the spindle to an angle", "no-orientation"
 _NO_TOUCH = "this driver cannot capture the axis position at a touch signal", "no-touch"
 _NO_GEAR = "this driver cannot synchronize the axes with the spindle", "no-gear"
 
-# --- Orders that change the machine, by the words of a request; and the hands at a simulated station.
+# --- Commands that change the machine, by name; and actions at a simulated station.
 
 
 def act(ports: MachinePorts, head: Mapping[str, object]) -> None:
-    """Carry one order out. Raises DriverError for one that is not known, or that the drivers refuse."""
+    """Execute one command. Raises DriverError if it is unknown or the drivers reject it."""
     on = head.get("on") is True
     acts: dict[str, Callable[[], None]] = {
         "enable": lambda: ports.axes.enable(on),
@@ -63,7 +66,7 @@ def act(ports: MachinePorts, head: Mapping[str, object]) -> None:
 
 
 def use_hand(hands: object | None, head: Mapping[str, object]) -> object:
-    """A hand at the simulated station, by the name of its method. Raises DriverError."""
+    """Call a method of the simulated station by its name. Raises DriverError if this is not possible."""
     name, values = text(head, "name"), head.get("values")
     use = None if name.startswith("_") or hands is None else getattr(hands, name, None)
     if not callable(use) or not isinstance(values, list):
@@ -80,7 +83,7 @@ def use_hand(hands: object | None, head: Mapping[str, object]) -> object:
 
 
 def _demanded(part: _Part | None, missing: str, reason: str) -> _Part:
-    """Return an optional part of the machine. Raises DriverError with why it is ``missing``."""
+    """Return an optional part of the machine. Raises DriverError if it is missing."""
     if part is None:
         raise DriverError(missing, reason=reason)
     return part
@@ -95,22 +98,22 @@ def _how(word: str) -> Stop:
         ) from error
 
 
-# --- What the driver host has switched off by itself, and that nothing goes on before the control knows it.
+# --- Functions that the driver host has switched off, which stay off until the control acknowledges.
 
 
 _MOVES = frozenset(("splice", "mesh"))
 
 
 class TripGuard:
-    """Between the requests of the control and the drivers."""
+    """Guard that rejects requests of the control after a trip, until it is acknowledged."""
 
     def __init__(self) -> None:
         self.tripped: Trip | None = None
         self._count = 0
-        self._turns = False  # the control wants the spindle to turn
+        self._turns = False  # The control has commanded the spindle to turn.
 
     def demand_allowed(self, message: Message) -> None:
-        """Raises TrippedError for what would move, turn or switch on, while a trip is not acknowledged."""
+        """Raise TrippedError for a motion, start or output while a trip is not acknowledged."""
         what = text(message.head, "what")
         turns = what == "orient" or (what == "run" and number(message.head, "rpm") != 0.0)
         switches = what == "write" and message.head.get("on") is True
@@ -127,23 +130,23 @@ class TripGuard:
             self._turns = turns
 
     def trip(self, away: float, outputs: Sequence[str], *, spindle: bool) -> None:
-        """Outputs were switched off, and the spindle; that nothing was on is no trip."""
+        """Record that outputs and the spindle were switched off, unless nothing was on."""
         turned = self._turns and spindle
         self._turns = self._turns and not spindle
         if turned or outputs:
             self._tripped(away, turned, outputs)
 
     def fell(self, away: float, output: str) -> None:
-        """One output that nobody renewed."""
+        """Record that one output was switched off because it was not renewed."""
         self._tripped(away, False, [output])
 
     def back_after(self, away: float) -> None:
-        """The control speaks again."""
+        """Update the duration of the silence when the control sends messages again."""
         if self.tripped is not None:
             self.tripped = self.tripped._replace(away=max(away, self.tripped.away))
 
     def acknowledge(self, count: float) -> None:
-        """The control has taken note of this trip, and of no later one."""
+        """Clear the trip with this number, but not a later one."""
         if self.tripped is not None and self.tripped.number == count:
             self.tripped = None
 
@@ -154,45 +157,46 @@ class TripGuard:
         self.tripped = Trip(self._count, max(away, before.away), spindle or before.spindle, on)
 
 
-PERIOD = 0.005  # s between two rounds of the loop
-RESTS = 0.2  # s at most while the control sleeps
-AWAY = 0.25  # s without a round of its own: modules take their error values after three heartbeats
-LATE = 0.05  # s; the drives' queues hold twice this, and a splice of 6000 pieces takes 0.03
-SILENT = 0.2  # s without a word after which the control counts as stalled
-ASLEEP = 0.5  # s after which one that sleeps does: nothing is on then
+PERIOD = 0.005  # Seconds between two cycles of the loop.
+RESTS = 0.2  # Maximum seconds between two cycles while the control sleeps.
+AWAY = 0.25  # Seconds without a cycle; modules set their error values after three heartbeats.
+LATE = 0.05  # Seconds; the drives' queues buffer twice this time, and a splice of 6000 pieces takes 0.03 s.
+SILENT = 0.2  # Seconds without a message after which the control counts as stalled.
+ASLEEP = 0.5  # The same for a sleeping control, when nothing is on.
 _NOTES = 50
-_ROWS = 400  # samples in one answer: what a late control has missed comes with its next looks
+_ROWS = 400  # Samples in one reply; a delayed control receives the rest with its next polls.
 _STANDS = 5.0  # rpm
 _STATION = tuple(field.name for field in fields(StationState))
-_RUNS_DOWN = 8.0  # s for a spindle to brake; one that has not by then is let go
+_RUNS_DOWN = 8.0  # Maximum wait in s for a spindle to brake.
 
 
 @dataclass(frozen=True, slots=True)
 class Driven:
-    """A set of drivers that one loop owns; ``tick`` is called every few milliseconds and raises nothing.
+    """Set of drivers that one loop owns; ``tick`` is called every few milliseconds and raises no error.
 
-    ``hands`` is a simulated machine's handle, or the station on the screen. ``idle``: for how many seconds
-    they need no round, told whether the control sleeps and wants nothing; 0 where they cannot tell.
-    ``asked``: whether the last round has asked for what the next one takes in.
+    ``hands`` are the controls of a simulated machine or of the station on the screen. ``idle`` returns the
+    seconds without a required cycle, for a sleeping control or not; 0 means unknown. ``asked`` returns
+    whether the last cycle has sent requests whose replies the next one reads.
     """
 
     ports: MachinePorts
     tick: Callable[[], object]
     close: Callable[[], None]
     hands: object | None = None
-    wake: Callable[[], float | None] = lambda: None  # when the next tick is due; None: every few milliseconds
-    notes: Callable[[], Sequence[str]] = tuple  # what the drivers have to tell the control
+    # Due time of the next tick; None: every few milliseconds.
+    wake: Callable[[], float | None] = lambda: None
+    notes: Callable[[], Sequence[str]] = tuple  # Messages of the drivers for the control.
     idle: Callable[[bool], float] = lambda _asleep: 0.0
     asked: Callable[[], bool] = lambda: False
 
 
 class DriverHost:
-    """``handle`` one message, ``tick`` between them. All by one thread.
+    """Driver host that handles messages and runs the drivers, in one thread.
 
-    A silent control is played to the end of its queue, which is at rest; then the spindle stops and the
-    outputs go to their safe states: it has tripped, and neither moves nor switches on anything until the
-    control has acknowledged that. ``orphaned``: it will never speak again; at rest the drives go off too,
-    and once the spindle stands the driver host is done.
+    If the control is silent, its queue is played to the end, which is at rest. Then the spindle stops and the
+    outputs change to their safe states. This is a trip: nothing moves or switches on until the control has
+    acknowledged it. ``orphaned`` means that the control has ended. The drives are then also switched off at
+    rest, and the driver host is done when the spindle is at standstill.
     """
 
     def __init__(
@@ -202,15 +206,15 @@ class DriverHost:
         refresh: Mapping[str, float] | None = None,
         ring: Callable[[], None] = lambda: None,
     ) -> None:
-        """``refresh``: outputs that fall after so many seconds without a word of the control.
+        """Create the driver host; ``ring`` wakes a control that sleeps.
 
-        ``ring`` wakes a control that sleeps.
+        ``refresh``: outputs that are switched off after this number of seconds without a message.
         """
         self._ring = ring
-        self.asleep = False  # the control is, by its own word
-        self._slept = False  # and was at the last round
+        self.asleep = False  # The control has reported that it sleeps.
+        self._slept = False  # The control slept at the last cycle.
         self._rung = False
-        self._told: Callable[[], object] | None = None  # with the last look
+        self._told: Callable[[], object] | None = None  # State of the last poll.
         self._driven = driven
         self._ports = driven.ports
         self._warnings = list(warnings)
@@ -218,12 +222,12 @@ class DriverHost:
         self._heard = self._ports.clock.now()
         self._parted = False
         self._parted_at = 0.0
-        self._latest = 0.0  # s, the worst lateness so far
-        self._answering = 0.0  # s that orders have taken since the last round: some wait for a drive
+        self._latest = 0.0  # Maximum delay so far in s.
+        self._answering = 0.0  # Duration of commands since the last cycle in s; some wait for a drive.
         self._notes: list[str] = []
         self._guard = TripGuard()
         self.orphaned = False
-        self.done = False  # orphaned, at rest, switched off
+        self.done = False  # Orphaned, at rest and switched off.
         self._answers: Mapping[str, Callable[[Message], Message]] = {
             "hello": self._hello,
             "look": self._look,
@@ -237,7 +241,7 @@ class DriverHost:
         }
 
     def handle(self, message: Message) -> Message:
-        """The answer; what the drivers refuse comes back as ``error``."""
+        """Handle a message and return the reply; a rejection by the drivers is returned as ``error``."""
         self._hear()
         began = self._heard
         what = text(message.head, "do")
@@ -261,7 +265,7 @@ class DriverHost:
             self._answering += self._heard - began
 
     def tick(self) -> None:
-        """Drivers first, then whether the control still speaks."""
+        """Run the drivers, then check whether the control still sends messages."""
         self._driven.tick()
         for note in self._driven.notes():
             self._note(note)
@@ -274,7 +278,7 @@ class DriverHost:
             self._ring()
 
     def _has_news(self) -> bool:
-        """Whether a look would tell anything else than the last one did, but for times."""
+        """Return whether a poll would differ from the last one, apart from times."""
         try:
             return self._told is None or _timeless(self._state()) != self._told()
         except DriverError:
@@ -285,8 +289,9 @@ class DriverHost:
         return ASLEEP if self.asleep else SILENT
 
     def next_round(self, last: float) -> float:
-        """When it is due, behind one that was due at ``last``: later where the control sleeps and the drivers
-        need none.
+        """Return the due time of the next cycle, later if the control sleeps and the drivers are idle.
+
+        ``last`` is the due time of the last cycle.
         """
         set_by_drivers = self._driven.wake()
         if set_by_drivers is not None:
@@ -299,7 +304,7 @@ class DriverHost:
         return max(last + PERIOD, now)
 
     def late(self, seconds: float) -> None:
-        """How late the loop has woken up; what is worth telling is told, each record once."""
+        """Note the wake-up delay of the loop; each new maximum is reported once."""
         slept, self._answering = seconds - self._answering, 0.0
         if slept > max(self._latest, LATE):
             self._latest = slept
@@ -317,15 +322,16 @@ class DriverHost:
         return not axes.sample().moving and at_rest(axes.horizon(), axes.now())
 
     def _stands_in_thread(self) -> bool:
-        """Whether slides that follow the spindle wait for one that turns no more: their queue never ends."""
+        """Return whether axes that follow the spindle wait for a stopped spindle, so the queue never ends."""
         gear = self._ports.gear
         follows = gear is not None and gear.geared() is not None
         return follows and not self._ports.axes.sample().moving and abs(self._ports.spindle.speed()) < _STANDS
 
     def _trip(self, away: float, *, spindle: bool = True) -> None:
-        """Outputs safe, as modules have made them already that missed our heartbeat, and the spindle stopped
-        unless a tool is still in the cut, or it stands and is held at its angle. What was on is what the
-        control has to be told.
+        """Set the outputs to their safe states, stop the spindle, and record the functions that were on.
+
+        The spindle is not stopped while a tool is in the cut, or while it is oriented. Modules that missed
+        the heartbeat have already changed their outputs.
         """
         orientation = self._ports.orientation
         spindle = spindle and not (orientation is not None and orientation.oriented())
@@ -347,7 +353,7 @@ class DriverHost:
         self._parted = False
 
     def _let_fall(self, silent: float) -> None:
-        """Outputs that nobody renews do not wait for the slides to rest."""
+        """Switch off outputs that are not renewed, without waiting for the axes to rest."""
         for name, longest in self._refresh.items():
             if silent > longest and self._ports.io.outputs().get(name):
                 self._note(
@@ -361,7 +367,7 @@ class DriverHost:
                 self._guard.fell(silent, name)
 
     def _without_control(self) -> None:
-        """The queue ends at rest by itself; what does not, is stopped once it is over."""
+        """Stop the machine without a control, after the queue has ended at rest."""
         axes = self._ports.axes
         if not self._resting():
             if self._stands_in_thread():
@@ -377,7 +383,7 @@ class DriverHost:
             self._parted_at = axes.now()
         if self.orphaned and not self.done:
             self._carefully(lambda: axes.stop(Stop.RAMP_OFF))
-            # Closing takes the spindle's power: while it turns it would run on unbraked.
+            # Closing removes the spindle's power, so a turning spindle would coast.
             waited = axes.now() - self._parted_at
             self.done = abs(self._ports.spindle.speed()) < _STANDS or waited > _RUNS_DOWN
 
@@ -391,7 +397,7 @@ class DriverHost:
     def _note(self, what: str) -> None:
         self._notes = [*self._notes[-_NOTES:], what]
 
-    # --- answers ------------------------------------------------------------------------------------------
+    # --- replies ------------------------------------------------------------------------------------------
 
     def _hello(self, _message: Message) -> Message:
         axes = self._ports.axes
@@ -410,7 +416,7 @@ class DriverHost:
         return Message(head, NOTHING)
 
     def _state(self) -> dict[str, object]:
-        """Everything that can be seen. Raises DriverError."""
+        """Return the complete observable state. Raises DriverError."""
         ports, sample = self._ports, self._ports.axes.sample()
         station = ports.station.snapshot()
         return {
@@ -440,7 +446,7 @@ class DriverHost:
         return Message(state, sampled)
 
     def _splice(self, message: Message) -> Message:
-        self._driven.tick()  # a long one takes a while: the drives' queues are filled before
+        self._driven.tick()  # A long splice takes time, so the drives' queues are filled first.
         self._ports.axes.splice(segments(message.numbers, len(self._ports.axes.axes)))
         return _value(0.0)
 
@@ -465,7 +471,7 @@ class DriverHost:
 
 
 def _timeless(state: Mapping[str, object]) -> Mapping[str, object]:
-    """A look without its times; of the station's age it is told whether that is silent."""
+    """Return a polled state without times; the age of the station is reduced to whether it is silent."""
     sample, angle, station = state.get("sample"), state.get("angle"), state.get("station")
     assert isinstance(sample, dict)
     assert isinstance(station, dict)

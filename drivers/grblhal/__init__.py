@@ -1,1 +1,4 @@
-"""grblHAL over a serial line or TCP: a controller that plans by itself (docs/decisions/0027-grblhal.md)."""
+"""Driver for grblHAL controllers on a serial port or TCP, which plan their own motion.
+
+See docs/decisions/0027-grblhal.md.
+"""

@@ -1,4 +1,4 @@
-"""Axes of the controller for the executor: asked and told as any others, but they take no setpoints."""
+"""Axes of a grblHAL controller, which accept no setpoints because the controller plans its own motion."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from drivers.grblhal.grblhal_controller import Controller
 from drivers.grblhal.grblhal_wire import Wire
 from drivers.waiting import Opening
 
-_REPORTED = 0.002  # mm between where a block has ended and a report, which has three decimals
-_STEPS = 100  # setting, steps in a millimetre
+_REPORTED = 0.002  # Difference in mm between the end of a block and a report, which has three decimals.
+_STEPS = 100  # Number of the setting for steps per millimeter.
 
 
 class GrblAxes:
-    """``core.ports.AxisSink``; ``pump`` is the driver's round, made when the executor looks at the axes."""
+    """``core.ports.AxisSink`` of the controller; each call of ``sample`` runs one cycle of the driver."""
 
     commit = 0.0
 
@@ -27,7 +27,10 @@ class GrblAxes:
         pump: Callable[[], None],
         reopen: Callable[[], Opening[Wire]],
     ) -> None:
-        """``reopen`` begins to open the wire anew."""
+        """Create the axes.
+
+        ``pump`` runs one cycle of the driver. ``reopen`` starts to reopen the connection.
+        """
         self._c = controller
         self._reopen = reopen
         self._blocks = blocks
@@ -38,25 +41,28 @@ class GrblAxes:
         self._homing = ""
 
     def now(self) -> float:
-        """The host's clock: the controller has none to ask for."""
+        """Return the time of the host's clock, because the controller has no clock that can be read."""
         return self._c.clock.now()
 
     def horizon(self) -> float:
-        """Now: nothing is queued by time."""
+        """Return the present time, because no setpoints are queued."""
         return self.now()
 
     def splice(self, segments: Segments) -> None:  # noqa: ARG002  the port's
-        """Raises DriverError always."""
+        """Raise DriverError, because the controller accepts blocks only."""
         raise DriverError(
             "this controller plans its own motion; it accepts blocks, not setpoints", reason="blocks-only"
         )
 
     def demand_at(self, t: float) -> tuple[tuple[float, ...], tuple[float, ...]]:  # noqa: ARG002  at rest only
-        """Where the slides rest, exactly as the last block said it where that is known."""
+        """Return the positions at rest and zero velocities.
+
+        The positions are the exact end of the last block where this end is known.
+        """
         return self._places(), (0.0,) * len(self.axes)
 
     def sample(self) -> AxisSample:
-        """As last reported."""
+        """Run one cycle of the driver and return the state of the last report."""
         self._pump()
         c = self._c
         if c.restarted:
@@ -79,7 +85,7 @@ class GrblAxes:
         )
 
     def enable(self, on: bool) -> None:
-        """The control's own leave to move; raises DriverError while a fault stands."""
+        """Permit or block motion in the driver. Raises DriverError while a fault is active."""
         if on and self._c.fault:
             raise DriverError(
                 "the controller stays locked: {fault}; press Reset first", "no-power", fault=self._c.fault
@@ -87,13 +93,16 @@ class GrblAxes:
         self._blocks.powered = on
 
     def stop(self, how: Stop) -> None:
-        """The controller's own stop; without power it takes nothing more."""
+        """Abort the motion; unless ``how`` is RAMP_HOLD, also block further motion."""
         self._blocks.powered = self._blocks.powered and how is Stop.RAMP_HOLD
         if self._c.alarm not in grblhal_codes.ENDED:
             self._blocks.abort()
 
     def home(self, axis: str) -> None:
-        """Begin to look for a switch. Raises DriverError."""
+        """Start to home an axis.
+
+        Raises DriverError if the controller does not have the axis, without power, or if it cannot start.
+        """
         axes = {each.name: each for each in self._c.config.axes}
         if axis not in axes or not axes[axis].wired:
             raise DriverError(
@@ -109,8 +118,9 @@ class GrblAxes:
         self._blocks.home(axis)
 
     def clear_fault(self) -> None:
-        """The operator has seen it: reset, unlock, verify. A wire that is gone is opened anew; why
-        it cannot be is the next fault.
+        """Reset, unlock and verify the controller, or start to reopen a lost connection.
+
+        If reopening fails, the reason becomes the next fault.
         """
         self._blocks.powered = False
         if not self._c.trusted:
@@ -122,11 +132,14 @@ class GrblAxes:
             self._c.run(grblhal_scripts.recover(self._c))
 
     def _forget_places(self) -> None:
-        """What the controller only counts may be anywhere; where it homes by itself its own word counts."""
+        """Mark the wired axes as not homed, because their counted positions may be wrong."""
         self._known = {axis.name: not axis.wired for axis in self._c.config.axes}
 
     def _is_known(self, name: str) -> bool:
-        """The controller's own word counts where it homes; where it does not, the machine file's."""
+        """Return whether the position of an axis is known.
+
+        The report of the controller decides where its homing is on, otherwise the machine file.
+        """
         told = self._c.is_homed(name)
         known = self._known[name] if told is None or name not in self._wired else told
         return known and self._c.trusted and self._homing != name
@@ -140,6 +153,6 @@ class GrblAxes:
         return tuple(places)
 
     def _grain(self, name: str) -> float:
-        """mm: half a step of the controller, and its rounding."""
+        """Return half a step of the controller in mm, with the rounding of its reports."""
         steps = self._c.figure(_STEPS, name)
         return max(_REPORTED, 0.5 / steps + 0.001) if steps else _REPORTED

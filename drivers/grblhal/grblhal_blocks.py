@@ -1,4 +1,4 @@
-"""The block-level port: tickets, holds and overrides on the conversation; ``core.ports.BlockSink``."""
+"""Block port of a grblHAL controller, with tickets, feed holds, overrides and jogs."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from drivers.grblhal.grblhal_operator import Holds, Jogs, Overrides
 from drivers.grblhal.grblhal_report import Report
 from drivers.port_parts import demand_power
 
-AHEAD = 0.4  # s of motion beyond the block under way: so long it runs on when the host is lost
+AHEAD = 0.4  # Seconds of motion beyond the present block, which continue if the host is lost.
 _ABORT = "abort"
 
 
 class GrblBlocks:
-    """Blocks of one controller. Called by the executor's thread alone."""
+    """``core.ports.BlockSink`` of one controller, called by the executor's thread only."""
 
     ahead = AHEAD
 
@@ -29,30 +29,33 @@ class GrblBlocks:
         self.overrides = Overrides(lambda data: controller.realtime(*data), controller.fail)
         self._jogs = Jogs(controller)
         self._holds = Holds(controller)
-        self.powered = False  # leave to move, given and taken by ``GrblAxes``
+        self.powered = False  # Motion is permitted; set by ``GrblAxes``.
         self._last = 0  # ticket
         self._done = 0
         self._active = 0
-        self._threads: set[int] = set()  # tickets of passes that are not done
-        self._settled = False  # a report since the last line has said that all is done
+        self._threads: set[int] = set()  # Tickets of thread passes that are not complete.
+        self._settled = False  # A report after the last line shows that all blocks are complete.
         self._target: tuple[float, float] | None = None
-        self.highest = 0.0  # rpm that the spindle may have to follow the radius up to; 0: it is constant
-        self.reach = 0.0 if controller.config.own_spindle else math.inf  # and can; ``GrblSpindle`` knows
-        self.rest: tuple[float, float] | None = None  # X and Z where the last block has exactly ended
-        self.terminals: Callable[[], frozenset[str]] = frozenset  # what the inputs and outputs can do
+        self.highest = 0.0  # Highest rpm for constant surface speed; 0: constant rpm.
+        self.reach = 0.0 if controller.config.own_spindle else math.inf  # Set by ``GrblSpindle``.
+        self.rest: tuple[float, float] | None = None  # Exact end of the last block in X and Z.
+        self.terminals: Callable[[], frozenset[str]] = frozenset  # Capabilities of the inputs and outputs.
         controller.on_report, controller.on_void = self._reported, self._voided
         controller.settled = lambda: self._settled
 
     @property
     def listens(self) -> bool:
-        """Whether lines are read and carried out: in a jog they are refused, in a hold they wait."""
+        """Whether the controller reads and executes lines, which is not the case in a jog or feed hold."""
         return self._c.ready and not self._jogs.active and self._c.state not in {"Jog", "Hold"}
 
     @property
     def caps(self) -> frozenset[str]:
-        """Threads need the controller's own encoder, which a third speed in its reports tells of; a surface
-        speed needs a spindle of variable speed, or another than the controller's. A thread would put the
-        override of the controller's spindle, by which that follows the radius, to 100 %.
+        """The requirements that the controller meets, as named in ``machine_requirements``.
+
+        Threads need an encoder at the controller, which appears as a third speed in its reports. A constant
+        surface speed needs a variable spindle, or a spindle that the controller does not drive. A thread sets
+        the spindle override to 100 %, so that the controller's own spindle cannot follow the radius in a
+        thread.
         """
         report, own = self._c.report, self._c.config.own_spindle
         able = {"arc"} if report is None or report.measured is None else {"arc", "thread"}
@@ -60,23 +63,26 @@ class GrblBlocks:
         return self.terminals() | able | ({"surface-speed"} if not own or self._c.varies else set())
 
     def fastest(self, dx: float, dz: float) -> float:
-        """By the machine file, or by the controller's settings where these are less."""
+        """Return the speed limit in mm/s along a direction.
+
+        The limit is the lower of the machine file's and the controller's.
+        """
         return self._along(dx, dz, lambda axis: min(axis.vmax, self._c.speed_of(axis.name) or axis.vmax))
 
     def lay_out(self, highest: float) -> None:
-        """The spindle reads it when it is told its speed."""
+        """Store the highest speed in rpm for constant surface speed, or 0 for a constant speed."""
         self.highest = highest
 
     @property
     def quiet(self) -> bool:
-        """Whether nothing moves and nothing is left: lines that wait for a standstill may go."""
+        """Whether nothing moves and nothing is pending, so that lines which need a standstill can be sent."""
         return self._settled and not self._c.busy
 
     def submit(self, op: BlockOp) -> int | None:
-        """Hand one block over; None while the controller's buffer is full. Raises DriverError.
+        """Send one block and return its ticket, or None while the controller's buffer is full.
 
-        A thread also waits until the overrides are at 100 % and told so: under one of feed it would lag
-        behind its lead.
+        Raises DriverError if the controller is not ready. A thread also waits until the reported overrides
+        are 100 %, because a feed override would change the lead.
         """
         c = self._c
         self._demand_ready()
@@ -96,35 +102,41 @@ class GrblBlocks:
         return ticket
 
     def state(self) -> BlockState:
-        """From the last report and what has been sent since."""
+        """Return the state of the blocks by the last report and the lines sent since then."""
         c = self._c
         resting = self.quiet or c.lost or (c.fault != "" and self._dead())
         return BlockState(self._done, self._active, resting, self._holds.stands, self.hindrance())
 
     def hindrance(self) -> str:
-        """Why nothing may be begun now."""
+        """Return the reason why no block can be started, or an empty text."""
         return self._c.hindrance
 
     def hold(self) -> None:
-        """0x82, at once: nobody may ask it in a thread pass, which the controller would leave half cut."""
+        """Start a feed hold immediately (0x82).
+
+        The caller must not do so in a thread pass, because the controller would stop within the cut.
+        """
         self._holds.begin()
 
     def resume(self) -> None:
-        """0x81; the operator's word ends any hold."""
+        """End any feed hold (0x81), also one that was started at the controller."""
         self._holds.end()
 
     def abort(self) -> None:
-        """To rest; the tickets are void."""
+        """Stop the motion and discard all tickets."""
         self._holds.forget()
         if not self._c.lost and not (self._c.busy and self._c.doing == _ABORT):
             self._c.run(grblhal_scripts.abort(self._c), _ABORT)
 
     def override(self, feed: float, rapid: float) -> None:
-        """Wanted from now on; sent and verified by ``pump``."""
+        """Set the feed and rapid overrides as fractions; ``pump`` sends and verifies them."""
         self.overrides.want(feed, rapid)
 
     def jog(self, axis: str, velocity: float, lease: float, limits: tuple[float, float] | None) -> bool:
-        """Begin or renew."""
+        """Start or renew a jog.
+
+        Return False at the end of the travel. Raises DriverError if the controller is not ready.
+        """
         if not self._jogs.active:
             self._demand_ready()
         moves = self._jogs.move(axis, velocity, lease, limits)
@@ -133,7 +145,7 @@ class GrblBlocks:
         return moves
 
     def jog_to(self, axis: str, target: float, speed: float) -> None:
-        """One step."""
+        """Jog by one step to ``target``. Raises DriverError if the controller is not ready."""
         self._demand_ready()
         place = self.rest or (self._c.position.get("X", 0.0), self._c.position.get("Z", 0.0))
         self._jogs.step(axis, target, speed)
@@ -141,7 +153,7 @@ class GrblBlocks:
         self._target = (target, place[1]) if axis == "X" else (place[0], target)
 
     def jog_stop(self) -> None:
-        """0x85, and lines that it swallowed are settled."""
+        """Stop the jog (0x85), and wait for the replies to lines that the controller has discarded."""
         if self._jogs.active or not self._settled:
             self._jogs.forget()
             self._settled = False
@@ -152,12 +164,12 @@ class GrblBlocks:
                 self._c.run(grblhal_scripts.jog_end(self._c))
 
     def home(self, axis: str) -> None:
-        """Look for its switch."""
+        """Start to home an axis."""
         self._settled, self.rest = False, None
         self._c.run(grblhal_scripts.home(self._c, axis))
 
     def pump(self) -> None:
-        """Once a tick, behind the conversation's own."""
+        """Send jogs and overrides; called once per tick after the controller's own cycle."""
         c = self._c
         self._jogs.pump()
         steady = self._threads or c.busy or not c.ready
@@ -166,19 +178,22 @@ class GrblBlocks:
             self.overrides.correct(c.overrides, c.overrides_told, c.clock.now())
 
     def demand_power(self) -> None:
-        """Raises DriverError while there is no leave to move."""
+        """Raise DriverError while motion is not permitted."""
         demand_power("", self.powered)
 
     # --- inside -------------------------------------------------------------------------------------------
 
     def _rapid(self, op: BlockOp) -> float:
-        """What G0 does on the way to there, mm/s: by the controller's limit of each slide (``planner.c``)."""
+        """Return the speed of G0 to the end of a block in mm/s.
+
+        The controller's axis limits apply, as in ``planner.c``.
+        """
         at = self._c.position
         x, z = self._target or self.rest or (at.get("X", 0.0), at.get("Z", 0.0))
         return self._along(op.x - x, op.z - z, lambda axis: self._c.speed_of(axis.name) or axis.vmax)
 
     def _along(self, dx: float, dz: float, most: Callable[[GrblAxis], float]) -> float:
-        """mm/s of a way on which no slide exceeds its ``most``; endless on one without length."""
+        """Return the speed in mm/s at which no axis exceeds ``most``; inf for a move without length."""
         way = math.hypot(dx, dz)
         shares = {"X": abs(dx), "Z": abs(dz)}
         told = ((most(axis), shares.get(axis.name, 0.0)) for axis in self._c.wired)
@@ -187,7 +202,7 @@ class GrblBlocks:
     def _demand_ready(self) -> None:
         why = self.hindrance()
         if self._c.fault:
-            raise DriverError(why, code_of(why, "controller-refuses"))  # the cause, and no more than that
+            raise DriverError(why, code_of(why, "controller-refuses"))  # Report only the cause.
         if why:
             raise DriverError(
                 "the controller does not accept blocks: {why}", code_of(why, "controller-refuses"), why=why
@@ -195,7 +210,7 @@ class GrblBlocks:
         self.demand_power()
 
     def _dead(self) -> bool:
-        """An alarm has stopped everything, or the last report says that nothing moves."""
+        """Return whether an alarm has stopped all motion, or the last report shows no motion."""
         c = self._c
         return not c.busy and (c.alarm != 0 or c.report is None or not c.report.moves)
 
@@ -212,7 +227,7 @@ class GrblBlocks:
         self._holds.reported(report)
 
     def _finished(self, report: Report) -> None:
-        """Everything has been moved to its end."""
+        """Mark all blocks as complete."""
         if self._target is not None and report.state == "Idle":
             self.rest = self._target
         self._target = None
@@ -222,7 +237,7 @@ class GrblBlocks:
         self._jogs.rested()
 
     def _voided(self) -> None:
-        """Stop, reset, alarm: no ticket holds any more, and where the slides stand is what is reported."""
+        """Discard all tickets after a stop, reset or alarm; the position is the reported one."""
         self._done, self._active, self._target, self.rest = self._last, 0, None, None
         self._threads.clear()
         self._settled = False

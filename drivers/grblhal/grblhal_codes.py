@@ -1,6 +1,6 @@
-"""Bytes, modes and lines of the controller's g-code, and what its alarms and errors mean.
+"""Bytes, modes and G-code lines of grblHAL, and the texts of its alarms and errors.
 
-Blocks go out in mm, X as a radius, plane G18, absolute, feed per minute.
+Blocks are sent in mm, with X as a radius, in plane G18, in absolute positions and with feed per minute.
 """
 
 from __future__ import annotations
@@ -11,28 +11,29 @@ from collections.abc import Mapping
 from core.message import Message
 from core.ports import ArcOp, BlockOp, FaultCode, LineOp, RapidOp, ThreadOp
 
-# The range from 0x80 on: its older twins ? ~ ! are plain text inside comments and $ lines.
+# The equivalent characters ? ~ ! would be plain text inside comments and $ lines.
 STATUS, START, HOLD, TELL_MODES, JOG_CANCEL, FULL = 0x80, 0x81, 0x82, 0x83, 0x85, 0x87
 RESET, STOP = 0x18, 0x19
-FEED, SPINDLE = tuple(range(0x90, 0x95)), tuple(range(0x99, 0x9E))  # to 100 %, up and down by 10, by 1
+# To 100 %, then up and down by 10 and by 1.
+FEED, SPINDLE = tuple(range(0x90, 0x95)), tuple(range(0x99, 0x9E))
 RAPIDS = {100: 0x95, 50: 0x96, 25: 0x97}
-SPINDLE_PAUSE = 0x9E  # in a feed hold only: stops the spindle, and starts it when it comes again
+SPINDLE_PAUSE = 0x9E  # In a feed hold only: stops or restarts the spindle.
 
 OFF = ("M5", "M9")  # spindle and coolant
-# Radius for ever: no reset may change what X means. G97, or S would be a surface speed.
+# X is always a radius, so that no reset changes its meaning. Without G97, S could be a surface speed.
 MODES = ("G8", "G18", "G21", "G90", "G94", "G97", "G54")
-SILENT = frozenset(("G97",))  # modes that a controller without a variable spindle does not tell
-# What another host may have left behind, by how ``$G`` tells it, and the line that ends it.
+SILENT = frozenset(("G97",))  # Modes that a controller without a variable spindle does not report.
+# Modes that another host may have left active, as ``$G`` reports them, and the code that ends each.
 CURES = {"G96": "G97", "G51": "G50", "G43": "G49", "G92": "G92.1", "M50": "M48", "M51": "M48", "M53": "M53P1"}
 
 DOOR = "the controller's safety door is open"
 HOMING_REQUIRED = 11
-LOCKED = 255  # ours: it is locked and tells no number
+LOCKED = 255  # TurnDesk's own number: locked without a reported alarm number.
 ERROR_LOCKED = 9  # error: locked by an alarm or a jog
-LOST = frozenset((1, 3))  # alarms behind which nobody knows where the slides are
-TORN = frozenset((10, 17))  # and those that end the steps of a moving slide at once, and do not say so
-CRITICAL = frozenset((1, 2, 10, 17))  # only a reset ends them; settings cannot be written before
-ENDED = CRITICAL | {HOMING_REQUIRED}  # alarms behind which nothing turns or runs any more
+LOST = frozenset((1, 3))  # Alarms after which the position is unknown.
+TORN = frozenset((10, 17))  # Alarms that stop a moving axis without a ramp and do not report it.
+CRITICAL = frozenset((1, 2, 10, 17))  # Only a reset clears them; settings cannot be written before.
+ENDED = CRITICAL | {HOMING_REQUIRED}  # Alarms after which nothing turns or moves.
 _ALARMS = {
     1: "hard limit: an axis has reached its limit switch",
     2: "soft limit: a block goes beyond the controller's travel limits",
@@ -99,12 +100,12 @@ _HOMING = frozenset((6, 7, 8, 9, 15, 18))
 
 
 def alarm_code(number: int) -> FaultCode:
-    """What of the catalogue an alarm of the controller is."""
+    """Return the fault code of the alarm catalog for an alarm of the controller."""
     return "homing" if number in _HOMING else _OF_AXES.get(number, "controller-alarm")
 
 
 def alarm_text(number: int) -> str:
-    """One sentence of an alarm."""
+    """Return a sentence that describes an alarm."""
     return Message(
         "the controller reports ALARM:{number} ({number2})",
         number=number,
@@ -113,7 +114,7 @@ def alarm_text(number: int) -> str:
 
 
 def error_text(number: int, line: str) -> str:
-    """One sentence of an error and the line that it answers."""
+    """Return a sentence that describes an error and the rejected line."""
     return Message(
         "the controller rejects {line} with error:{number} ({number2})",
         line=f"{line!r}",
@@ -122,32 +123,37 @@ def error_text(number: int, line: str) -> str:
     )
 
 
-# --- Blocks as lines.
+# --- Blocks as lines of G-code.
 
 
 _LAST_NUMBER = 9_000_000
 _DOT = 0.002  # mm; see ``_arc``
-_SAME = 1.01  # rapids that differ by so much are one
+_SAME = 1.01  # Rapids that differ by less than this ratio are equal.
 
 
 def number(value: float) -> str:
-    """Five decimals of a millimetre are a tenth of the finest step; no more zeros than needed."""
+    """Return a number as text with at most five decimals, without trailing zeros.
+
+    Five decimals of a millimeter are a tenth of the finest step.
+    """
     text = f"{value:.5f}".rstrip("0").rstrip(".")
     return "0" if text in {"-0", ""} else text
 
 
 def line_number(ticket: int) -> int:
-    """The N word of a ticket."""
+    """Return the N word of a ticket."""
     return (ticket - 1) % _LAST_NUMBER + 1
 
 
 def line_of(
     op: BlockOp, ticket: int, rapid: float, feed_override: float, origin: Mapping[str, float] | None = None
 ) -> str:
-    """The line of one block. ``rapid`` is what G0 does on this way (mm/s), ``feed_override`` a fraction.
+    """Return the line of one block.
 
-    A rapid slower than G0 goes out as a feed: the controller's rapid override knows three steps only. A feed
-    override above 1 speeds up no rapid. ``origin`` is where home lies in the controller's own frame.
+    ``rapid`` is the speed of G0 on this path in mm/s, and ``feed_override`` a fraction. A rapid that is
+    slower than G0 is sent as a feed, because the rapid override of the controller has only three steps. A
+    feed override above 1 does not speed up a rapid. ``origin`` is the home position in the controller's
+    coordinates.
     """
     head = f"N{line_number(ticket)}"
     home = origin or {}
@@ -166,15 +172,15 @@ def line_of(
 
 
 def jog_line(letter: str, target: float, speed: float) -> str:
-    """An absolute jog in machine coordinates."""
+    """Return the line of an absolute jog in machine coordinates."""
     return f"$J=G53G21G90{letter}{number(target)}{_feed(speed)}"
 
 
 def _arc(op: ArcOp) -> str:
-    """G2, G3, or G1 for a dot of an arc.
+    """Return G2 or G3, or G1 for a very short arc.
 
-    The angle counts from the plane's first axis Z to its second, X; the word is that of the way in which it
-    grows: G3 from Z+ to X+. An arc whose angle rounds to nothing, or to less, is a whole circle over there.
+    The angle counts from the first axis of the plane, Z, to the second, X, so G3 turns from Z+ to X+. The
+    controller treats an arc whose angle rounds to zero or less as a full circle.
     """
     if _dot(op):
         return "G1"
@@ -182,7 +188,7 @@ def _arc(op: ArcOp) -> str:
 
 
 def _dot(op: ArcOp) -> bool:
-    """Whether both ends are as good as one, and the arc is less than half a turn."""
+    """Return whether the ends of an arc practically coincide and the arc is shorter than half a circle."""
     if math.hypot(op.x - op.x0, op.z - op.z0) >= _DOT:
         return False
     turned = (op.z0 - op.cz) * (op.x - op.cx) - (op.x0 - op.cx) * (op.z - op.cz)  # sign as from Z+ to X+
@@ -190,13 +196,15 @@ def _dot(op: ArcOp) -> bool:
 
 
 def _centre(op: ArcOp) -> str:
-    """From the start, and a radius in G7 too."""
+    """Return the I and K words of an arc, relative to its start; I is a radius in G7 too."""
     return "" if _dot(op) else f"I{number(op.cx - op.x0)}K{number(op.cz - op.z0)}"
 
 
 def _pitch(op: ThreadOp) -> float:
-    """Along the way, as its K counts (``stepper.c`` compares angle times programmed rate with millimetres of
-    the block): a tapered thread goes further than its lead.
+    """Return the K word of a thread, which the controller measures along the path.
+
+    ``stepper.c`` compares the spindle angle times K with the length of the block, so a tapered thread needs
+    more than its lead.
     """
     along = abs(op.z - op.z0)
     return op.lead * math.hypot(op.x - op.x0, along) / along if along else op.lead

@@ -1,4 +1,4 @@
-"""What the driver must know of the machine: filled by the app from the machine file, frozen."""
+"""Configuration of the grblHAL driver, which the app fills from the machine file."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from drivers.grblhal.grblhal_table import GrblhalTable
 
 @dataclass(frozen=True, slots=True)
 class GrblAxis:
-    """One axis of the machine file; mm and seconds. ``wired``: the controller has it.
+    """One axis of the machine file, in mm and seconds; ``wired`` is True if the controller has the axis.
 
-    ``here``: homing takes where the axis stands for this many mm from home, and nothing moves; None: the
-    controller looks for its switch.
+    ``here``: homing sets the present position to this value in mm without motion. None: the controller homes
+    on a switch.
     """
 
     name: str
@@ -26,20 +26,23 @@ class GrblAxis:
 
 @dataclass(frozen=True, slots=True)
 class GrblOutput:
-    """Where an output is: ``flood``, ``mist`` or ``out.N``; its safe state, None to keep what it is."""
+    """Terminal of an output, which is ``flood``, ``mist`` or ``out.N``, and its safe state.
+
+    None as the safe state leaves the output unchanged.
+    """
 
     terminal: str
     safe: bool | None
 
 
-ESTOP, HARDWARE = "estop", "hardware"  # an E-stop that cuts the power by itself, and nobody tells
+ESTOP, HARDWARE = "estop", "hardware"  # Terminal of an E-stop that only cuts the power and is not detected.
 
 
 @dataclass(frozen=True, slots=True)
 class GrblInput:
-    """Where an input is: ``pn.E`` is the letter E of the status report's pins.
+    """Terminal of an input; ``pn.E`` is the letter E of the pins in a status report.
 
-    ``hardware``, of the E-stop alone: the controller has no input for it.
+    ``hardware``, for the E-stop only, means that the controller has no input for it.
     """
 
     terminal: str
@@ -48,9 +51,10 @@ class GrblInput:
 
 @dataclass(frozen=True, slots=True)
 class GrblConfig:
-    """The controller and what hangs on it.
+    """Configuration of the controller with its axes, spindle and terminals.
 
-    ``own_spindle``: the controller turns it; else an inverter does, and the controller at most measures it.
+    ``own_spindle`` is True if the controller drives the spindle. Otherwise an inverter drives the spindle,
+    and the controller may only measure it.
     """
 
     table: GrblhalTable

@@ -1,6 +1,6 @@
-"""The conversation with one controller: lines out, questions for reports, and a watch for silence.
+"""Communication with one grblHAL controller: lines, report requests and timeouts.
 
-``pump`` is called by whoever looks at the machine, at least once a tick of the executor; nothing waits.
+``pump`` must be called at least once per tick of the executor and never waits.
 """
 
 from __future__ import annotations
@@ -18,86 +18,92 @@ from drivers.grblhal.grblhal_reported import ReportedState
 from drivers.grblhal.grblhal_wire import Ask, Runner, Script, Stream, Wire, WireLostError
 from drivers.waiting import Opening
 
-_LINE = 1024  # bytes; the controller sends no longer line
-_RUNNING, _RESTING, _ASKING = 0.1, 0.2, 0.05  # s between two questions for a report
-_SILENT = 1.0  # s with a report owed in which nothing is heard
-_ASKED_AGAIN = 0.5  # s, where a question may have been lost
-_INDEX = 8.0  # s in which a thread may wait for its index: no report, no answer
-_UNANSWERED = 2.0  # s for the answer to a line while the controller does nothing
-_GARBAGE, _WITHIN = 3, 10.0  # unknown lines within s, while nothing is under way
+_LINE = 1024  # Bytes; the controller sends no longer line.
+_RUNNING, _RESTING, _ASKING = 0.1, 0.2, 0.05  # Seconds between two report requests.
+_SILENT = 1.0  # Seconds without a requested report.
+_ASKED_AGAIN = 0.5  # Seconds after which a lost request is repeated.
+_INDEX = 8.0  # Seconds that a thread may wait for its index, without reports or replies.
+_UNANSWERED = 2.0  # Seconds for the reply to a line while the controller is idle.
+_GARBAGE, _WITHIN = 3, 10.0  # Invalid lines within this number of seconds while nothing moves.
 _SETTING = re.compile(r"\$\d+=.*")
 _ANSWER = re.compile(r"error:(\d+)")
 _ALARM = re.compile(r"ALARM:(\d+)")
-_IDLERS = frozenset(("Check", "Sleep", "Tool"))  # states in which it runs no program of ours
-_HURRIED = 0.02  # s, while a tool is touched off
-_COALESCED = 0.5  # s; two questions so far apart are never answered by one report
-_LISTENING = 0.1  # s; of a longer pause of this computer no more counts as the controller's silence
+_IDLERS = frozenset(("Check", "Sleep", "Tool"))  # States in which the controller cannot run a program.
+_HURRIED = 0.02  # Seconds, while a tool is touched off.
+_COALESCED = 0.5  # Seconds; requests that are further apart never share one report.
+_LISTENING = 0.1  # Seconds; a longer pause of this computer does not count as silence of the controller.
 
 
 class Controller(ReportedState):
-    """One wire, what is asked of its other end, and what that has told."""
+    """Connection to one controller, with the pending lines and the reported state."""
 
     def __init__(self, config: GrblConfig, wire: Wire, clock: Clock) -> None:
         super().__init__(config, clock)
         self.stream = Stream(self._write)
-        self.banners = 0  # how many resets have been told
+        self.banners = 0  # Number of reported resets.
         self.fault: Fault | str = ""
-        self.lost = False  # the wire is gone, and nothing is said any more
-        self.mute = True  # nothing is heard: what has been told is of before, not of now
+        self.lost = False  # The connection is lost.
+        self.mute = True  # The controller is silent, so the reported state is old.
         self.alarm = 0
-        self.trusted = True  # the position
-        self.ready = False  # modes verified, nothing wrong
-        self.index_wait = False  # a thread pass is under way: no report may come for seconds
+        self.trusted = True  # The position is reliable.
+        self.ready = False  # The modes are verified, without a fault.
+        self.index_wait = False  # A thread pass is running, so reports may be missing for seconds.
         self.on_report: Callable[[Report], None] = lambda _: None
         self.on_void: Callable[[], None] = lambda: None
-        self.settled: Callable[[], bool] = lambda: True  # all that was handed over is known to be done
+        self.settled: Callable[[], bool] = lambda: True  # All submitted blocks are known to be complete.
         self.runner = Runner()
-        self.expected = False  # a reset of our own
-        self.doubtful = False  # something damaged has been heard: look at all of it
-        self.owed_since: float | None = None  # since when a report is owed, on the clock of ``listened``
+        self.expected = False  # A reset by the driver is expected.
+        self.doubtful = False  # An invalid line was received, so a full report is needed.
+        # Time since which a report is due, on the clock of ``listened``.
+        self.owed_since: float | None = None
         self._looked_at = clock.now()
-        self.listened = 0.0  # s in which somebody has listened: silence is told by these
+        self.listened = 0.0  # Seconds during which the driver was reading; the base of all timeouts.
         self.answered_at = 0.0
         self._garbage: deque[float] = deque()
         self._wire = wire
         self._inbox = b""
-        self._next_question = self._questioned_at = 0.0  # the latter by ``listened``
-        self.hurry_until = 0.0  # somebody wants to know as often as it may be asked
-        self._leapt: tuple[Report, str] | None = None  # a report that nothing has confirmed, and its line
+        self._next_question = self._questioned_at = 0.0  # The second time is on the clock of ``listened``.
+        self.hurry_until = 0.0  # End of the time with the shortest request interval.
+        # An implausible report that is not yet confirmed, and its line.
+        self._leapt: tuple[Report, str] | None = None
         self._sees_overrides = self._halted = self._asks_modes = False
-        self._opening: Opening[Wire] | None = None  # of a wire that was lost
-        self._then: Callable[[], Script] | None = None  # once it is open
-        self.modes = ""  # as it has told them to a real-time question
-        self.restarted = False  # while nothing was heard of it: what it only counts is not where it stands
+        self._opening: Opening[Wire] | None = None  # Opening of a lost connection.
+        self._then: Callable[[], Script] | None = None  # Script to run after opening.
+        self.modes = ""  # Modes as reported after a real-time request.
+        # The controller restarted during the silence, so counted positions are invalid.
+        self.restarted = False
         self.found_on: tuple[float, str] | None = (
-            None  # s unheard, and what was still on and was switched off
+            None  # Seconds of silence, and the accessories that were on and have been switched off.
         )
 
     def send(self, line: str, ticket: int = 0) -> Ask:
-        """A line for the controller; its answer comes with later pumps."""
+        """Queue a line for the controller and return its entry, which later calls of ``pump`` complete."""
         return self.stream.send(line, self.listened, ticket)
 
     def run(self, script: Script, doing: str = "") -> None:
-        """Begin a script; one that is under way is given up."""
+        """Start a script; a script that is running is canceled."""
         self.ready, self.expected = False, False
         self.runner.begin(script, doing, self.listened)
         self._advance()
 
     @property
     def doing(self) -> str:
-        """What the present script is for."""
+        """The purpose of the present script."""
         return self.runner.doing
 
     def expect_reset(self) -> None:
-        """The next banner is that of a reset of our own."""
+        """Declare that the next banner results from a reset by the driver."""
         self.expected = True
 
     def see_overrides(self, on: bool) -> None:
-        """Ask plainly: a full report leaves the overrides out when it carries the offsets, as it does."""
+        """Select plain reports that contain the overrides.
+
+        A full report omits the overrides when it contains the offsets, which is always the case.
+        """
         self._sees_overrides = on
 
     def question(self, *, full: bool = False) -> None:
-        """Ask for a status report; a full one takes no turn of a plain one that is wanted."""
+        """Request a status report; a full one does not delay a plain one that is needed for the overrides."""
         self.realtime(grblhal_codes.FULL if full else grblhal_codes.STATUS)
         now = self.clock.now()
         while self.asked and now - self.asked[0] > _COALESCED and self.asked[0] < self.heard_at:
@@ -109,21 +115,21 @@ class Controller(ReportedState):
             self._next_question = now + self._interval()
 
     def question_modes(self) -> None:
-        """Ask for the parser's state by a byte that passes every buffer; ``modes`` has it once it is told."""
+        """Request the parser state with a real-time byte; ``modes`` receives the reply."""
         self.modes, self._asks_modes = "", True
         self.realtime(grblhal_codes.TELL_MODES)
 
     def reconnect(self, opening: Opening[Wire], script: Callable[[], Script]) -> None:
-        """Begin to open the wire anew, and then the script; why that fails becomes the fault."""
+        """Start to open the connection again, then run a script; a failure becomes the fault."""
         self.fault, self.ready = "", False
         self._opening, self._then = opening, script
 
     def close(self) -> None:
-        """Let the wire go."""
+        """Close the connection."""
         self._wire.close()
 
     def pump(self) -> None:
-        """Read, go on, watch. Never waits, never raises."""
+        """Read, continue the script, send and check timeouts, without waiting or raising an error."""
         if self._opening is not None:
             self._reopen(self._opening)
         if self.lost:
@@ -139,25 +145,26 @@ class Controller(ReportedState):
             self._gone(error)
 
     def halt(self) -> None:
-        """From any thread, when nobody pumps any more: hold or end the jog; asked again, reset at rest.
+        """Stop the motion from any thread if ``pump`` has stopped being called.
 
-        Bytes that bypass every buffer, straight to the wire: a reset ends spindle and coolant.
+        The first call sends a jog cancel and a feed hold. The next call resets the controller, which also
+        stops spindle and coolant. The bytes bypass all buffers.
         """
         self._wire.write(
             bytes([grblhal_codes.RESET] if self._halted else [grblhal_codes.JOG_CANCEL, grblhal_codes.HOLD])
         )
         self._halted = True
 
-    # --- what it is in -------------------------------------------------------------------------------
+    # --- state ---------------------------------------------------------------------------------------
 
     @property
     def busy(self) -> bool:
-        """Whether a script is under way."""
+        """Whether a script is running."""
         return self.runner.busy
 
     @property
     def hindrance(self) -> str:
-        """Why nothing may be begun now; empty when it may."""
+        """The reason why nothing can be started now, or an empty text."""
         if self.fault:
             return self.fault
         if self.alarm == grblhal_codes.HOMING_REQUIRED and not self.busy:
@@ -169,13 +176,13 @@ class Controller(ReportedState):
         return ""
 
     def realtime(self, *codes_: int) -> None:
-        """Bytes that bypass every buffer."""
+        """Send real-time bytes, which bypass all buffers."""
         self._write(bytes(codes_))
 
     def fail(self, why: str, code: FaultCode, **values: object) -> None:
-        """Something is wrong: no more lines, what moves comes to rest, and the operator has to clear it.
+        """Set the fault, discard waiting lines and stop the motion; the operator must clear the fault.
 
-        A jog knows no feed hold, and everything else no jog cancel.
+        A jog is canceled, and any other motion is stopped by a feed hold.
         """
         if not self.fault:
             self.fault = Fault(why, code, **values)
@@ -185,13 +192,13 @@ class Controller(ReportedState):
             self.realtime(grblhal_codes.JOG_CANCEL if self.report.state == "Jog" else grblhal_codes.HOLD)
 
     def void(self) -> None:
-        """Nothing that was handed over counts any more."""
+        """Discard all pending lines and tickets."""
         self.stream.void()
         self.index_wait = False
         self.on_void()
 
     def hear(self, line: str) -> None:
-        """One whole line. What begins with ``[`` and is not known is somebody else's."""
+        """Handle one complete line; an unknown line that begins with ``[`` is passed on as a message."""
         if line.startswith("<"):
             self._reported(read_report(line), line)
         elif line == "ok" or _ANSWER.fullmatch(line):
@@ -208,7 +215,7 @@ class Controller(ReportedState):
             self.damaged(line)
 
     def alarmed(self, number: int) -> None:
-        """The controller has locked itself."""
+        """Handle an alarm, which locks the controller."""
         self.alarm = number
         lost = number in grblhal_codes.LOST or (number in grblhal_codes.TORN and self._may_move())
         self.trusted = self.trusted and not lost
@@ -218,12 +225,15 @@ class Controller(ReportedState):
         self.ready = False
 
     def _may_move(self) -> bool:
-        """Whether a slide may have been moving when the alarm came."""
+        """Return whether an axis may have been moving when the alarm occurred."""
         last = self._before_alarm
         return last is not None and (last.moves or (last.state == "Idle" and not self.settled()))
 
     def damaged(self, line: str) -> None:
-        """A line that means nothing may have been an answer: counters are never set right by guessing."""
+        """Handle a line that is not valid, which may have been a reply.
+
+        The driver never guesses which line was acknowledged. It sets a fault if a reply may be missing.
+        """
         now = self.clock.now()
         self._garbage.append(now)
         while self._garbage[0] < now - _WITHIN:
@@ -239,7 +249,7 @@ class Controller(ReportedState):
             )
             self.doubtful = True
 
-    # --- lines that have come ------------------------------------------------------------------------
+    # --- received lines ------------------------------------------------------------------------------
 
     def _told(self, line: str) -> None:
         if self._asks_modes and line.startswith("[GC:"):
@@ -260,9 +270,9 @@ class Controller(ReportedState):
         if ask is None:
             self.damaged("ok" if not error else f"error:{error}")
         elif error == grblhal_codes.ERROR_LOCKED and ask.line.startswith("M66"):
-            return  # a question about an input: the next report says what has locked it
+            return  # A request for an input; the next report shows the reason for the lock.
         elif error and first and not self.busy:
-            # Sticky: what is behind it is answered with the same error and not executed.
+            # The error is sticky: later lines get the same error and are not executed.
             self.fail(grblhal_codes.error_text(error, ask.line), "controller-refuses")
 
     def _restarted(self) -> None:
@@ -279,13 +289,14 @@ class Controller(ReportedState):
         if not (self.busy or not self.ready or self.plausible(report)):
             if self._leapt is None:
                 self._leapt = report, line
-                self.question()  # the next one tells whether it stands there
+                self.question()  # The next report shows whether the position is correct.
                 return
             if not self._confirms(report, self._leapt[0]):
                 self.damaged(line)
                 return
         elif self._leapt is not None and not self._confirms(report, self._leapt[0]):
-            self.damaged(self._leapt[1])  # this one goes on from where it was before: that one was garbled
+            # This report continues from the earlier position, so the last one was corrupted.
+            self.damaged(self._leapt[1])
         self._leapt = None
         self.keep(report)
         if report.diameter and self.ready:
@@ -298,7 +309,7 @@ class Controller(ReportedState):
         self.on_report(report)
 
     def _mind(self, report: Report) -> None:
-        """States that say that something has happened, however that was missed."""
+        """Handle a state in a report that shows an event, even if its message was missed."""
         if report.state != "Alarm":
             self.alarm = 0
         if self.busy:
@@ -321,7 +332,7 @@ class Controller(ReportedState):
                 state=report.state,
             )
 
-    # --- the wire, and what is watched ---------------------------------------------------------------
+    # --- connection and timeouts ---------------------------------------------------------------------
 
     def _write(self, data: bytes) -> None:
         if self.lost or not data:
@@ -332,7 +343,7 @@ class Controller(ReportedState):
             self._gone(error)
 
     def _reopen(self, opening: Opening[Wire]) -> None:
-        """What was said or asked on the old wire counts no more, and what was heard is of before."""
+        """Complete the opening of the connection and discard everything that belongs to the old one."""
         try:
             wire = opening.take()
         except DriverError as error:
@@ -375,12 +386,12 @@ class Controller(ReportedState):
             self.hear(line.decode("ascii", "replace").strip("\r"))
 
     def _advance(self) -> None:
-        """Let the script go on; why it fails is the fault."""
+        """Continue the script; the reason for a failure becomes the fault."""
         why = self.runner.go_on(self.listened)
         self.expected = self.expected and self.busy
         if why:
             if self.identity is None:
-                self.fault = ""  # why it is not taken at all comes before its alarms
+                self.fault = ""  # The reason for rejecting the controller has priority over its alarms.
             self.fail(why, code_of(why, "controller-silent"))
 
     def _interval(self) -> float:
@@ -400,13 +411,17 @@ class Controller(ReportedState):
             self.question(full=resting and self.stream.quiet and not self._sees_overrides)
 
     def _may_ask(self) -> bool:
-        """One question at a time: on a slow line each stands before the lines behind it."""
+        """Return whether a report can be requested now.
+
+        Only one request is pending at a time, because each one delays the lines after it.
+        """
         return self.owed_since is None or self.listened - self._questioned_at >= _ASKED_AGAIN
 
     def _watch(self) -> None:
-        """Silence is a fault, but not behind a thread, whose wait for the index answers nothing.
+        """Set a fault if the controller does not respond in time.
 
-        A controller that answers lines works: a question may lie behind these on the wire.
+        The limit is longer while a thread waits for its index. A reply to a line counts as a response,
+        because a report request may be delayed by lines.
         """
         if self.busy:
             return

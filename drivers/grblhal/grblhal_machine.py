@@ -1,4 +1,4 @@
-"""The controller as a machine: connects, and puts the ports together."""
+"""grblHAL controller as a machine: its connection and the ports for the executor."""
 
 from __future__ import annotations
 
@@ -18,15 +18,16 @@ from drivers.grblhal.grblhal_wire import Wire, open_wire
 from drivers.operator_station import PanelStation
 from drivers.waiting import Opening
 
-_ROUND = 0.005  # s between two looks while it connects
+_ROUND = 0.005  # Seconds between two cycles during the connection.
 _CONNECTING = 15.0
 _LEAVING = 4.0
 
 
 class GrblMachine:
-    """Connected and verified when it is made. Raises DriverError.
+    """Connected and verified controller with its ports.
 
-    ``wire`` and ``idle`` are for tests, whose clock does not move by itself.
+    The constructor raises DriverError if the controller does not respond or is not suitable. ``wire`` and
+    ``idle`` are for tests, whose clock does not advance automatically.
     """
 
     def __init__(
@@ -74,7 +75,7 @@ class GrblMachine:
         )
 
     def pump(self) -> None:
-        """One round; never waits."""
+        """Run one cycle of all parts without waiting."""
         self.controller.pump()
         self.blocks.pump()
         self.spindle.pump()
@@ -84,11 +85,17 @@ class GrblMachine:
             self.touch.pump()
 
     def unknown(self) -> frozenset[Unknown]:
-        """A controller that is not heard goes on with what it has, and its spindle turns on."""
+        """Return the states that are unknown because the controller is silent.
+
+        A silent controller may continue its blocks, and its spindle may turn.
+        """
         return ALL_UNKNOWN if self.controller.mute else frozenset()
 
     def tripped(self) -> Trip | None:
-        """What a controller that was not heard had on, and what was switched off once it was heard again."""
+        """Return the functions that were still on after a silence, or None.
+
+        The driver has switched this spindle and these outputs off after the silence.
+        """
         found = self.controller.found_on
         if found is None:
             return None
@@ -98,12 +105,12 @@ class GrblMachine:
         return Trip(self._trips, unheard, bool({"S", "C"} & set(letters)), tuple(on), found=True)
 
     def acknowledge(self, trip: Trip) -> None:
-        """The control knows."""
+        """Clear the trip that the control has handled."""
         if trip.number == self._trips:
             self._trips, self.controller.found_on = self._trips + 1, None
 
     def _reopen(self) -> Opening[Wire]:
-        """The old wire is let go first: a port that somebody has open cannot be opened."""
+        """Start to reopen the connection; the old one is closed first to release the port."""
         close, config = self.controller.close, self.controller.config
 
         def opened() -> Wire:
@@ -113,7 +120,7 @@ class GrblMachine:
         return Opening(opened, at_once=self._wire is not None)
 
     def close(self) -> None:
-        """Nothing is left moving; then the wire goes."""
+        """Stop all motion, then close the connection."""
         self.axes.stop(Stop.RAMP_OFF)
         self._rounds(_LEAVING)
         self.controller.close()
@@ -134,7 +141,7 @@ class GrblMachine:
             self._clock.sleep_until(self._clock.now() + _ROUND)
 
     def _unlike(self) -> list[str]:
-        """Where the controller's own settings are not what the machine file promises."""
+        """Return warnings about controller settings that differ from the machine file."""
         c = self.controller
         told: list[str] = []
         for axis in c.wired:
@@ -169,7 +176,7 @@ class GrblMachine:
         return told
 
     def _homes(self) -> list[str]:
-        """Axes that must look for home on a controller whose homing is off."""
+        """Return a warning about axes that need a home switch although homing is off in the controller."""
         if self.controller.homing:
             return []
         names = [axis.name for axis in self.controller.wired if not axis.absolute and axis.here is None]
@@ -207,7 +214,7 @@ class GrblMachine:
 
 
 def _grouped(lacking: Mapping[str, str], one: str, several: str) -> list[str]:
-    """Return one sentence for all names that have the same reason; a name without a reason is left out."""
+    """Return one sentence for all names with the same reason; a name without a reason is omitted."""
     reasons: dict[str, list[str]] = {}
     for name, reason in lacking.items():
         if reason:

@@ -1,7 +1,7 @@
-"""Feed holds, jog and overrides: what the operator changes about motion.
+"""Feed holds, jogs and overrides of a grblHAL controller.
 
-The controller knows steps of its overrides only. They go out from what it has told, and are read back. A jog
-is a lease: the controller never has more travel than the lease allows, so silence is the stop.
+The controller changes its overrides in steps only. The steps start from the reported value and are verified.
+A jog is a motion lease: the controller never has more travel than the lease permits, so silence stops it.
 """
 
 from __future__ import annotations
@@ -17,17 +17,18 @@ from drivers.grblhal.grblhal_controller import Controller
 from drivers.grblhal.grblhal_report import Report
 from drivers.grblhal.grblhal_wire import Ask
 
-_APART = 0.1  # s between two corrections
-_AGAIN = 2.5  # s without a word of the overrides, which every twentieth plain report carries at least
-_PATIENCE = 7.0  # s: then it does not take them
-LEAST, MOST = 10, 200  # per cent that the controller knows
+_APART = 0.1  # Seconds between two corrections.
+# Seconds without a report of the overrides, which at least every twentieth plain report contains.
+_AGAIN = 2.5
+_PATIENCE = 7.0  # Seconds after which an override counts as rejected.
+LEAST, MOST = 10, 200  # Range of the controller in percent.
 
 
 def steps_to(percent: int, told: int, steps: tuple[int, ...] = grblhal_codes.FEED) -> bytes:
-    """From the ``told`` per cent to ``percent``.
+    """Return the bytes that change an override from the reported percentage to ``percent``.
 
-    By way of 100 % only where that lies in between: the reset acts at once, and slides that creep would leap.
-    So there are never more of them than its queue holds.
+    The path through 100 % is used only if 100 % is in between, because the reset to 100 % is immediate and
+    slow axes would jump. The number of bytes never exceeds the controller's queue.
     """
     reset, *moves = steps
     straight, over = _from(told, percent, moves), bytes([reset]) + _from(100, percent, moves)
@@ -36,7 +37,7 @@ def steps_to(percent: int, told: int, steps: tuple[int, ...] = grblhal_codes.FEE
 
 
 def _from(told: int, percent: int, moves: list[int]) -> bytes:
-    """Coarse steps, then fine ones; the other way round where a coarse one would be cut short at a limit."""
+    """Return coarse steps before fine steps, or fine steps first if a coarse step would exceed a limit."""
     up_10, down_10, up_1, down_1 = moves
     tens, ones = divmod(abs(percent - told), 10)
     tens, ones = (tens + 1, ones - 10) if ones > 5 else (tens, ones)
@@ -48,51 +49,51 @@ def _from(told: int, percent: int, moves: list[int]) -> bytes:
 
 
 def rapid_step(fraction: float) -> int:
-    """Per cent: the greatest of the controller's three that is not faster than asked; 25 is its least."""
+    """Return the largest rapid override of the controller that is not above ``fraction``, at least 25 %."""
     return 100 if fraction >= 1.0 else 50 if fraction >= 0.5 else 25
 
 
 def in_reach(fraction: float) -> int:
-    """Per cent of a fraction, within what the controller knows."""
+    """Return a fraction in percent, limited to the range of the controller."""
     return min(max(round(100 * fraction), LEAST), MOST)
 
 
 class Overrides:
-    """``wanted`` is compared with what the controller reports; differences are sent again."""
+    """Commanded overrides, which are compared with the reported ones and sent again if they differ."""
 
     def __init__(self, write: Callable[[bytes], None], fail: Callable[[str, FaultCode], None]) -> None:
         self._write = write
         self._fail = fail
         self._asked = [100, 100, 100]
         self._sent_at, self._seen = -1.0, 0
-        self._since: float | None = None  # it has not been true, nor come nearer
-        self._last: tuple[int, ...] | None = None  # that was told
-        self.level = False  # a thread: at 100 % whatever is asked, for it would run beside its lead
+        self._since: float | None = None  # Start of the time without a change toward the commanded values.
+        self._last: tuple[int, ...] | None = None  # Last reported values.
+        self.level = False  # A thread is active and requires 100 %.
 
     @property
     def commanded(self) -> list[int]:
-        """Per cent: feed, rapid, spindle."""
+        """The commanded overrides in percent: feed, rapid and spindle."""
         return [100, self._asked[1], 100] if self.level else self._asked
 
     def want(self, feed: float, rapid: float) -> None:
-        """Fractions above 0."""
+        """Set the feed and rapid overrides as fractions above 0."""
         self._asked[:2] = in_reach(feed), rapid_step(rapid)
 
     def want_spindle(self, percent: int) -> None:
-        """Of the speed in its last S word."""
+        """Set the spindle override in percent of the last S word."""
         self._asked[2] = percent
 
     def true_to(self, reported: tuple[int, ...] | None) -> bool:
-        """Whether the controller does what is wanted."""
+        """Return whether the reported overrides equal the commanded ones."""
         return reported is not None and list(reported[:3]) == self.commanded
 
     def correct(self, reported: tuple[int, ...] | None, told: int, now: float) -> None:
-        """Send what differs, from a word of the controller that is younger than what was sent.
+        """Send the steps for differences, based on a report that is newer than the last steps sent.
 
-        ``told`` counts these words. One that does not come is asked for, by sending again.
+        The second argument is the number of override reports. If no report arrives, the steps are sent again.
         """
         if reported is None or self.true_to(reported) or reported != self._last:
-            self._since = None  # what follows the radius is on its way for as long as it does
+            self._since = None  # A spindle that follows the radius changes continuously.
         self._last = reported
         if reported is None or self.true_to(reported):
             return
@@ -121,49 +122,50 @@ class Overrides:
         return data + (steps_to(spindle, reported[2], grblhal_codes.SPINDLE) if len(reported) > 2 else b"")
 
 
-# --- Feed holds: ours, other people's, and the way out of each.
+# --- Feed holds by TurnDesk and at the controller, and their ends.
 
 
-_LATE = 3  # reports that may still tell of before a hold, or of one that has just been ended
+_LATE = 3  # Reports that may still show the state before a hold or before its end.
 
 
 class Holds:
-    """0x82 and 0x81, from report to report."""
+    """Feed holds (0x82) and their ends (0x81), tracked from report to report."""
 
     def __init__(self, controller: Controller) -> None:
         self._c = controller
-        self._asked = False  # and not yet taken back
-        self._ours = False  # the hold that stands is our own
-        self._released = self._again = 0  # reports from which a hold is one again, or has to be said again
+        self._asked = False  # A hold is requested.
+        self._ours = False  # TurnDesk may end the present hold.
+        # Report counts from which a hold counts again or must be sent again.
+        self._released = self._again = 0
 
     @property
     def stands(self) -> bool:
-        """Whether the controller rests in a hold."""
+        """Whether the controller is at rest in a feed hold."""
         c = self._c
         held = c.report is not None and c.report.state == "Hold" and not c.report.sub
         return held and c.reports >= self._released and not c.busy
 
     def begin(self) -> None:
-        """At once."""
+        """Start a feed hold immediately."""
         self._asked = self._ours = True
         self._released = 0
         self._say()
 
     def end(self) -> None:
-        """At once where it rests, or as soon as it does; the operator's word ends any hold."""
+        """End any feed hold as soon as the axes are at rest."""
         self._asked, self._ours = False, True
         self._go_on()
 
     def forget(self) -> None:
-        """What stops for good needs no hold."""
+        """Clear the hold request, because a final stop does not need it."""
         self._asked = self._ours = False
 
     def reported(self, report: Report) -> None:
-        """Look at a report."""
+        """Update the hold from a report."""
         if report.state == "Hold":
             self._go_on()
         elif self._asked and report.state == "Run" and self._c.reports >= self._again:
-            self._say()  # a button at the controller has ended it
+            self._say()  # A button at the controller has ended the hold.
         else:
             self._ours = self._ours and (self._asked or report.state in {"Run", "Jog"})
 
@@ -175,7 +177,10 @@ class Holds:
         self._c.question()
 
     def _go_on(self) -> None:
-        """Out of a hold once it rests and somebody has said so; never out of another's by itself."""
+        """Resume if the axes are at rest and the operator has ended the hold.
+
+        A hold that was started at the controller is never ended automatically.
+        """
         report = self._c.report
         if (
             self._ours
@@ -190,18 +195,18 @@ class Holds:
             self._c.question()
 
 
-# --- Jog as a lease.
+# --- Jog with a motion lease.
 
 
-_LEAST = 0.002  # mm; less is no way
-_ROOM = 0.02  # s; a renewal that is worth less is not sent
+_LEAST = 0.002  # Minimum travel in mm.
+_ROOM = 0.02  # Seconds; a shorter renewal is not sent.
 
 
 class Jogs:
-    """``$J`` lines, one unanswered at a time.
+    """Sender of ``$J`` lines, with one unacknowledged line at a time.
 
-    At ``t`` the way ends where a slide that had moved at full speed since the begin would be a lease later:
-    none can be further than that, so what is left to run is lease · v, and the braking.
+    At time ``t``, the target is the position that an axis at full speed since the start would reach one lease
+    later. The remaining travel is therefore at most lease · v plus the braking distance.
     """
 
     def __init__(self, controller: Controller) -> None:
@@ -209,12 +214,12 @@ class Jogs:
         self.active = False
         self._axis, self._velocity = "", 0.0
         self._from, self._since = 0.0, 0.0
-        self._sent = 0.0  # target of the last line
+        self._sent = 0.0  # Target of the last line.
         self._wanted = 0.0
         self._ask: Ask | None = None
 
     def move(self, axis: str, velocity: float, lease: float, limits: tuple[float, float] | None) -> bool:
-        """Begin or renew; False at the end of the travel."""
+        """Start or renew a jog; return False at the end of the travel."""
         now = self._c.clock.now()
         if not self.active or axis != self._axis or velocity != self._velocity:
             self._begin(axis, velocity, now)
@@ -229,13 +234,13 @@ class Jogs:
         return True
 
     def step(self, axis: str, target: float, speed: float) -> None:
-        """One jog from rest to rest."""
+        """Jog to ``target`` from rest to rest."""
         self._begin(axis, speed, self._c.clock.now())
         self._wanted, self.active = target, True
         self.pump()
 
     def pump(self) -> None:
-        """Send the way that has been added, when the last line has been answered."""
+        """Send the added travel after the last line is acknowledged."""
         if not self.active or (self._ask is not None and not self._ask.done):
             return
         added = abs(self._wanted - self._sent)
@@ -246,12 +251,12 @@ class Jogs:
         self._ask = self._c.send(jog_line(self._axis, target, abs(self._velocity)))
 
     def rested(self) -> None:
-        """The controller says that nothing is left."""
+        """Handle a report that the controller has no motion left."""
         if self._ask is None or self._ask.done:
             self.forget()
 
     def forget(self) -> None:
-        """Nothing is jogged any more."""
+        """End the jog."""
         self.active, self._ask = False, None
 
     def _begin(self, axis: str, velocity: float, now: float) -> None:
@@ -261,7 +266,7 @@ class Jogs:
                 "the controller does not have an axis {axis} to jog", "controller-refuses", axis=axis
             )
         if self.active:
-            # Another speed or direction: from where the way that it has ends.
+            # With another speed or direction, continue from the end of the present travel.
             place = self._sent
         self._axis, self._velocity = axis, velocity
         self._from = self._sent = place

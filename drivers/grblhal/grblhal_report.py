@@ -1,4 +1,4 @@
-"""What a controller tells of itself: status reports, read strictly, and its identity by ``$I``."""
+"""Parser of grblHAL status reports, and the identity of a controller by ``$I``."""
 
 from __future__ import annotations
 
@@ -14,41 +14,38 @@ _STATES = frozenset(("Idle", "Run", "Hold", "Jog", "Home", "Alarm", "Door", "Che
 
 
 class Report(NamedTuple):
-    """One status report; None for what it does not carry. mm; X as the controller counts it."""
+    """Status report with None for missing fields; positions in mm, X as the controller counts it."""
 
     state: str
     sub: int | None = None
     position: tuple[float, ...] | None = None
-    free: int | None = None  # blocks of the planner
+    free: int | None = None  # Free blocks of the planner.
     line: int | None = None
-    speeds: tuple[float, ...] | None = (
-        None  # feed, rpm as commanded, rpm as measured where there is an encoder
-    )
+    speeds: tuple[float, ...] | None = None  # Feed, commanded rpm, and measured rpm if there is an encoder.
     pins: str = ""
     offset: tuple[float, ...] | None = None
-    overrides: tuple[int, ...] | None = None  # per cent: feed, rapid, spindle
+    overrides: tuple[int, ...] | None = None  # Percent: feed, rapid, spindle.
     diameter: bool | None = None
     homed: tuple[int, ...] | None = None
-    input: int | None = None  # what M66 has read: 1 on, 0 off, -1 nothing
+    input: int | None = None  # Result of M66: 1 on, 0 off, -1 none.
     full: bool = False
-    accessories: str | None = None  # what is on: S C spindle, F flood, M mist; left out where nothing is
+    # Accessories that are on: S C spindle, F flood, M mist; omitted if all are off.
+    accessories: str | None = None
 
     @property
     def moves(self) -> bool:
-        """Whether slides may be moving."""
-        resting = {"Hold": (0,), "Door": (0, 1)}.get(
-            self.state
-        )  # a door that stands open, or is closed again
+        """Whether axes may be moving."""
+        resting = {"Hold": (0,), "Door": (0, 1)}.get(self.state)  # The door is open, or closed again.
         return self.state in {"Run", "Jog", "Home"} if resting is None else self.sub not in resting
 
     @property
     def measured(self) -> float | None:
-        """Spindle speed by an encoder, rpm."""
+        """The spindle speed measured by an encoder in rpm, or None."""
         return self.speeds[2] if self.speeds is not None and len(self.speeds) > 2 else None
 
 
 def read_report(line: str) -> Report | None:
-    """The report in a line, None when the line is damaged."""
+    """Parse a line and return its report, or None if the line is damaged."""
     if not (line.startswith("<") and line.endswith(">")):
         return None
     head, *fields = line[1:-1].split("|")
@@ -100,7 +97,7 @@ def _whole(name: str, index: int | None = None) -> Callable[[str], Mapping[str, 
 
 _READERS: dict[str, Callable[[str], Mapping[str, object] | None]] = {
     "MPos": _floats("position"),
-    "WPos": lambda text: {"work": True} if _numbers(text) else None,  # until $10 is as it must be
+    "WPos": lambda text: {"work": True} if _numbers(text) else None,  # Until $10 has the required value.
     "FS": _floats("speeds"),
     "WCO": _floats("offset"),
     "Bf": _whole("free", 0),
@@ -114,18 +111,21 @@ _READERS: dict[str, Callable[[str], Mapping[str, object] | None]] = {
     "D": lambda text: {"diameter": text == "1"} if text in {"0", "1"} else None,
 }
 
-# --- Who answers at the other end: ``$I``. Nothing is assumed that is not said there.
+# --- Identity of the controller by ``$I``, without assumptions about missing fields.
 
 
 _LEAST_BUFFER = 256
 # Control inputs: reset, feed hold, cycle start, door, block delete, optional stop, E-stop, probe lost, motor
-# fault, motor warning. What else stands among the pins (limits by axis, probe) is not in [SIGNALS:…].
+# fault, motor warning. Other pins (limits by axis, probe) are not in [SIGNALS:…].
 _AXES = frozenset("XYZABCUVW")
 _CONTROL_INPUTS = "RHSDLTEOFMQ"
 
 
 class Identity(NamedTuple):
-    """``blocks`` of the planner, ``buffer`` bytes for lines, axis letters in the order of the reports."""
+    """Identity of a controller, with the axis letters in the order of the reports.
+
+    ``blocks`` is the size of the planner and ``buffer`` the number of bytes for lines.
+    """
 
     version: str
     blocks: int
@@ -134,12 +134,14 @@ class Identity(NamedTuple):
     options: frozenset[str]
     inputs: int  # auxiliary digital inputs
     outputs: int
-    letters: str = ""  # of its build: V variable spindle, M mist
-    signals: str | None = None  # control inputs that its board has, by their letters in a report's pins
+    letters: str = ""  # Build options: V variable spindle, M mist.
+    signals: str | None = None  # Control inputs of the board, by their letters in the pins of a report.
 
     def has_pin(self, letter: str) -> bool:
-        """Whether its board has this input, as far as it tells: control inputs by [SIGNALS:…], which firmware
-        from before 2024 leaves out, limit switches by its axes.
+        """Return whether the board has an input with this letter, as far as it is reported.
+
+        Control inputs are in [SIGNALS:…], which firmware before 2024 omits. Limit switches follow from the
+        axes.
         """
         if letter in _AXES:
             return letter in self.axes
@@ -147,12 +149,15 @@ class Identity(NamedTuple):
 
     @property
     def lathe(self) -> bool:
-        """Whether it says that it is in lathe mode."""
+        """Whether the controller reports lathe mode."""
         return any(option.startswith("LATHE") for option in self.options)
 
 
 def read_identity(lines: Iterable[str]) -> Identity:
-    """From the lines that ``$I`` is answered with. Raises DriverError for what is no grblHAL."""
+    """Parse the reply to ``$I``.
+
+    Raises DriverError if the device is not grblHAL or its buffer is too small.
+    """
     told: dict[str, str] = {}
     for line in lines:
         found = re.fullmatch(r"\[([A-Z ]+):(.*)\]", line)

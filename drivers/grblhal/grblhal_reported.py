@@ -1,9 +1,9 @@
-"""State of a controller as its reports and settings have told it, and how long it may wait with an answer.
+"""Reported state and settings of a grblHAL controller, and the longest wait before an acknowledgment.
 
-``spindle_control.c`` and ``coolant_control.c`` of grblHAL: M3, M4 and M5 wait for the measured speed where
-the at-speed tolerance ($340) is set, at most for the delay of $394 (on) or $539 (off), or a minute where that
-is 0; then comes ALARM:14. Without a tolerance they wait for the delay. M7 and M8 wait for $673. Meanwhile the
-state is Idle, status reports are answered, and no later line is read.
+In grblHAL's ``spindle_control.c``, M3, M4 and M5 wait for the measured speed if the at-speed tolerance ($340)
+is set. The limit is the delay of $394 (on) or $539 (off), or one minute if the delay is 0; then ALARM:14
+follows. Without a tolerance, they wait for the delay. In ``coolant_control.c``, M7 and M8 wait for $673.
+During a wait, the state is Idle, status reports are sent, and no later line is read.
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ from core.ports import Clock
 from drivers.grblhal.grblhal_config import GrblAxis, GrblConfig
 from drivers.grblhal.grblhal_report import Identity, Report
 
-_CONFIRMED = 0.25  # s at full speed, between a report that leaps and the one that confirms it
-_LEAP = 1.0  # mm beyond what the slides can do between two reports
-_VARIABLE = "V"  # among the letters of its build
-_HOMING, _HOMED = 22, 1  # setting, and the bit of it that switches homing on
+_CONFIRMED = 0.25  # Seconds at full speed between an implausible report and the report that confirms it.
+_LEAP = 1.0  # Tolerance in mm for the travel between two reports.
+_VARIABLE = "V"  # A letter of the build options.
+_HOMING, _HOMED = 22, 1  # Number of the setting, and its bit that enables homing.
 
 TOLERANCE, SPINDLE_ON, SPINDLE_OFF, COOLANT_ON = 340, 394, 539, 673
-OLD_SPINDLE_ON = 392  # which firmware from before 2025 uses in the place of $394
-AT_MOST = 60.0  # s; the firmware's limit where no delay is set
+OLD_SPINDLE_ON = 392  # Firmware before 2025 uses this setting instead of $394.
+AT_MOST = 60.0  # Seconds; the firmware's limit without a delay.
 _SPINDLE = {3: SPINDLE_ON, 4: SPINDLE_ON, 5: SPINDLE_OFF}
 _COOLANT = frozenset((7, 8))
 _FUNCTION = re.compile(r"M0*(\d+)")
@@ -49,36 +49,37 @@ def _value(settings: Mapping[int, str], number: int) -> float:
 
 
 class ReportedState:
-    """What a controller has told. Reports carry only a part each: the rest is kept from one to the next."""
+    """State of a controller, assembled from reports that each contain only a part of it."""
 
     def __init__(self, config: GrblConfig, clock: Clock) -> None:
         self.config = config
         self.clock = clock
         self.identity: Identity | None = None
-        self.settings: dict[int, str] = {}  # as read at the connection
-        self.report: Report | None = None  # the last one
-        self._before_alarm: Report | None = None  # the last one of a controller without an alarm
-        self.reports = self.fulls = 0  # how many have come
-        self.heard_at = clock.now()  # when the last one was read
-        self._made_after = clock.now()  # and the earliest at which it can have been made
-        self.position: dict[str, float] = {}  # mm by axis letter, X a radius, from home
-        self.origin: dict[str, float] = {}  # where home lies in the controller's own frame
-        self.homed: tuple[int, ...] | None = None  # as it reports it: all axes, and a bit for each
+        self.settings: dict[int, str] = {}  # As read when connecting.
+        self.report: Report | None = None  # Last report.
+        self._before_alarm: Report | None = None  # Last report without an alarm.
+        self.reports = self.fulls = 0  # Number of reports.
+        self.heard_at = clock.now()  # Time when the last report was read.
+        self._made_after = clock.now()  # Earliest time when the last report can have been created.
+        self.position: dict[str, float] = {}  # Position from home in mm by axis letter, X as a radius.
+        self.origin: dict[str, float] = {}  # Home position in the controller's coordinates.
+        self.homed: tuple[int, ...] | None = None  # As reported: all axes, and one bit per axis.
         self.offset: tuple[float, ...] = ()
         self.overrides: tuple[int, ...] | None = None
-        self.overrides_told = 0  # how often they have been in a report
-        self.accessories: tuple[float, str] | None = None  # when they were told, and what is on
+        self.overrides_told = 0  # Number of reports with overrides.
+        # Time of the report, and the accessories that are on.
+        self.accessories: tuple[float, str] | None = None
         self.diameter: bool | None = None
-        self.most_free = 0  # blocks of its planner when that is empty
-        self.asked: deque[float] = deque()  # questions for a report that are open
+        self.most_free = 0  # Free blocks of the empty planner.
+        self.asked: deque[float] = deque()  # Times of the pending report requests.
 
     @property
     def state(self) -> str:
-        """As the last report says it; nothing before the first."""
+        """The state in the last report, or an empty text before the first report."""
         return self.report.state if self.report is not None else ""
 
     def keep(self, report: Report) -> None:
-        """Take over what a report carries."""
+        """Store the contents of a report."""
         self.reports, self.fulls = self.reports + 1, self.fulls + report.full
         if report.diameter is not None:
             self.diameter = report.diameter
@@ -86,7 +87,7 @@ class ReportedState:
         if report.overrides is not None:
             self.overrides, self.overrides_told = report.overrides, self.overrides_told + 1
         if report.accessories is not None or report.overrides is not None:
-            self.accessories = self.clock.now(), report.accessories or ""  # left out where nothing is on
+            self.accessories = self.clock.now(), report.accessories or ""  # Omitted if all are off.
         self.homed = report.homed if report.homed is not None else self.homed
         if report.state == "Idle" and report.free is not None:
             self.most_free = max(self.most_free, report.free)
@@ -97,9 +98,9 @@ class ReportedState:
         self._before_alarm = self._before_alarm if report.state == "Alarm" else report
 
     def plausible(self, report: Report) -> bool:
-        """No slide leaps further than it can have gone since the last report was made.
+        """Return whether no axis has moved further than possible since the last report was created.
 
-        That may be long before it was read: a computer that looks away finds an old report on the wire.
+        A report may be created long before it is read, because this computer may be delayed.
         """
         if self.report is None or self.diameter:
             return True
@@ -115,43 +116,43 @@ class ReportedState:
 
     @property
     def letters(self) -> str:
-        """The controller's axes in the order of its reports and settings."""
+        """The axis letters in the order of the controller's reports and settings."""
         return self.identity.axes if self.identity is not None else "XYZ"
 
     def has_pin(self, letter: str) -> bool:
-        """Whether its board has an input of this letter, as far as it tells."""
+        """Return whether the board has an input with this letter, as far as it is reported."""
         return self.identity is None or self.identity.has_pin(letter)
 
     @property
     def varies(self) -> bool:
-        """Whether its firmware has a spindle of variable speed."""
+        """Whether the firmware supports a spindle with variable speed."""
         return self.identity is not None and _VARIABLE in self.identity.letters
 
     @property
     def wired(self) -> tuple[GrblAxis, ...]:
-        """The machine file's axes that the controller moves."""
+        """The axes of the machine file that the controller moves."""
         return tuple(axis for axis in self.config.axes if axis.wired)
 
     def figure(self, first: int, letter: str) -> float:
-        """A setting that there is once for each axis, from ``first`` on; 0 where it is not told."""
+        """Return a setting of an axis from the group that starts at ``first``, or 0 if it is not reported."""
         index = self.letters.find(letter)
         return float(self.settings.get(first + index, "0")) if index >= 0 else 0.0
 
     def speed_of(self, letter: str) -> float:
-        """The controller's own greatest speed of an axis, mm/s; 0 where it does not tell."""
+        """Return the controller's maximum speed of an axis in mm/s, or 0 if it is not reported."""
         return self.figure(110, letter) / 60.0
 
     def wait_of(self, line: str) -> float:
-        """Return the seconds that the controller may wait for spindle or coolant in a line."""
+        """Return the seconds that the controller may wait for the spindle or coolant in a line."""
         return longest_wait(line, self.settings)
 
     @property
     def homing(self) -> int:
-        """How the controller homes, its setting $22: bit 0 at all, bit 1 one axis alone."""
+        """The homing setting $22: bit 0 enables homing, bit 1 permits homing of single axes."""
         return int(float(self.settings.get(_HOMING, "0")))
 
     def is_homed(self, letter: str) -> bool | None:
-        """Whether the controller itself has homed an axis; None where homing is off in it."""
+        """Return whether the controller has homed an axis, or None if its homing is off."""
         index = self.letters.find(letter)
         if not self.homing & _HOMED or self.homed is None or index < 0:
             return None
@@ -164,8 +165,9 @@ class ReportedState:
         return {letter: place - self.origin.get(letter, 0.0) for letter, place in raw}
 
     def _confirms(self, report: Report, leapt: Report) -> bool:
-        """Whether this one goes on from where that one leapt to: a controller that was late itself makes up
-        for it, and stands where it says.
+        """Return whether ``report`` continues from the implausible position of ``leapt``.
+
+        A delayed controller catches up, so that its position is correct.
         """
         before, now = self._places(leapt), self._places(report)
         near = ((axis, now.get(axis.name), before.get(axis.name)) for axis in self.config.axes)

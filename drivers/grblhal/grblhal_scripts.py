@@ -1,6 +1,6 @@
-"""What takes several questions: to connect, to verify the modes, to stop, to clear an alarm, to home.
+"""Scripts for tasks with several requests: connect, verify modes, stop, clear an alarm and home.
 
-Each is a generator that the controller's pump carries on; what goes wrong is raised as ScriptError.
+Each script is a generator that ``Controller.pump`` advances. A script raises ScriptError if it fails.
 """
 
 from __future__ import annotations
@@ -15,24 +15,28 @@ from drivers.grblhal.grblhal_controller import Controller
 from drivers.grblhal.grblhal_report import Identity, read_identity
 from drivers.grblhal.grblhal_wire import Ask, Script, ScriptError, Step
 
-# --- The pieces that scripts are made of: one line and its answer, a full report, the modes.
+# --- Parts of scripts: one line with its reply, a full report, the modes.
 
 
-ANSWER = 2.0  # s for a line
+ANSWER = 2.0  # Seconds for a line.
 MISSED = "the controller does not send status reports"
 _TRIES = 3
 
 
 def full_report(c: Controller, within: float = ANSWER) -> Script:
-    """A report with everything in it."""
+    """Request a full report and wait for it."""
     before = c.fulls
     c.question(full=True)
     yield lambda: c.fulls > before, within, MISSED
 
 
 def fresh(c: Controller) -> Script:
-    """An empty line ends half a line and a standing error; from ``$G`` on answers count again."""
-    slow = max((c.wait_of(ask.line) for ask in c.stream.unanswered), default=0.0)  # read before ``$G``
+    """Synchronize with the controller: clear a partial line and a sticky error, and wait for ``$G``.
+
+    Replies are counted again from ``$G`` on.
+    """
+    # The controller reads these lines before ``$G``.
+    slow = max((c.wait_of(ask.line) for ask in c.stream.unanswered), default=0.0)
     for _ in range(_TRIES):
         c.stream.void()
         c.realtime(ord("\n"))
@@ -48,12 +52,15 @@ def _by(c: Controller, ask: Ask, by: float) -> Callable[[], bool]:
 
 
 def _by_time(c: Controller, ready: Callable[[], bool], by: float) -> Callable[[], bool]:
-    """Ready, or the time is over: what is not told then goes on without."""
+    """Return a function that is true when ``ready`` is true or the time has passed."""
     return lambda: ready() or c.clock.now() >= by
 
 
 def asked(c: Controller, line: str, within: float = ANSWER) -> Generator[Step, None, list[str]]:
-    """Send a line and wait for its ``ok``; what was told before it."""
+    """Send a line, wait for its ``ok`` and return the lines received before it.
+
+    Raises ScriptError if the controller rejects the line.
+    """
     ask = c.send(line)
     yield (
         lambda: ask.done,
@@ -66,7 +73,7 @@ def asked(c: Controller, line: str, within: float = ANSWER) -> Generator[Step, N
 
 
 def modes(c: Controller) -> Script:
-    """Send the modes, end what another host has left behind, and read all of it back."""
+    """Send the modes, end foreign modes that another host has left active, and verify the result."""
     yield from asked(c, "".join(grblhal_codes.MODES))
     told = yield from _words(c)
     cures = dict.fromkeys(
@@ -93,18 +100,18 @@ def modes(c: Controller) -> Script:
 
 
 def _stem(word: str) -> str:
-    """``G43.1`` is a kind of G43, ``G51:X`` of G51."""
+    """Return the basic code of a word: G43 for ``G43.1``, G51 for ``G51:X``."""
     return word.partition(":")[0].partition(".")[0]
 
 
 def _words(c: Controller) -> Generator[Step, None, list[str]]:
-    """The parser's state; what it tells that is nobody's business stays in."""
+    """Request the parser state and return its words, including those that the driver does not use."""
     told = " ".join(line for line in (yield from asked(c, "$G")) if line.startswith("[GC:"))
     return told.removeprefix("[GC:").rstrip("]").split()
 
 
 def demand(c: Controller, identity: Identity) -> None:
-    """Raises ScriptError when an axis of the machine file is missing, or its E-stop."""
+    """Raise ScriptError if the controller lacks an axis of the machine file or the E-stop input."""
     missing = [axis.name for axis in c.wired if axis.name not in identity.axes]
     if missing:
         raise ScriptError(
@@ -125,27 +132,27 @@ def demand(c: Controller, identity: Identity) -> None:
         )
 
 
-# --- To rest without losing the position.
-# 0x18 and 0x19 do not brake: both end the steps where they are, and only 0x18 tells by ALARM:3 that the
-# position is lost by that. Behind 0x19 the line that is being planned goes on into the emptied planner, and
-# moves. So a feed hold comes first, or a jog cancel, and 0x18 when all is at rest.
+# --- Stops that preserve the position.
+# 0x18 and 0x19 do not brake. Both stop the step pulses at once, and only 0x18 reports by ALARM:3 that the
+# position is lost. After 0x19, the line that is being planned enters the cleared planner and moves. Therefore
+# a feed hold or a jog cancel is sent first, and 0x18 after the axes are at rest.
 
 
-_LATE = 0.4  # s, beyond its ramp, for a stop to be seen
-_BANNER = 3.0  # s that a reset takes
+_LATE = 0.4  # Seconds in addition to the ramp until a stop is detected.
+_BANNER = 3.0  # Duration of a reset in s.
 _NO_RESET = "the controller does not respond after its reset; check that the E-stop is released"
-_STALE = 0.5  # s in which reports from before a reset may still come
-_MUTE = 0.4  # s without a report behind a thread: it waits for its index and hears nothing but a stop
-_INDEX = 7.0  # s until that wait is over, whatever comes
+_STALE = 0.5  # Seconds in which reports from before a reset may still arrive.
+_MUTE = 0.4  # Seconds without a report in a thread, which then waits for its index and reacts only to a stop.
+_INDEX = 7.0  # Longest duration of that wait in s.
 
 
 def stop(c: Controller, *, waits: bool = False) -> Script:
-    """Brake, then reset, which voids its queue; the position is kept unless it did not come to rest.
+    """Brake, then reset to clear the queue; the position is lost only if an axis does not come to rest.
 
-    ``waits``: a thread pass is under way, which may be waiting for its index with nothing moving; there 0x18
-    would be a lost position, and 0x19 is a reset. An alarm is left alone.
+    ``waits``: a thread pass is running and may wait for its index at rest. In this case, 0x18 would lose the
+    position, but 0x19 acts as a reset. An alarm is not changed.
     """
-    if c.state != "Home":  # which nothing but a reset ends
+    if c.state != "Home":  # Only a reset ends the state Home.
         yield from _brake(c)
     if c.state == "Alarm":
         return
@@ -161,7 +168,10 @@ def stop(c: Controller, *, waits: bool = False) -> Script:
 
 
 def reset(c: Controller) -> Script:
-    """Soft reset, and its banner, before which no question is answered: a report says that none comes."""
+    """Perform a soft reset and wait for its banner.
+
+    If reports arrive instead, the controller has ignored the reset and the script fails.
+    """
     before, reports, began = c.banners, c.reports, c.clock.now()
 
     def answers() -> bool:
@@ -174,8 +184,8 @@ def reset(c: Controller) -> Script:
 
 
 def _brake(c: Controller) -> Generator[Step, None, None]:
-    """Until it rests, is mute, or its time is over."""
-    after, began = c.reports + 1, c.clock.now()  # one report may still be on its way from before
+    """Brake until the axes rest, the controller is silent, or the time has passed."""
+    after, began = c.reports + 1, c.clock.now()  # One earlier report may still arrive.
     by = began + _stopping(c)
     c.realtime(grblhal_codes.JOG_CANCEL, grblhal_codes.HOLD)
 
@@ -186,7 +196,7 @@ def _brake(c: Controller) -> Generator[Step, None, None]:
 
 
 def _stopping(c: Controller) -> float:
-    """Seconds that the slowest slide takes to brake, by the controller's own figures where it tells them."""
+    """Return the seconds that the slowest axis needs to brake, by the controller's settings if reported."""
     ramps = [axis.vmax / axis.amax for axis in c.wired]
     for axis in c.wired:
         speed, accel = c.speed_of(axis.name), c.figure(120, axis.name)
@@ -195,19 +205,19 @@ def _stopping(c: Controller) -> float:
     return _LATE + max(ramps)
 
 
-# --- The controller's settings: read, written where they are not as the machine file says, and read back.
+# --- Settings: read, corrected according to the machine file, and read back.
 
 
 # Machine position, buffers, line numbers, speeds, pins, offsets, overrides; the number of an alarm.
 _REPORTS = 0x7F | 0x400
-_PARSER = 0x200  # parser state unasked, which would look like an answer to $G
-_RESTORE = 0x2  # of the feed hold: the spindle starts by itself when it ends
-_LISTED = 6.0  # s for all of them: some hundred lines at whatever speed the line has
+_PARSER = 0x200  # Unrequested parser state, which would look like a reply to $G.
+_RESTORE = 0x2  # Feed hold option: the spindle restarts automatically.
+_LISTED = 6.0  # Seconds for all settings, which are a few hundred lines.
 _MASK, _MODE, _LATHE, _AFTER_HOLD = 10, 32, 2, 63
 
 
 def settings(c: Controller) -> Script:
-    """Write what is not as it must be, and read it back."""
+    """Write settings that differ from the required values, and read them back."""
     there = c.settings = _values((yield from asked(c, "$$", _LISTED)))
     wrong = {n: value for n, value in _wanted(c, there).items() if not same(there.get(n), value)}
     if not wrong:
@@ -229,7 +239,7 @@ def _wanted(c: Controller, there: Mapping[int, str]) -> dict[int, float | str]:
     wanted: dict[int, float | str] = dict(c.config.table.settings)
     always = c.identity is not None and c.identity.lathe and _MODE not in there
     if always and wanted.get(_MODE) == _LATHE:
-        del wanted[_MODE]  # firmware that is built for lathes alone has no such setting
+        del wanted[_MODE]  # Firmware built for lathes only does not have this setting.
     wanted[_MASK] = (int(float(there.get(_MASK, "0"))) | _REPORTS) & ~_PARSER
     if _AFTER_HOLD in there:
         wanted[_AFTER_HOLD] = int(float(there[_AFTER_HOLD])) & ~_RESTORE
@@ -242,7 +252,7 @@ def _values(lines: list[str]) -> dict[int, str]:
 
 
 def same(there: str | None, wanted: float | str) -> bool:
-    """Whether a setting reads as it was written: each is told with decimals of its own."""
+    """Return whether a setting equals the required value within its reported decimals."""
     if there is None or isinstance(wanted, str):
         return there == wanted
     decimals = len(there.partition(".")[2])
@@ -253,30 +263,30 @@ def same(there: str | None, wanted: float | str) -> bool:
 
 
 def written(value: float | str) -> str:
-    """Without exponents, which the controller does not read."""
+    """Return a setting value as text without an exponent, which the controller cannot read."""
     if isinstance(value, str):
         return value
     return f"{value:.6f}".rstrip("0").rstrip(".")
 
 
-_BOOT = 6.0  # s; some boards start when their port is opened
+_BOOT = 6.0  # Seconds; some boards restart when their port is opened.
 _HOMING = 120.0
-_COASTING, _LOOK = 8.0, 0.1  # s a spindle is given to stand, between two looks at it
+_COASTING, _LOOK = 8.0, 0.1  # Seconds for the spindle to stop, and between two checks.
 _STANDS = 5.0  # rpm
-_TELLS = 0.5  # s for the modes, asked by a byte: firmware from before 2020 does not know it
-_LASTING = ("G8", "G18")  # of our modes, those that no reset leaves
-_AT_ZERO = 0.002  # mm: reports have three decimals
-_ALONE = 2  # of $22: one axis may be homed without the others
+_TELLS = 0.5  # Seconds for the modes by a real-time byte, which firmware before 2020 ignores.
+_LASTING = ("G8", "G18")  # Required modes that a reset would change.
+_AT_ZERO = 0.002  # Mm; reports have three decimals.
+_ALONE = 2  # Bit of $22: axes can be homed one at a time.
 
 
 def connect(c: Controller) -> Script:
-    """From an open wire to verified modes; a controller in alarm stays there for the operator."""
+    """Set up a controller after opening; an alarm remains active until the operator clears it."""
     yield from full_report(c, _BOOT)
     yield from _set_up(c)
 
 
 def reconnect(c: Controller) -> Script:
-    """The same on a wire that was lost: what has become of it meanwhile is looked at first."""
+    """Set up a controller after a lost connection and record the accessories that were still on."""
     unheard = c.clock.now() - c.heard_at
     yield from full_report(c, _BOOT)
     yield from same_session(c)
@@ -286,8 +296,10 @@ def reconnect(c: Controller) -> Script:
 
 
 def same_session(c: Controller) -> Script:
-    """Whether it is what it was when it was last heard. A reset or a restart leaves other modes than ours
-    (G17, by ``gc_init``); and one that has restarted counts from 0, at any other place it has not.
+    """Detect a restart of the controller during the silence.
+
+    After a reset, the modes differ from those of TurnDesk (G17 by ``gc_init``). A restarted controller counts
+    from 0, so any other position proves that it has not restarted.
     """
     by = c.clock.now() + _TELLS
     c.question_modes()
@@ -324,7 +336,7 @@ def _set_up(c: Controller) -> Script:
 
 
 def _quiet(c: Controller) -> Script:
-    """Spindle and coolant off: a control that was killed has left them as they were."""
+    """Switch off spindle and coolant, which may still be on if the control was killed."""
     for code in grblhal_codes.OFF:
         yield from asked(c, code)
     by = c.clock.now() + _COASTING
@@ -334,7 +346,7 @@ def _quiet(c: Controller) -> Script:
 
 
 def _turns(c: Controller) -> bool:
-    """The controller's own spindle, as its encoder tells it."""
+    """Return whether the controller's own spindle turns, as measured by its encoder."""
     measured = c.report.measured if c.report is not None else None
     return c.config.own_spindle and (measured or 0.0) > _STANDS
 
@@ -344,7 +356,10 @@ def _past(c: Controller, t: float) -> Callable[[], bool]:
 
 
 def verify(c: Controller) -> Script:
-    """Send the modes, read them back, and see that positions are radii in a frame without offsets."""
+    """Send and verify the modes; check that X is a radius and that no offsets are active.
+
+    Raises ScriptError if the check fails.
+    """
     yield from fresh(c)
     yield from modes(c)
     yield from full_report(c)
@@ -369,11 +384,11 @@ def verify(c: Controller) -> Script:
 
 
 def abort(c: Controller) -> Script:
-    """To rest, the queue void, the modes verified; the position is kept where the controller allows that."""
+    """Stop, discard the queue and verify the modes; the position is preserved where possible."""
     waits = c.index_wait
     c.void()
     if c.alarm:
-        yield from reset(c)  # an alarm has stopped the slides alone: spindle and coolant end with a reset
+        yield from reset(c)  # An alarm stops only the axes; a reset stops spindle and coolant.
         return
     if _alarm_of(c):
         return
@@ -384,7 +399,7 @@ def abort(c: Controller) -> Script:
 
 
 def recover(c: Controller) -> Script:
-    """The operator has cleared the alarm: reset, unlock, verify. What stood in the planner is gone."""
+    """Reset, unlock and verify after the operator has cleared an alarm; the planner is empty afterwards."""
     c.void()
     unheard = c.mute
     yield from full_report(c)
@@ -411,16 +426,17 @@ def recover(c: Controller) -> Script:
 
 
 def home(c: Controller, letter: str) -> Script:
-    """Look for the switch of one axis, or take where it stands for its home."""
+    """Home one axis on its switch, or set its home at the present position."""
     axis = next(axis for axis in c.config.axes if axis.name == letter)
     yield from fresh(c)
     if axis.here is not None:
         yield from full_report(c)
         c.origin[letter] = c.position[letter] + c.origin.get(letter, 0.0) - axis.here
-    elif not (axis.absolute and not c.homing):  # else the operator's word for where it is told to stand
+    elif not (axis.absolute and not c.homing):  # Otherwise the operator confirms the position.
         yield from _look_for_switch(c, letter)
     yield from full_report(c)
-    c.alarm = _alarm_of(c)  # with "homing on startup required" it stays locked until the last axis is homed
+    # With "homing on startup required", the controller stays locked until all axes are homed.
+    c.alarm = _alarm_of(c)
     if not c.alarm:
         yield from verify(c)
 
@@ -430,11 +446,11 @@ def _look_for_switch(c: Controller, letter: str) -> Script:
     if not c.homing or c.homing & _ALONE:
         yield from asked(c, f"$H{letter}", _HOMING)
     elif not c.is_homed(letter):
-        yield from asked(c, "$H", _HOMING)  # all of them together, and the next finds itself homed
+        yield from asked(c, "$H", _HOMING)  # All axes are homed together, so the next one is already homed.
 
 
 def jog_end(c: Controller) -> Script:
-    """Behind a cancelled jog: to rest, and no line may be left that is never answered."""
+    """Wait for rest after a canceled jog, then verify the modes to account for discarded lines."""
     began = c.reports
     yield (
         lambda: c.reports > began + 1 and c.report is not None and not c.report.moves,
@@ -445,12 +461,12 @@ def jog_end(c: Controller) -> Script:
 
 
 def _door(c: Controller) -> bool:
-    """Whether it reads no lines for its door."""
+    """Return whether the controller reads no lines because its door is open."""
     return c.report is not None and c.report.state == "Door"
 
 
 def _alarm_of(c: Controller) -> int:
-    """The alarm that the last report tells, 0 without one."""
+    """Return the alarm number of the last report, or 0 without an alarm."""
     if c.report is None or c.report.state != "Alarm":
         return 0
     return c.report.sub or c.alarm or grblhal_codes.LOCKED

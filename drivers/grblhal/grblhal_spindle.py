@@ -1,4 +1,7 @@
-"""The controller's spindle: lines at a standstill, override steps while it moves, a toggle in a feed hold."""
+"""Spindle of a grblHAL controller: M codes at standstill, and override steps while the axes move.
+
+In a feed hold, a toggle stops and restarts the spindle.
+"""
 
 from __future__ import annotations
 
@@ -14,29 +17,33 @@ from drivers.grblhal.grblhal_operator import LEAST, MOST
 from drivers.grblhal.grblhal_wire import Ask
 from drivers.port_parts import demand_spindle
 
-_OBEYS = 1.0  # s for a spindle that is stopped in a hold to be told as off
-_CLIPS = 2.0  # s in which report, override and S word may tell of different moments
-_HIGHEST = 30  # setting
-_OVER, _UNDER = MOST / 100.0, LEAST / 100.0  # of an S word, by its override
-_IN_WAIT = 0.3  # s without an answer to M3 or M4: the controller waits for the speed, and reads no line
-_STANDS = 30.0  # rpm, between two reports of a spindle that reverses
+_OBEYS = 1.0  # Seconds until a spindle stopped in a hold must be reported as off.
+_CLIPS = 2.0  # Seconds in which report, override and S word may be from different times.
+_HIGHEST = 30  # Number of the setting.
+_OVER, _UNDER = MOST / 100.0, LEAST / 100.0  # Range of the override as fractions of the S word.
+# Seconds without a reply to M3 or M4, after which the controller is assumed to wait for the speed.
+_IN_WAIT = 0.3
+_STANDS = 30.0  # Rpm, between two reports of a spindle that reverses.
 
 
 class GrblEncoder:
-    """The encoder on the controller, of a spindle that something else turns. It tells no direction."""
+    """Encoder at the controller for a spindle with another drive; it does not report the direction."""
 
     def __init__(self, controller: Controller) -> None:
         self._c = controller
-        self.way: Callable[[], float] = lambda: 0.0  # signed rpm, as whatever turns it says
+        self.way: Callable[[], float] = lambda: 0.0  # Commanded speed in rpm, signed.
         self._sign = 1.0
 
     @property
     def measures(self) -> bool:
-        """Whether the controller measures at all."""
+        """Whether the controller reports a measured speed."""
         return self._c.report is not None and self._c.report.measured is not None
 
     def speed(self) -> float:
-        """rpm; one that runs down has the sign that it had. By what turns it while the controller is mute."""
+        """Return the measured speed in rpm with the sign of the last command.
+
+        While the controller is silent, return the commanded speed.
+        """
         way, report = self.way(), self._c.report
         if self._c.mute:
             return way
@@ -44,18 +51,18 @@ class GrblEncoder:
         return self._sign * abs(report.measured or 0.0) if report is not None else 0.0
 
     def angle(self) -> tuple[float, float] | None:
-        """The controller keeps it to itself."""
+        """Return None, because the controller does not report the angle."""
         return None
 
 
 class _Way:
-    """The sign of a speed that is measured without one: reversed when it has come down, and no sooner."""
+    """Sign of a speed that is measured without direction, which changes only after the speed has fallen."""
 
     def __init__(self) -> None:
         self._sign, self._least = 1.0, math.inf
 
     def of(self, rpm: float, asked: float) -> float:
-        """``rpm`` with its sign, towards that of ``asked``."""
+        """Return ``rpm`` with its sign, where ``asked`` has the commanded sign."""
         rpm = abs(rpm)
         if math.copysign(1.0, asked) == self._sign:
             self._least = math.inf
@@ -67,22 +74,24 @@ class _Way:
 
 
 class GrblSpindle:
-    """``core.ports.Spindle``: M3, M4 and M5 while nothing moves, and else the override of the last S."""
+    """``core.ports.Spindle``: M3, M4 and M5 at standstill, otherwise the override of the last S word."""
 
     def __init__(self, controller: Controller, blocks: GrblBlocks) -> None:
         self._c = controller
         self._blocks = blocks
         self._wanted = 0.0
-        self._said = 0.0  # of the last M3 or M4, signed
-        self._runs = False  # in the controller: a stop or a reset ends that
+        self._said = 0.0  # Speed of the last M3 or M4, signed.
+        self._runs = False  # The spindle is on in the controller until a stop or a reset.
         self._way = _Way()
-        self._paused_at: float | None = None  # stopped in a feed hold, whose lines are not read
-        self._word: Ask | None = None  # the last M3 or M4
-        self._unlike_since: float | None = None  # it is commanded another speed than that
+        self._paused_at: float | None = None  # Stopped in a feed hold, in which lines are not read.
+        self._word: Ask | None = None  # Last M3 or M4.
+        self._unlike_since: float | None = None  # Start of a difference between reported and expected speed.
 
     def run(self, rpm: float) -> None:
-        """Signed rpm, at most the machine's; 0 stops. Raises DriverError above the controller's own limit,
-        beyond which it would turn slower than the program has it, and while it takes no lines.
+        """Turn the spindle at ``rpm``, signed and limited to the machine's maximum; 0 stops it.
+
+        Raises DriverError above the controller's own limit, which would silently reduce the speed, and while
+        the controller accepts no lines.
         """
         if rpm:
             demand_spindle(self._blocks.hindrance())
@@ -99,16 +108,16 @@ class GrblSpindle:
         self.pump()
 
     def coast(self) -> None:
-        """The controller knows no other stop than M5."""
+        """Stop with M5, because the controller has no other stop."""
         self.run(0.0)
 
     @property
     def highest(self) -> float:
-        """The controller's own limit, rpm, beyond which it turns slower than asked; 0 untold."""
+        """The controller's speed limit in rpm, to which it reduces higher speeds; 0 if not reported."""
         return float(self._c.settings.get(_HIGHEST, "0"))
 
     def speed(self) -> float:
-        """Measured where the controller has an encoder, else what it commands; signed."""
+        """Return the measured speed in rpm, or the commanded one without an encoder; signed."""
         report = self._c.report
         if report is None or report.speeds is None or len(report.speeds) < 2:
             return 0.0
@@ -117,21 +126,21 @@ class GrblSpindle:
         return self._way.of(report.measured, self._said)
 
     def angle(self) -> tuple[float, float] | None:
-        """The controller keeps it to itself."""
+        """Return None, because the controller does not report the angle."""
         return None
 
     def fault(self) -> str:
-        """Alarms are those of the axes."""
+        """Return an empty text, because the axes report the alarms."""
         return ""
 
     def voided(self) -> None:
-        """A stop or a reset has switched it off; nothing switches it on again but the program."""
+        """Handle a stop or reset, which switches the spindle off until the program starts it again."""
         self._wanted, self._runs, self._paused_at, self._word = 0.0, False, None, None
 
     def pump(self) -> None:
-        """Bring the controller to what is wanted."""
+        """Send the commands that bring the spindle to the requested speed."""
         c = self._c
-        self.speed()  # of each report, or a reversal between two looks would be missed
+        self.speed()  # Evaluate each report; otherwise a reversal could be missed.
         if not c.ready:
             return
         if c.state == "Hold":
@@ -153,9 +162,11 @@ class GrblSpindle:
 
     @property
     def _base(self) -> float:
-        """The S word, signed. Where it follows the radius: half of the highest speed that it may come to, for
-        the override goes from a tenth to the double. So what puts the override back to 100 %, such as a
-        pendant's button, makes it no faster than the program allows.
+        """The S word, signed.
+
+        For constant surface speed, it is half of the highest speed, because the override ranges from 10 to
+        200 %. A reset of the override to 100 %, for example by a pendant, then never exceeds the programmed
+        limit.
         """
         highest, wanted = self._blocks.highest, abs(self._wanted)
         if not highest:
@@ -167,7 +178,7 @@ class GrblSpindle:
         return math.copysign(max(min(highest / _OVER, wanted / _UNDER), wanted / _OVER), self._wanted)
 
     def _start(self) -> None:
-        """By M3 or M4; one that follows the radius once its override is told, or it would leap."""
+        """Send M3 or M4; for constant surface speed, first wait until the override is reported."""
         base = self._base
         if self._blocks.highest:
             self._follow(base)
@@ -179,8 +190,10 @@ class GrblSpindle:
         self._word = self._c.send(f"M{3 if base > 0.0 else 4}S{number(abs(base))}")
 
     def _watch_clipping(self) -> None:
-        """Firmware that limits a speed does so without a word, and a $30 that was written may count from its
-        next start only: what it reports as commanded is what it turns.
+        """Set a fault if the controller limits the speed without a message.
+
+        A changed $30 may take effect only after a restart of the controller. The reported commanded speed is
+        the actual one.
         """
         c = self._c
         now, told = c.clock.now(), c.report.speeds if c.report is not None else None
@@ -205,7 +218,7 @@ class GrblSpindle:
             )
 
     def _follow(self, base: float) -> None:
-        """By the override of the S word."""
+        """Set the override that gives the requested speed with S word ``base``."""
         if self._wanted * base > 0.0:
             share = round(100.0 * self._wanted / base)
             self._blocks.overrides.want_spindle(min(max(share, LEAST), MOST))
@@ -217,11 +230,13 @@ class GrblSpindle:
             self._runs = False
             self._c.send("M5")
         else:
-            self._blocks.jog_stop()  # a line would be refused; M5 follows when the slide rests
+            self._blocks.jog_stop()  # A line would be rejected; M5 follows when the axes rest.
 
     def _ends_wait(self) -> bool:
-        """Return whether M3 or M4 is unanswered. In the firmware's wait for the speed M5 is not read and the
-        toggle of a hold has no effect: what stops the spindle is the end of everything, a reset.
+        """Return whether M3 or M4 is not yet acknowledged.
+
+        While the firmware waits for the speed, it does not read M5 and ignores the spindle toggle. Only an
+        abort with a reset then stops the spindle.
         """
         word = self._word
         if word is None or word.done:
@@ -231,7 +246,7 @@ class GrblSpindle:
         return True
 
     def _in_hold(self) -> None:
-        """A toggle: sent once, and looked at."""
+        """Stop or restart the spindle in a feed hold by one toggle, and verify it."""
         stops = self._runs and self._wanted == 0.0
         if self._paused_at is None and stops and self._ends_wait():
             return
@@ -247,7 +262,7 @@ class GrblSpindle:
             )
 
     def _after_hold(self) -> None:
-        """$63 leaves it off; said again, in case that this controller has restored it."""
+        """Send M5 after a feed hold, in case the controller has restarted the spindle."""
         self._paused_at, self._runs = None, False
         self._c.send("M5")
 

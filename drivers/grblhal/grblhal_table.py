@@ -1,4 +1,4 @@
-"""[grblhal] of the machine file: the controller's port, and the settings that are written to it."""
+"""Table [grblhal] of the machine file: port and settings of the controller."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ from core.table_schema import (
 )
 
 _SETTINGS, _WHEEL, _GUARD = "grblhal.settings", "io.analog.handwheel", "io.in.guard.at"
-# What a controller on a lathe has to be told, and nothing else.
+# Required values of settings on a lathe.
 _NEEDED = (
     (13, 0, "reports must be in mm, because reports in inches have too few decimals"),
     (32, 2, "lathe mode"),
 )
 _AXES = {"X": 0, "Y": 1, "Z": 2}
-# Settings by their first number: what is compared, the factor from the model's unit to the controller's.
+# First number of each group of settings, the compared key, and the factor to the controller's unit.
 _LIMITS = ((110, "vmax", 60.0, "mm/min"), (120, "amax", 1.0, "mm/s²"))
 _TRAVEL = 130
 
 
 @key_table
 class GrblhalTable:
-    """A motion controller with its own planner. ``settings`` are written at each connection and read back."""
+    """Settings of a motion controller with its own planner, which are written at each connection."""
 
     port: str = file_key(meaning="Serial port of the controller, or its address as `tcp://host:port`.")
     baud: int = file_key(Range(110, 4_000_000), default=115_200, meaning="Bit rate of the serial port.")
@@ -61,7 +61,7 @@ def _is_setting(value: object) -> bool:
 
 
 def _settings(file: FileReading) -> dict[int, float | str]:
-    """The good ones."""
+    """Return the valid entries of the settings table by number."""
     table = file.raw(_SETTINGS)
     entries = table.items() if isinstance(table, dict) else ()
     return {int(key): value for key, value in entries if key.isdecimal() and _is_setting(value)}
@@ -92,7 +92,7 @@ def _rules(file: FileReading) -> Iterator[Finding]:
 
 
 def _guard(file: FileReading) -> Iterator[Finding]:
-    """A guard that stops the cycle at an input that is not read while the axes move."""
+    """Yield a finding if a guard that stops the cycle uses an input that is read only at standstill."""
     values, path = file.values, "interlocks.guard_stops"
     stops = values.has(path, _GUARD) and values.flag(path)
     if stops and values.text(_GUARD).startswith("in."):
@@ -103,7 +103,7 @@ def _guard(file: FileReading) -> Iterator[Finding]:
 
 
 def _outside(file: FileReading, settings: Mapping[int, float | str], axis: str) -> Iterator[Finding]:
-    """An axis that could be sent where the controller does not go, by the settings that the file gives it."""
+    """Yield findings for an axis whose limits exceed those in the controller's settings."""
     values, offset = file.values, _AXES[axis]
     for first, key, factor, unit in _LIMITS:
         path = f"axis.{axis}.{key}"

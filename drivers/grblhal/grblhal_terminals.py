@@ -1,4 +1,4 @@
-"""Inputs and outputs of the controller by the names of the machine file."""
+"""Inputs, outputs and probe of a grblHAL controller with the names from the machine file."""
 
 from __future__ import annotations
 
@@ -14,17 +14,18 @@ from drivers.grblhal.grblhal_report import Report
 from drivers.grblhal.grblhal_wire import Ask
 from drivers.port_parts import FirstTouch, output_of
 
-# --- Inputs: pins come with every report, auxiliary ones are asked for while nothing moves.
+# --- Inputs: pins are in every report; auxiliary inputs are requested at standstill.
 
 
 _PIN, _AUX = "pn.", "in."
-_APART = 0.2  # s between two questions
+_APART = 0.2  # Seconds between two requests.
 
 
 class GrblInputs:
-    """``M66 P… L0`` reads one auxiliary input at once; the next full report tells its state.
+    """Inputs of the controller: pins from each report, auxiliary inputs by request.
 
-    In the controller it waits for a standstill, so nobody asks while anything moves: the last state counts.
+    ``M66 P… L0`` reads one auxiliary input, and the next full report has the result. The controller executes
+    it only at standstill, so the last state applies while anything moves.
     """
 
     def __init__(self, controller: Controller, blocks: GrblBlocks) -> None:
@@ -37,9 +38,7 @@ class GrblInputs:
         self._next = 0.0
 
     def states(self) -> Mapping[str, bool]:
-        """By the names of the machine file; one that has never been read, or that the board has not, is not
-        in here.
-        """
+        """Return the inputs by name, without those that have never been read or do not exist on the board."""
         states, report = dict(self._read), self._c.report
         if report is None:
             return states
@@ -50,7 +49,7 @@ class GrblInputs:
         return states
 
     def lacking(self) -> dict[str, str]:
-        """Inputs that the controller has not, and why."""
+        """Return the inputs that the controller does not have, with the reason."""
         have = self._c.identity.inputs if self._c.identity is not None else 0
         missing: dict[str, str] = {}
         for name, wired in self._c.config.inputs.items():
@@ -68,7 +67,7 @@ class GrblInputs:
         return missing
 
     def pump(self) -> None:
-        """One question at a time, and none while anything moves."""
+        """Request one auxiliary input at a time, and only at standstill."""
         c, now = self._c, self._c.clock.now()
         if self._asked is not None:
             self._take(*self._asked)
@@ -99,14 +98,14 @@ class GrblInputs:
 
 
 _COOLANT = {"flood": "M8", "mist": "M7"}
-_MIST = "M"  # among the letters of its build
-LETTERS = {"flood": "F", "mist": "M"}  # among the accessories of its reports
-_OBEYS = 1.0  # s from the answer to a line to a report that has it
-_COLLET = "collet"  # stays closed as it was found
+_MIST = "M"  # A letter of the build options.
+LETTERS = {"flood": "F", "mist": "M"}  # Letters of the accessories in a report.
+_OBEYS = 1.0  # Seconds from the reply to a line to a report that shows its effect.
+_COLLET = "collet"  # Assumed to be closed at the start.
 
 
 class GrblIO:
-    """``core.ports.DigitalIO``: flood, mist and auxiliary outputs."""
+    """``core.ports.DigitalIO`` of the controller: flood, mist and auxiliary outputs."""
 
     def __init__(self, controller: Controller, blocks: GrblBlocks, inputs: GrblInputs) -> None:
         self._c = controller
@@ -114,17 +113,19 @@ class GrblIO:
         self._inputs = inputs
         outputs = controller.config.outputs
         self._wanted = {name: name == _COLLET for name in outputs}
-        self._sent: dict[str, bool] = {}  # what the controller has been told since it last forgot
-        self._said_at: dict[str, float] = {}  # when the controller has carried it out
-        self._asks: dict[str, Ask] = {}  # lines that it has not carried out: they wait behind blocks and M3
+        self._sent: dict[str, bool] = {}  # States sent since the last reset.
+        self._said_at: dict[str, float] = {}  # Time when the controller executed the change.
+        self._asks: dict[str, Ask] = {}  # Lines not yet executed, which wait for earlier blocks and M3.
 
     def inputs(self) -> Mapping[str, bool]:
-        """By the names of the machine file."""
+        """Return the inputs by name."""
         return self._inputs.states()
 
     def outputs(self) -> Mapping[str, bool]:
-        """Coolant as the controller tells it, a second late; of auxiliary outputs it tells nothing. What it
-        has not is not in here.
+        """Return the outputs by name, without those that the controller does not have.
+
+        Coolant is as reported, with a delay of 1 s. Auxiliary outputs are as written, because they are not
+        reported.
         """
         told = self._c.accessories
         shown = {name: on for name, on in self._wanted.items() if not self.lacking(name)}
@@ -138,7 +139,7 @@ class GrblIO:
         return shown
 
     def write(self, name: str, on: bool) -> None:
-        """Raises DriverError for an output that the machine or the controller has not."""
+        """Switch an output. Raises DriverError if the machine or the controller does not have the output."""
         output_of(name, self._wanted)
         why = self.lacking(name)
         if on and why:
@@ -151,19 +152,19 @@ class GrblIO:
                 why=why,
             )
         if self.outputs().get(name, on) is not on:
-            self._sent[name] = not on  # whatever it was told before: to be said, as soon as it listens
+            self._sent[name] = not on  # The actual state differs, so the change must be sent again.
         self._wanted[name] = on
         if not why:
             self._tell(name)
 
     def safe(self) -> None:
-        """Every output to its safe state; said again once the controller listens."""
+        """Set every output to its safe state, as soon as the controller accepts lines."""
         for name, output in self._c.config.outputs.items():
             if output.safe is not None and self._wanted[name] != output.safe:
                 self.write(name, output.safe)
 
     def lacking(self, name: str) -> str:
-        """Why the controller has no such output; empty when it has."""
+        """Return the reason why the controller does not have an output, or an empty text."""
         terminal = self._c.config.outputs[name].terminal
         if terminal in _COOLANT:
             mist = self._c.identity is not None and _MIST in self._c.identity.letters
@@ -181,14 +182,14 @@ class GrblIO:
         )
 
     def able(self) -> frozenset[str]:
-        """What a program may ask of the terminals, by the names of ``machine_requirements``."""
+        """Return the terminals that a program may use, as named in ``machine_requirements``."""
         outputs = {Message("output {name}", name=name) for name in self._wanted if not self.lacking(name)}
         there = {name for name in self._c.config.inputs if name not in self._inputs.lacking()}
         names = there | {self._c.config.inputs[name].terminal for name in there}
         return frozenset(outputs | {Message("input {name}", name=name) for name in names})
 
     def voided(self) -> None:
-        """A stop or a reset switches coolant off; what auxiliary outputs do then nobody tells."""
+        """Handle a stop or reset, which switches coolant off; auxiliary outputs may or may not change."""
         self._asks.clear()
         for name, output in self._c.config.outputs.items():
             if output.terminal in _COOLANT:
@@ -197,7 +198,7 @@ class GrblIO:
                 self._said_at[name] = self._c.clock.now()
 
     def pump(self) -> None:
-        """Say what could not be said while the controller was locked, jogged or held."""
+        """Send changes that could not be sent while the controller was locked, jogging or in feed hold."""
         for name in [name for name, ask in self._asks.items() if ask.done]:
             del self._asks[name]
             self._said_at[name] = self._c.clock.now()
@@ -219,7 +220,10 @@ class GrblIO:
             self._c.send(f"M{64 if on else 65}P{terminal.removeprefix('out.')}")
 
     def _coolant_off(self) -> list[str]:
-        """M9 ends both; what is to stay on is said again."""
+        """Return the lines that switch coolant off.
+
+        M9 ends both kinds of coolant, so the other kind is switched on again.
+        """
         on = [
             _COOLANT[output.terminal]
             for name, output in self._c.config.outputs.items()
@@ -228,32 +232,32 @@ class GrblIO:
         return ["M9", *on]
 
 
-# --- The probe: a report tells its pin and the place at once.
+# --- Probe: a report contains the pin and the position of the same moment.
 
 
-_ASKS = 60.0  # s from arming on in which it asks more often
-_BEHIND = 0.5  # s behind a touch in which it still does
+_ASKS = 60.0  # Seconds after arming with more frequent requests.
+_BEHIND = 0.5  # Seconds after a touch with more frequent requests.
 
 
 class GrblProbe(FirstTouch):
-    """Touches by reports that are asked for more often meanwhile.
+    """Touch input by reports, which are requested more often while the probe is armed.
 
-    G38.2 is not used: it runs to its end when nobody is there any more, where a jog ends with its lease.
+    G38.2 is not used, because it would continue after a loss of the host. A jog ends with its motion lease.
     """
 
     def __init__(self, controller: Controller, axes: GrblAxes, inputs: GrblInputs) -> None:
         super().__init__()
         self._c, self._axes, self._inputs = controller, axes, inputs
         self._report: Report | None = None
-        self._at = controller.clock.now()  # of the last report that was looked at
+        self._at = controller.clock.now()  # Time of the last evaluated report.
 
     def arm(self) -> None:
-        """Forget what was kept, and look often."""
+        """Clear the latched touch and request reports more often."""
         super().arm()
         self._c.hurry_until = self._c.clock.now() + _ASKS
 
     def pump(self) -> None:
-        """Once a round, behind the conversation's own."""
+        """Check a new report for a touch; called once per cycle after the controller's own cycle."""
         now, report = self._c.clock.now(), self._c.report
         if report is self._report or report is None:
             return

@@ -1,6 +1,6 @@
-"""The wire to the controller, lines out with one answer each back, and scripts that wait for these.
+"""Connection to a grblHAL controller, lines with one reply each, and scripts that wait for replies.
 
-The wire is a serial device, a pseudo terminal or TCP. Only opening and closing wait.
+The connection is a serial device, a pseudo terminal or TCP. Only opening and closing wait.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ _OPENING, _CLOSING = 3.0, 0.5  # s
 
 
 class WireLostError(Exception):
-    """The other end has gone; the text says how it was noticed."""
+    """Loss of the connection; the text states how it was detected."""
 
 
 class Wire(Protocol):
-    """Bytes both ways. ``read`` and ``write`` raise WireLostError and never wait."""
+    """Byte connection whose ``read`` and ``write`` never wait and raise WireLostError after a loss."""
 
     def read(self) -> bytes: ...
 
@@ -39,7 +39,10 @@ class Wire(Protocol):
 
 
 def tcp_address(port: str) -> tuple[str, int] | None:
-    """Host and number of ``tcp://…:…`` or ``socket://…:…``, None for a device. Raises DriverError."""
+    """Return host and port of ``tcp://…:…`` or ``socket://…:…``, or None for a device.
+
+    Raises DriverError if the address is malformed.
+    """
     if "://" not in port:
         return None
     found = _TCP.fullmatch(port)
@@ -49,13 +52,13 @@ def tcp_address(port: str) -> tuple[str, int] | None:
 
 
 def open_wire(port: str, baud: int) -> Wire:
-    """A serial device by its path, or a TCP port. Raises DriverError."""
+    """Open a serial device or a TCP port. Raises DriverError if it cannot be opened."""
     address = tcp_address(port)
     return SerialWire(port, baud) if address is None else TcpWire(*address)
 
 
 class SerialWire:
-    """pyserial without DTR and RTS: raising them resets some boards, and a reset loses the position."""
+    """Serial port without DTR and RTS, because some boards reset and lose their position when these rise."""
 
     def __init__(self, port: str, baud: int) -> None:
         try:
@@ -76,14 +79,14 @@ class SerialWire:
             ) from error
 
     def read(self) -> bytes:
-        """What has arrived."""
+        """Return the bytes received so far."""
         try:
             return bytes(self._port.read(4096))
-        except (OSError, TypeError) as error:  # TypeError: pyserial's own, when the device vanishes
+        except (OSError, TypeError) as error:  # pyserial raises TypeError when the device disappears.
             raise WireLostError(str(error)) from error
 
     def write(self, data: bytes) -> None:
-        """All of it; less than a controller's buffer fits into the computer's own."""
+        """Write all bytes to the buffer of the computer, which is larger than that of the controller."""
         try:
             if self._port.write(data) != len(data):
                 raise WireLostError("the serial port does not accept any more bytes")
@@ -91,12 +94,12 @@ class SerialWire:
             raise WireLostError(str(error)) from error
 
     def close(self) -> None:
-        """Let the device go."""
+        """Close the port."""
         self._port.close()
 
 
 class TcpWire:
-    """A socket that does not wait."""
+    """TCP connection with a socket that does not block."""
 
     def __init__(self, host: str, port: int) -> None:
         try:
@@ -109,7 +112,7 @@ class TcpWire:
         self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
 
     def read(self) -> bytes:
-        """What has arrived."""
+        """Return the bytes received so far."""
         try:
             data = self._socket.recv(4096)
         except BlockingIOError:
@@ -121,7 +124,7 @@ class TcpWire:
         return data
 
     def write(self, data: bytes) -> None:
-        """All of it."""
+        """Write all bytes."""
         try:
             if self._socket.send(data) != len(data):
                 raise WireLostError("the connection does not accept any more bytes")
@@ -129,7 +132,7 @@ class TcpWire:
             raise WireLostError(str(error)) from error
 
     def close(self) -> None:
-        """Hang up when the other end has said what it had to: its simulator ends when it writes to nobody."""
+        """Close the connection after receiving the remaining bytes; otherwise a simulator would fail."""
         with suppress(OSError):
             self._socket.shutdown(socket.SHUT_WR)
             self._socket.settimeout(_CLOSING)
@@ -138,57 +141,57 @@ class TcpWire:
         self._socket.close()
 
 
-# --- Lines out with one answer each back.
+# --- Lines with one reply each.
 
 
-# Bytes of its buffer that are never used. With 100 free ones the firmware's simulator takes nothing more from
-# its socket: a cycle start or a reset neither.
+# Bytes of the buffer that are never used. With 100 free bytes or fewer, the firmware's simulator reads
+# nothing from its socket, not even a cycle start or a reset.
 _RESERVE = 128
 _LONGEST = 256  # bytes of a line
 
 
 @dataclass(slots=True)
 class Ask:
-    """A line whose answer matters: what was told before its ``ok``; ``error`` 0 is none."""
+    """Line that was sent, with the lines received before its ``ok``; ``error`` 0 means no error."""
 
     line: str
     lines: list[str] = field(default_factory=list)
     done: bool = False
     error: int = 0
     sent_at: float = 0.0
-    ticket: int = 0  # of a block, 0 for everything else
+    ticket: int = 0  # Ticket of a block, 0 for other lines.
 
     @property
     def size(self) -> int:
-        """Bytes on the wire."""
+        """The number of bytes of the line with its line end."""
         return len(self.line) + 1
 
 
 class Stream:
-    """``write`` puts bytes on the wire. Lines leave in order, and only as many as surely fit."""
+    """Sender of lines in order; a line is sent only if it fits into the controller's buffer."""
 
     def __init__(self, write: Callable[[bytes], None]) -> None:
         self._write = write
-        self.room = 100  # bytes that may be unanswered; the controller tells its buffer first
+        self.room = 100  # Bytes that may be unacknowledged, until the controller reports its buffer.
         self.waiting: deque[Ask] = deque()
         self.unanswered: deque[Ask] = deque()
-        self.stale = False  # answers to lines that no longer count may still come
+        self.stale = False  # Replies to discarded lines may still arrive.
 
     def use(self, buffer: int) -> None:
-        """The controller's buffer holds so many bytes."""
+        """Set the size of the controller's buffer in bytes."""
         self.room = buffer - _RESERVE
 
     @property
     def quiet(self) -> bool:
-        """Whether every line has been sent and answered."""
+        """Whether all lines are sent and acknowledged."""
         return not self.waiting and not self.unanswered
 
     def fits(self, line: str) -> bool:
-        """Whether this line could leave at once."""
+        """Return whether a line could be sent immediately."""
         return not self.waiting and self._used() + len(line) + 1 <= self.room
 
     def send(self, line: str, now: float, ticket: int = 0) -> Ask:
-        """Send a line, or let it wait its turn."""
+        """Send a line, or queue it until it fits."""
         assert line.isascii(), line
         assert len(line) < _LONGEST, line
         ask = Ask(line, sent_at=now, ticket=ticket)
@@ -197,7 +200,7 @@ class Stream:
         return ask
 
     def pump(self, now: float) -> None:
-        """Send what has come to fit."""
+        """Send the queued lines that fit now."""
         while self.waiting and (not self.unanswered or self._used() + self.waiting[0].size <= self.room):
             ask = self.waiting.popleft()
             ask.sent_at = now
@@ -205,7 +208,7 @@ class Stream:
             self._write(ask.line.encode("ascii") + b"\n")
 
     def answered(self, error: int) -> Ask | None:
-        """``ok`` (0) or an error has come; the line that it belongs to, None when there is none."""
+        """Handle ``ok`` (0) or an error code and return its line, or None if no line is pending."""
         if not self.unanswered:
             return None
         ask = self.unanswered.popleft()
@@ -213,12 +216,12 @@ class Stream:
         return ask
 
     def message(self, line: str) -> None:
-        """Something that the controller says before it answers for a line."""
+        """Add a received message to the line that is acknowledged next."""
         if self.unanswered:
             self.unanswered[0].lines.append(line)
 
     def void(self) -> None:
-        """No line counts any more; what is still answered belongs to nothing until ``$G`` has been told."""
+        """Discard all lines; replies are ignored until ``$G`` is reported."""
         self.waiting.clear()
         self.unanswered.clear()
         self.stale = True
@@ -227,49 +230,49 @@ class Stream:
         return sum(ask.size for ask in self.unanswered)
 
 
-# --- Scripts: generators that ask for something, and go on when it is so.
+# --- Scripts: generators that yield conditions and continue when they are met.
 
 
-Step = tuple[Callable[[], bool], float, str]  # until, within s, what is told when it takes longer
+Step = tuple[Callable[[], bool], float, str]  # Condition, limit in s, and error text after the limit.
 Script = Generator[Step, None, None]
 
 
 class ScriptError(DriverError):
-    """What a script was begun for cannot be done; the sentence becomes the fault, with its code."""
+    """Failure of a script, whose text and code become the fault."""
 
     def __init__(self, text: str, code: FaultCode = "controller-refuses", **values: object) -> None:
         super().__init__(text, code, reason="", **values)
 
 
 class Runner:
-    """One script at a time, carried on by whoever looks."""
+    """Runner of one script at a time, advanced by its caller."""
 
     def __init__(self) -> None:
-        self.doing = ""  # what the present script is for
+        self.doing = ""  # Purpose of the present script.
         self._script: Script | None = None
         self._step: Step = (lambda: True, 0.0, "")
         self._until = 0.0
-        self._inside = False  # its step is under way
+        self._inside = False  # The script is executing a step.
 
     @property
     def busy(self) -> bool:
-        """Whether a script is under way."""
+        """Whether a script is running."""
         return self._script is not None
 
     def begin(self, script: Script, doing: str, now: float) -> None:
-        """A script that is under way is given up."""
+        """Start a script; a script that is running is canceled."""
         self.drop()
         self._script, self.doing = script, doing
         self._step, self._until = (lambda: True, 0.0, ""), now
 
     def drop(self) -> None:
-        """Nothing is under way any more; a script that finds its wire gone ends with its step."""
+        """Cancel the script; a script that is within a step ends with this step."""
         if self._script is not None and not self._inside:
             self._script.close()
         self._script = None
 
     def go_on(self, now: float) -> str:
-        """As far as it can; why it failed, or nothing."""
+        """Advance the script as far as possible; return the reason for a failure, or an empty text."""
         while self._script is not None:
             until, _, why = self._step
             if not until():

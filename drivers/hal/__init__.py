@@ -1,1 +1,1 @@
-"""LinuxCNC's HAL: setpoints, spindle and terminals on whatever HAL has a driver for."""
+"""Driver for LinuxCNC's HAL, with setpoints, spindle and terminals on any hardware that HAL supports."""

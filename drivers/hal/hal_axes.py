@@ -1,4 +1,4 @@
-"""The slides behind ``core.ports.AxisSink`` and ``Gear``: setpoints here, played by the bridge and HAL."""
+"""Axes on HAL: the setpoint queue is here, and the bridge and HAL play it."""
 
 from __future__ import annotations
 
@@ -17,34 +17,34 @@ from drivers.setpoint_pieces import Piece
 from drivers.setpoint_queue import check_limits, pieces_of
 from drivers.spindle_gear import GearedQueue, Motion, Phase, Slides
 
-_PAST = 0.5  # s of setpoints that may still be asked for
-_POWER = 1.5  # s for the drives' power
-_STILL = 0.1  # s without a count after which a slide stands
+_PAST = 0.5  # Age in s of setpoints that are still available.
+_POWER = 1.5  # Seconds for the drives to switch on.
+_STILL = 0.1  # Seconds without a count after which an axis is at standstill.
 _SPEED_OVER = 0.05  # s
 _NAN = float("nan")
 
 
 class HalQueue(GearedQueue):
-    """As GearedQueue, but the bridge says when the way over the spindle's turns is over."""
+    """Geared setpoint queue for which the bridge decides when a cam has ended."""
 
     def follow(self, t: float, turns: float) -> Motion | None:
-        """One sample of the spindle while the slides follow it."""
+        """Return the setpoint for one sample of the spindle, or None without an active cam."""
         return None if self._gearing is None else self._gearing.play(t, t, turns)
 
     def left(self, t: float) -> None:
-        """The way is over, and what goes on by time has begun."""
+        """End the cam at time ``t``; the tail that follows by time has started."""
         if self._gearing is not None:
             self._leave(t, self._gearing)
 
     def braked(self, t: float, pieces: list[Piece]) -> None:
-        """The bridge has braked by itself."""
+        """Replace the queue by a deceleration that the bridge has performed."""
         if self._gearing is not None:
             self.rest_at(pieces[0].p)
         self.replace(t, pieces)
 
 
 class HalAxes:
-    """Used by the one thread that owns the bridge."""
+    """``core.ports.AxisSink`` and ``Gear`` of HAL, used only by the thread that owns the bridge."""
 
     def __init__(self, config: HalConfig, link: HalLink, now: Callable[[], float]) -> None:
         self.config = config
@@ -54,35 +54,35 @@ class HalAxes:
         self.commit = config.commit
         self._driven = [n for n, axis in enumerate(config.axes) if axis.pins is not None]
         self.queue = HalQueue(Slides.of(config.axes, config.commit), (0.0,) * len(self.axes))
-        self.zero = [0.0] * len(self.axes)  # where home is, as HAL counts
+        self.zero = [0.0] * len(self.axes)  # Home positions in HAL's count.
         self._homed = [axis.absolute or axis.pins is None for axis in config.axes]
         self.homing: Homing | None = None
         self.fault: Fault | str = ""
-        self.clearing: list[Callable[[], None]] = []  # who else has something to forget
-        self.connecting: list[Callable[[], None]] = []  # and when HAL has come up anew
-        self.spindle_at: tuple[float, float] | None = None  # time and turns of the newest sample
-        self.index_at = 0.0  # turns at which the spindle's index was, as HAL counts
+        self.clearing: list[Callable[[], None]] = []  # Functions that clear the faults of other parts.
+        self.connecting: list[Callable[[], None]] = []  # Functions to call after HAL was loaded again.
+        self.spindle_at: tuple[float, float] | None = None  # Time and revolutions of the newest sample.
+        self.index_at = 0.0  # Revolutions at the spindle's index in HAL's count.
         probe = config.probe
         self.touch = HalTouch(config.table.period, active_low=probe.active_low) if probe is not None else None
-        # An axis that turns as the spindle: it stays at its count. None: it is held, or there is none.
+        # An axis that is used as the spindle and retains its count. None: C is engaged or does not exist.
         self._lent = next((n for n, axis in enumerate(config.axes) if axis.is_spindle), None)
-        self.c_turns = False  # C has its count from the index, and is to turn to its place, or does
+        self.c_turns = False  # C turns to its position relative to the index.
         self.rps = 0.0
         self._on = False
-        self._order = 0  # the one after which the bridge's word on power counts
+        self._order = 0  # Number of the command after which the bridge's power report is valid.
         self._t = 0.0
         self._command = self._actual = (0.0,) * len(self.axes)
-        self._moved = -math.inf  # when a slide has moved last
+        self._moved = -math.inf  # Time of the last motion.
         self._still = self._actual
         self._brakings = 0.0
         self._samples: Callable[..., None] = _nobody
         self._marks = [n for n, axis in enumerate(config.axes) if axis.switch]
         self._turned: deque[tuple[float, float]] = deque()
 
-    # --- what comes from the bridge -----------------------------------------------------------------------
+    # --- data from the bridge -----------------------------------------------------------------------------
 
     def connected(self) -> None:
-        """HAL has come up, or anew: only what is absolute knows where it is."""
+        """Handle a new connection to HAL, after which only absolute axes know their position."""
         self._homed = [axis.absolute or axis.pins is None for axis in self.config.axes]
         self._brakings = number(self._link.told, "brakings")
         self._on = False
@@ -92,11 +92,11 @@ class HalAxes:
         self.queue.rest_at(self._actual)
 
     def keep_samples(self, keep: Callable[..., None]) -> None:
-        """Who wants each sample: time, demand, actual, turns/s, turns, how long the queue goes on."""
+        """Set the function that receives each sample as a row of ``core.ports.SampleSource``."""
         self._samples = keep
 
     def take(self) -> None:
-        """The samples that have come."""
+        """Process the samples that have been received."""
         axes, config = len(self._driven), self.config
         turning, telling = bool(config.spindle.pins.position), bool(config.spindle.pins.velocity)
         width = 1 + 2 * axes + turning + telling + len(self._marks) + (self.touch is not None)
@@ -137,7 +137,7 @@ class HalAxes:
         )
 
     def _speed_of_turns(self, t: float, turns: float) -> None:
-        """Turns/s over the last samples, where HAL tells no velocity."""
+        """Calculate the speed in rev/s from the last samples, if HAL does not provide a velocity."""
         turned = self._turned
         turned.append((t, turns))
         while turned[0][0] < t - _SPEED_OVER:
@@ -146,7 +146,7 @@ class HalAxes:
         self.rps = (turns - turned[0][1]) / since if since > 0.0 else self.rps
 
     def _counted(self, raw: Sequence[float], t: float) -> tuple[float, ...]:
-        """As the control counts; an axis without pins is where the queue has it."""
+        """Convert HAL positions into those of the control; an axis without pins is at its queued position."""
         place = list(self.queue.demand_at(t)[0])
         for value, index in zip(raw, self._driven, strict=True):
             if index != self._lent:
@@ -154,7 +154,7 @@ class HalAxes:
         return tuple(place)
 
     def tick(self) -> None:
-        """Supervise and home. Raises nothing: what is wrong becomes the fault."""
+        """Supervise and home, without raising errors; errors become the fault."""
         self.take()
         told = self._link.told
         trouble = self._link.trouble or told_fault(told)
@@ -168,7 +168,7 @@ class HalAxes:
         self.queue.trim(self._now() - _PAST)
 
     def _follow_bridge(self) -> None:
-        """What the bridge has begun or ended by itself."""
+        """Update the queue after the bridge has ended a cam or braked."""
         told = self._link.told
         if self.queue.meshed and told.get("geared") is False and "left" in told:
             left = told["left"]
@@ -182,7 +182,10 @@ class HalAxes:
             self.queue.braked(pieces[0].t, pieces)
 
     def _taken_away(self) -> None:
-        """Power was taken away: E-stop, a drive's fault. Who only counts has lost its place."""
+        """Handle a loss of power by E-stop or a drive fault.
+
+        Axes without an absolute encoder lose their home.
+        """
         self._forget()
         for index in self._driven:
             self._homed[index] = self.config.axes[index].absolute
@@ -194,19 +197,19 @@ class HalAxes:
     # --- the port -----------------------------------------------------------------------------------------
 
     def now(self) -> float:
-        """The machine's clock."""
+        """Return the time of the machine's clock in seconds."""
         return self._now()
 
     def horizon(self) -> float:
-        """End of what is queued; now when nothing is."""
+        """Return the end time of the setpoint queue, or the present time if it is empty."""
         return self.queue.horizon(self._now())
 
     def demand_at(self, t: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Queued position and velocity at ``t``."""
+        """Return the queued positions and velocities at time ``t``."""
         return self.queue.demand_at(t)
 
     def splice(self, segments: Segments) -> None:
-        """Queue setpoints. Raises DriverError as the port says, and for what the axes cannot do."""
+        """Splice setpoints into the queue. Raises DriverError if they are invalid or exceed axis limits."""
         self._need_power()
         demand_no_homing(self.homing.name if self.homing is not None else "")
         self._check(segments)
@@ -214,7 +217,7 @@ class HalAxes:
         self._send("splice", pieces_of(segments, len(self.axes)))
 
     def mesh(self, cam: Cam) -> None:
-        """Follow the spindle. Raises DriverError as the port says."""
+        """Make the axes follow the spindle. Raises DriverError without an encoder or for an invalid cam."""
         self._need_power()
         if self.spindle_at is None:
             raise DriverError(
@@ -230,11 +233,11 @@ class HalAxes:
         self._send("mesh", [*way, *then], zero=cam.zero + self.index_at, sign=cam.sign, way=len(way))
 
     def geared(self) -> Geared | None:
-        """Where on the cam the slides are."""
+        """Return the position of the axes on the cam, or None if they do not follow the spindle."""
         return self.queue.geared()
 
     def sample(self) -> AxisSample:
-        """The axes as HAL has sampled them last."""
+        """Return the state of the axes from HAL's last sample."""
         t, actual, powered = self._t, self._actual, self._powered
         demand = self._command if powered and self.homing is None else actual
         velocity = self.queue.demand_at(t)[1]
@@ -251,7 +254,7 @@ class HalAxes:
         )
 
     def enable(self, on: bool) -> None:
-        """Power on or off, and wait for it. Raises DriverError where the chain does not close."""
+        """Switch the power on or off and wait. Raises DriverError if the E-stop chain does not close."""
         if not on:
             self._forget()
             if not self._link.lost:
@@ -273,7 +276,7 @@ class HalAxes:
         self._on = True
 
     def stop(self, how: Stop) -> None:
-        """Brake on the path, as soon as HAL can be told: within some milliseconds; or off at once."""
+        """Brake on the path within a few milliseconds, or switch off at once with ``Stop.OFF``."""
         if self._link.lost:
             self._forget()
             return
@@ -286,7 +289,7 @@ class HalAxes:
         self._link.say("off" if how is Stop.OFF else "ramp-off")
 
     def home(self, axis: str) -> None:
-        """Look for home; ``sample().homed`` says when it is found. Raises DriverError."""
+        """Start to home an axis; ``sample().homed`` becomes True when it is done. Raises DriverError."""
         demand_axis(axis, self.axes)
         index = self.axes.index(axis)
         figures = self.config.axes[index]
@@ -298,10 +301,10 @@ class HalAxes:
         self.homing = Homing(figures, index, self)
 
     def clear_fault(self) -> None:
-        """Forget the fault; the drives stay off. Raises DriverError.
+        """Clear the fault; the drives remain off. Raises DriverError.
 
-        HAL is loaded again where its bridge is gone, its thread has stopped or its board is not reached:
-        hm2_eth returns to a card only then.
+        HAL is loaded again if the bridge has ended, the servo thread has stopped or the board is not
+        reachable. hm2_eth reconnects to a card only when it is loaded.
         """
         if self._link.told.get("stands") is True or self._link.is_stale:
             self._link.give_up()
@@ -315,14 +318,16 @@ class HalAxes:
             clear()
         self.fault = ""
 
-    # --- for C on the spindle's drive ----------------------------------------------------------------------
+    # --- for C on the spindle drive ------------------------------------------------------------------------
 
     def lend(self, axis: int | None, raw: float = 0.0, count: float = 0.0) -> None:
-        """C is the spindle from here on, and keeps its count; ``axis`` None: it is held where HAL counts
-        ``raw``, and ``count`` is what that is to the control.
+        """Release C to the spindle with an unchanged count, or engage C if ``axis`` is None.
+
+        When C is engaged, ``raw`` is its position in HAL and ``count`` is its position in the control.
         """
         held, self._lent = self._lent, axis
-        place = list(self.queue.demand_at(self._now())[0])  # HAL goes on playing it, whatever is fed back
+        # HAL continues to play this setpoint, independent of the feedback.
+        place = list(self.queue.demand_at(self._now())[0])
         if held is not None and axis is None:
             self.zero[held] = raw - count
             place[held] = count
@@ -335,36 +340,36 @@ class HalAxes:
     # --- for homing ---------------------------------------------------------------------------------------
 
     def bit(self, name: str) -> bool:
-        """One of the bridge's bits, such as ``X.index``."""
+        """Return a bit of the bridge by its pin, such as ``X.index``."""
         return self._link.bit(name)
 
     def figure(self, name: str) -> float:
-        """One of its numbers, such as ``X.index-at``."""
+        """Return a number of the bridge by its pin, such as ``X.index-at``."""
         return self._link.figure(name)
 
     def ask_index(self, pin: str, on: bool) -> None:
-        """Ask an encoder for its index, or no longer."""
+        """Request the index of an encoder, or cancel the request."""
         self._link.say("index", pin=pin, on=on)
 
     def let_limit(self, axis: str, on: bool) -> None:
-        """Its limit switch is looked for: it stops nothing."""
+        """Select whether the limit switch of an axis is ignored, as needed for homing on it."""
         self._link.say("homing", axis=axis, on=on)
 
     def move(self, segments: Segments) -> None:
-        """Setpoints of a homing. Raises DriverError."""
+        """Splice the setpoints of a homing. Raises DriverError."""
         self.queue.splice(segments, self._now())
         self._send("splice", pieces_of(segments, len(self.axes)))
 
     def halt(self) -> None:
-        """Brake as soon as can be."""
+        """Brake as soon as possible."""
         self._link.say("brake")
 
     def raw(self, index: int) -> float:
-        """Where HAL counts this axis to be."""
+        """Return the position of an axis in HAL's count."""
         return self._actual[index] + self.zero[index]
 
     def found(self, index: int, zero: float) -> None:
-        """Home is here, as HAL counts."""
+        """Set the home position of an axis to ``zero`` in HAL's count."""
         leap = self.zero[index] - zero
         self.zero[index] = zero
         self._homed[index] = True
@@ -383,7 +388,7 @@ class HalAxes:
 
     @property
     def _rolls(self) -> bool:
-        """Whether a slide has moved of late, by what it feeds back."""
+        """Whether an axis has moved recently, according to its feedback."""
         return self._t - self._moved < _STILL
 
     @property
@@ -426,9 +431,9 @@ class HalAxes:
 
     @property
     def resting(self) -> bool:
-        """Nothing is queued, and nothing moves."""
+        """Whether the queue is empty and no axis moves."""
         return at_rest(self.queue.horizon(self._now()), self._now()) and not self._rolls
 
 
 def _nobody(*_figures: float) -> None:
-    """Wants no samples."""
+    """Ignore a sample."""

@@ -1,7 +1,7 @@
-"""Our own part of the HAL file: setpoints out of a stream, the gear, the E-stop chain, samples back.
+"""TurnDesk's own section of the HAL file: setpoint streams, gear, E-stop chain and samples.
 
-It is made of LinuxCNC's stock components and stands in the place of the line ``#turndesk`` of the machine's
-HAL file: behind what reads the machine, before what drives it. See decision 0028.
+The section uses standard LinuxCNC components and replaces the line ``#turndesk`` of the machine's HAL file.
+It is located after the functions that read the machine and before those that drive it. See decision 0028.
 """
 
 from __future__ import annotations
@@ -15,21 +15,22 @@ from core.ports import DriverError
 from drivers.hal.hal_config import HalAxis, HalConfig
 
 MARK = "#turndesk"
-BRIDGE = "turndesk"  # the component that the bridge is
+BRIDGE = "turndesk"  # Name of the bridge's component.
 FLOAT, BIT, COUNT = "float", "bit", "s32"
 _STREAMS = ("a", "b")
-_ROOM = 2.0  # of an axis' acceleration: setpoints, their corners and a gear stay below it
-_FASTER = 1.2  # of its speed
-_BRAKES = 0.15  # s beyond the ramp from full speed in which the bridge must have taken the power itself
-_SAMPLES = 4000  # rows that wait for the bridge
+_ROOM = 2.0  # Factor of an axis' acceleration, above that of setpoints, corners and a gear.
+_FASTER = 1.2  # Factor of an axis' speed.
+# Seconds in addition to the ramp from full speed until the bridge must have switched off the power.
+_BRAKES = 0.15
+_SAMPLES = 4000  # Rows buffered for the bridge.
 _LOADRT = re.compile(r"^\s*loadrt\s+(\S+)\s*(.*?)\s*(?:#.*)?$")
 
 
 @dataclass(frozen=True, slots=True)
 class Link:
-    """A pin or signal of the machine's HAL file, and what of ours hangs on it.
+    """Pin or signal of the machine's HAL file, with TurnDesk's signals that are connected to it.
 
-    ``path`` is its key in the machine file. ``drives``: ours is the source.
+    ``path`` is its key in the machine file. ``drives`` is True if TurnDesk is the source.
     """
 
     path: str
@@ -41,7 +42,7 @@ class Link:
 
 @dataclass(frozen=True, slots=True)
 class BridgePin:
-    """A pin of the bridge itself: ``way`` is in, out or io."""
+    """Pin of the bridge itself, with the direction in, out or io."""
 
     name: str
     kind: str
@@ -50,52 +51,55 @@ class BridgePin:
 
 @dataclass(slots=True)
 class Border:
-    """What is loaded, in which order it is called, what it is set to, and what hangs on what."""
+    """Contents of the section: components, order of calls, parameter values and connections."""
 
-    modules: dict[str, list[str]] = field(default_factory=dict)  # instances by component
-    alone: list[str] = field(default_factory=list)  # whole loadrt lines of components without instances
+    modules: dict[str, list[str]] = field(default_factory=dict)  # Instances by component.
+    alone: list[str] = field(default_factory=list)  # Complete loadrt lines of components without instances.
     calls: list[str] = field(default_factory=list)
-    nets: dict[str, list[str]] = field(default_factory=dict)  # pins by signal, the source first
+    nets: dict[str, list[str]] = field(default_factory=dict)  # Pins by signal, with the source first.
     values: list[tuple[str, float]] = field(default_factory=list)
     links: list[Link] = field(default_factory=list)
     pins: list[BridgePin] = field(default_factory=list)
-    columns: str = ""  # of the sampler
+    columns: str = ""  # Column types of the sampler.
 
     def add(self, component: str, name: str, **pins: str) -> None:
-        """One more instance, its pins on signals; ``_`` in the name of a pin is ``-``, at its end nothing."""
+        """Add a component instance with its pins on signals.
+
+        In the name of a pin, ``_`` represents ``-``; a trailing ``_`` is removed.
+        """
         self.modules.setdefault(component, []).append(name)
         self.calls.append(name)
         for pin, signal in pins.items():
             self.wire(signal, f"{name}.{pin.rstrip('_').replace('_', '-')}")
 
     def wire(self, signal: str, *pins: str) -> None:
-        """Pins on a signal of ours."""
+        """Connect pins to one of TurnDesk's signals."""
         self.nets.setdefault(signal, []).extend(pins)
 
     def own(self, name: str, kind: str, way: str, signal: str = "") -> str:
-        """A pin of the bridge, on a signal."""
+        """Add a pin of the bridge, connect it to a signal and return its name."""
         self.pins.append(BridgePin(name, kind, way))
         if signal:
             self.wire(signal, f"{BRIDGE}.{name}")
         return f"{BRIDGE}.{name}"
 
     def sample(self, kind: str, signal: str) -> None:
-        """One more column of what comes back."""
+        """Add a column to the samples."""
         self.wire(signal, f"sampler.0.pin.{len(self.columns)}")
         self.columns += {FLOAT: "f", BIT: "b", COUNT: "s"}[kind]
 
     def reads(self, path: str, pin: str, kind: str, *ours: str) -> None:
-        """Something of the machine's that we read."""
+        """Connect an output of the machine to TurnDesk's signals."""
         self.links.append(Link(path, pin, kind, False, ours))
 
     def drives(self, path: str, pin: str, kind: str, ours: str) -> None:
-        """Something of the machine's that we drive; nothing where it has no such pin."""
+        """Connect an input of the machine to TurnDesk's signal, unless the pin name is empty."""
         if pin:
             self.links.append(Link(path, pin, kind, True, (ours,)))
 
 
 def border_of(config: HalConfig) -> Border:
-    """Everything of ours in the servo thread, in the order in which it is called."""
+    """Build the section with its calls in the order of the servo thread."""
     border = Border()
     _streams(border, config)
     _chain(border, config)
@@ -117,12 +121,12 @@ def border_of(config: HalConfig) -> Border:
 
 
 def columns(config: HalConfig) -> int:
-    """Of one stream: the row's number; each axis' place and its way a turn of the spindle."""
+    """Return the columns of one stream: the row number, and for each axis position and travel per rev."""
     return 1 + 2 * len(config.driven)
 
 
-# --- Two streams. One plays; the other takes what shall be played instead, and plays from that row on: rows
-# that are queued in HAL can be recalled.
+# --- Two streams: one plays, and the other receives replacement rows and plays from the first of these on.
+# Rows queued in HAL can thus be recalled.
 
 
 def _streams(border: Border, config: HalConfig) -> None:
@@ -152,7 +156,7 @@ def _streams(border: Border, config: HalConfig) -> None:
     border.sample(FLOAT, "td-row")
 
 
-# --- The E-stop chain: whole only while the machine's own is, no axis has a fault, and the bridge lives.
+# --- E-stop chain: closed only while the machine's chain is closed, no axis has a fault and the bridge runs.
 
 
 def _chain(border: Border, config: HalConfig) -> None:
@@ -178,7 +182,7 @@ def _chain(border: Border, config: HalConfig) -> None:
         border.reads(f"hal.axes.{name}.fault", pin, BIT, f"td-{name}-fault")
     signals = [f"td-{name}-fault" for name, _ in faults]
     if signals:
-        # The bridge brakes the others; where it does not, HAL takes the power.
+        # The bridge brakes the other axes; if it does not, HAL switches the power off.
         border.add("timedelay", "td.patience", in_=_any_of(border, "td-any-fault", signals), out="td-fault")
         border.values.append(("td.patience.on-delay", _patience(config)))
         pins["fault_in"] = "td-fault"
@@ -191,12 +195,12 @@ def _chain(border: Border, config: HalConfig) -> None:
 
 
 def _patience(config: HalConfig) -> float:
-    """s in which the slowest slide has braked."""
+    """Return the seconds in which the slowest axis has braked."""
     return _BRAKES + max(axis.vmax / axis.amax for axis in config.driven)
 
 
 def _estop(border: Border, config: HalConfig) -> None:
-    """``td-estop-ok`` out of the input estop, which the machine file says whichever way it is wired."""
+    """Derive ``td-estop-ok`` from the E-stop input, for either polarity."""
     wired = config.inputs["estop"]
     raw = "td-in-estop"
     border.own("in.estop", BIT, "in", raw)
@@ -208,7 +212,7 @@ def _estop(border: Border, config: HalConfig) -> None:
 
 
 def _reached(border: Border, config: HalConfig) -> str:
-    """Return the signal of a released E-stop whose input is current: a frozen input is a pressed E-stop."""
+    """Return the signal of a released E-stop with a current input; a frozen input counts as pressed."""
     if not config.table.link_fault:
         return "td-estop-ok"
     border.own("link-fault", BIT, "in", "td-link-fault")
@@ -219,7 +223,7 @@ def _reached(border: Border, config: HalConfig) -> str:
 
 
 def _any_of(border: Border, name: str, signals: list[str]) -> str:
-    """The signal that is on when one of these is."""
+    """Return a signal that is on when any of these signals is on."""
     so_far = signals[0]
     for index, signal in enumerate(signals[1:]):
         both = f"{name}-{index}"
@@ -228,7 +232,7 @@ def _any_of(border: Border, name: str, signals: list[str]) -> str:
     return so_far
 
 
-# --- One axis: place + way a turn · turns of the spindle. Where a stream runs dry or a gear asks for too
+# --- One axis: position + travel per rev · spindle revolutions. If a stream runs empty or a gear asks too
 # much, the limit brakes and follows as the axis can.
 
 
@@ -241,7 +245,7 @@ def _slide(border: Border, axis: HalAxis) -> None:
     )
     border.add("sum2", f"td.{name}.sum", in0=f"{signal}-at", in1=f"{signal}-geared", out=f"{signal}-wanted")
     free = "td-no-power"
-    if axis.is_spindle:  # what C is sent while the spindle turns is where it stands when it is held
+    if axis.is_spindle:  # While the spindle turns, the setpoint of C has no effect.
         border.add("not", f"td.{name}.turns", in_="td-position_mode", out=f"{signal}-turns")
         border.add("or2", f"td.{name}.free", in0=free, in1=f"{signal}-turns", out=f"{signal}-free")
         free = f"{signal}-free"
@@ -270,10 +274,10 @@ def _slide(border: Border, axis: HalAxis) -> None:
 
 
 def _without_leap(border: Border, signal: str, path: str, pin: str, own: str) -> None:
-    """``signal-feedback`` counts on where the encoder (``signal-raw``) leaps to 0 at its index.
+    """Create a feedback signal that continues to count where the encoder resets to 0 at its index.
 
-    ``signal-shift`` is what is made up for: after the leap also where the index was. ``own`` is the bridge's
-    pin that asks for the index.
+    The signal with the suffix ``shift`` is the compensated jump, and after the reset also the position of the
+    index. ``own`` is the bridge pin that requests the index.
     """
     name, index = signal.replace("td-", "td.", 1), f"{signal}-index"
     border.own(own, BIT, "io", index)
@@ -314,7 +318,7 @@ def _spindle(border: Border, config: HalConfig) -> None:
 
 
 def _turned(border: Border, config: HalConfig) -> None:
-    """What turns the spindle, stops it at an angle, or makes it C; all of it off while the chain is open."""
+    """Connect the commands that turn, orient or position the spindle; an open chain disables all of them."""
     pins, path = config.spindle.pins, "hal.spindle"
     border.own("spindle.speed", FLOAT, "out", "td-wanted-rpm")
     border.add("mux2", "td.spindle", in1="td-wanted-rpm", sel="td-ok", out="td-rpm")
@@ -333,8 +337,8 @@ def _turned(border: Border, config: HalConfig) -> None:
             border.drives(f"{path}.{key}", getattr(pins, key), BIT, f"td-{key}")
 
 
-# --- Outputs are safe while the chain is open, lamps of the signal tower while the bridge is silent.
-# Inputs and pots go to the bridge as they are.
+# --- Outputs are safe while the chain is open; lamps of the signal tower are safe while the bridge is silent.
+# Inputs and pots are passed to the bridge unchanged.
 
 
 def _terminals(border: Border, config: HalConfig) -> None:
@@ -365,14 +369,14 @@ def _terminals(border: Border, config: HalConfig) -> None:
         border.reads(f"io.analog.{name}", pot.pin, kind, f"td-analog-{name}")
 
 
-# --- As text.
+# --- Output as text.
 
 
 def session_text(machine: str, border: Border, thread: str, source: str) -> str:
-    """The machine's HAL file with our part in its place. Raises DriverError where it has none.
+    """Return the machine's HAL file with TurnDesk's section inserted.
 
-    A component can be loaded once only: where the machine's file loads one of ours too, the instances of both
-    are loaded together, where the first of them is needed. ``source`` names the file.
+    A component can be loaded only once. If both parts use a component, their instances are loaded together at
+    the first place. ``source`` names the file. Raises DriverError if the mark is missing.
     """
     lines = machine.splitlines()
     place = next((n for n, line in enumerate(lines) if line.strip().lower().startswith(MARK)), None)
@@ -390,7 +394,7 @@ def session_text(machine: str, border: Border, thread: str, source: str) -> str:
 
 
 def _instances(line: str) -> tuple[str, list[str]]:
-    """The component that a line loads, and its instances; nothing for any other line."""
+    """Return the component that a line loads and its instances, or an empty name for other lines."""
     found = _LOADRT.match(line)
     if found is None:
         return "", []
@@ -401,7 +405,7 @@ def _instances(line: str) -> tuple[str, list[str]]:
 
 
 def _together(line: str, modules: dict[str, list[str]]) -> str:
-    """Loads our instances with the machine's; they are taken out of ``modules``."""
+    """Return the line with TurnDesk's instances added, and remove them from ``modules``."""
     component, theirs = _instances(line)
     if component not in modules:
         return line
@@ -409,7 +413,7 @@ def _together(line: str, modules: dict[str, list[str]]) -> str:
 
 
 def _left_out(line: str, modules: dict[str, list[str]]) -> str:
-    """Its instances are loaded with ours, further up."""
+    """Return the line as a comment if its instances are loaded earlier."""
     component, theirs = _instances(line)
     if component not in modules:
         return line
@@ -418,7 +422,7 @@ def _left_out(line: str, modules: dict[str, list[str]]) -> str:
 
 
 def _ours(border: Border, thread: str, modules: Mapping[str, list[str]]) -> Iterator[str]:
-    """Loading, order, figures and wiring; the bridge hangs itself on it when it is there."""
+    """Yield the lines that load, call, set and connect the section, without the bridge's own pins."""
     yield from border.alone
     yield from (f"loadrt {component} names={','.join(names)}" for component, names in modules.items())
     yield from (f"addf {call} {thread}" for call in border.calls)
@@ -430,7 +434,7 @@ def _ours(border: Border, thread: str, modules: Mapping[str, list[str]]) -> Iter
 
 
 def bridge_nets(border: Border) -> Iterator[tuple[str, list[str]]]:
-    """The bridge's own pins by signal."""
+    """Yield the bridge's own pins by signal."""
     for signal, pins in border.nets.items():
         own = [pin for pin in pins if pin.startswith(Message("{what}.", what=BRIDGE))]
         if own:

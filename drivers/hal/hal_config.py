@@ -1,4 +1,4 @@
-"""A machine behind HAL as its driver needs it: filled by the app from the machine file, frozen."""
+"""Configuration of a machine on HAL, which the app fills from the machine file."""
 
 from __future__ import annotations
 
@@ -13,24 +13,24 @@ from drivers.setpoint_queue import AxisFigures
 
 @dataclass(frozen=True, slots=True)
 class HalAxis(AxisFigures):
-    """One axis. Without ``pins`` it only counts."""
+    """One axis; without ``pins`` it only counts."""
 
     pins: HalAxisPins | None = None
     home_method: int = 0
     home_latch: float = 0.0  # mm/s
     home_offset: float = 0.0
-    is_spindle: bool = False  # C on the spindle's own drive
+    is_spindle: bool = False  # C uses the spindle drive.
 
     @property
     def switch(self) -> str:
-        """The pin that homing looks for, by its key; empty: none."""
+        """The key of the pin that homing searches for, or an empty text."""
         needs = NEEDS.get(self.home_method, ()) if not self.absolute and self.pins is not None else ()
         return next((key for key in needs if key != "index_enable"), "")
 
 
 @dataclass(frozen=True, slots=True)
 class HalSpindle:
-    """The spindle, rpm and rpm/s. ``turned``: HAL turns it, else an inverter does."""
+    """Spindle in rpm and rpm/s; ``turned`` is True if HAL drives the spindle, False for an inverter."""
 
     pins: HalSpindlePins
     rpm_max: float
@@ -42,8 +42,10 @@ class HalSpindle:
 
 @dataclass(frozen=True, slots=True)
 class HalOutput:
-    """An output's pin: ``safe`` None keeps its state. ``lamp``: of the signal tower, which tells of an open
-    E-stop chain and is safe only while the bridge is silent.
+    """Output with its pin and safe state; None leaves the output unchanged.
+
+    ``lamp`` marks a lamp of the signal tower. It indicates an open E-stop chain, so it is safe only while the
+    bridge is silent.
     """
 
     pin: str
@@ -53,7 +55,7 @@ class HalOutput:
 
 @dataclass(frozen=True, slots=True)
 class HalInput:
-    """An input's pin."""
+    """Input with its pin."""
 
     pin: str
     active_low: bool = False
@@ -61,7 +63,7 @@ class HalInput:
 
 @dataclass(frozen=True, slots=True)
 class HalPot:
-    """A pot's pin (0…1), or that of a wheel that counts; ``switch`` is its input's name."""
+    """Pot with its pin (0…1), or a handwheel that counts; ``switch`` names its input."""
 
     pin: str
     low: float = 0.0
@@ -71,7 +73,7 @@ class HalPot:
 
 @dataclass(frozen=True, slots=True)
 class HalConfig:
-    """The whole machine. Times in seconds; ``file`` is the path of the table's HAL file."""
+    """Configuration of the complete machine; times in seconds, ``file`` is the path of the HAL file."""
 
     table: HalTable
     file: Path
@@ -84,7 +86,7 @@ class HalConfig:
 
     @property
     def probe(self) -> HalInput | None:
-        """The input of a probe or tool setter, which is sampled with the slides."""
+        """The input of a probe or tool setter, which is sampled with the axes, or None."""
         return self.inputs.get(PROBE)
 
     @property

@@ -1,6 +1,6 @@
 """Homing and probing on HAL.
 
-An axis goes onto its switch, slowly off it again, and where the encoder has one to its index.
+An axis moves to its switch, slowly off the switch again, and then to the index if the method uses one.
 """
 
 from __future__ import annotations
@@ -15,16 +15,16 @@ from drivers.hal.hal_table import HERE, NEEDS
 from drivers.port_parts import FirstTouch
 from drivers.setpoint_queue import straight
 
-_DOWN = frozenset((1, 17, 5, 21, 33))  # methods that look for their mark towards lower positions
+_DOWN = frozenset((1, 17, 5, 21, 33))  # Methods that search in the negative direction.
 _INDEX_ONLY = frozenset((33, 34))
-_SPARE = 1.2  # of the travel
-_SLOWER = 10.0  # than the search, where the file says no slow speed
-_AFTER = 0.2  # s for the bridge's braking to be told
-_INDEX_WAY = 30.0  # mm or degrees within which an index has to come
+_SPARE = 1.2  # Factor of the travel.
+_SLOWER = 10.0  # Factor by which the slow speed is below the search speed by default.
+_AFTER = 0.2  # Seconds until braking of the bridge is reported.
+_INDEX_WAY = 30.0  # Mm or degrees within which an index must occur.
 
 
 class Slides(Protocol):
-    """What homing asks of the axes; positions as HAL counts."""
+    """Functions of the axes that homing needs; positions are in HAL's count."""
 
     def now(self) -> float: ...
     def horizon(self) -> float: ...
@@ -53,7 +53,10 @@ class _Step(Enum):
 
 
 class Homing:
-    """One axis: ``step`` once a tick, ``see`` every sample, until ``done``. Raises DriverError."""
+    """Homing of one axis: ``step`` must be called once per tick and ``see`` for each sample, until ``done``.
+
+    ``step`` raises DriverError if the homing fails.
+    """
 
     def __init__(self, axis: HalAxis, index: int, slides: Slides) -> None:
         self.name = axis.name
@@ -65,23 +68,23 @@ class Homing:
         self._slow = axis.home_latch or axis.home_speed / _SLOWER
         self._step = _Step.BEGIN
         self._since = 0.0
-        self._on: bool | None = None  # the switch in the newest sample
+        self._on: bool | None = None  # Switch in the newest sample.
         self._mark: float | None = None
         slides.let_limit(axis.name, True)
 
     @property
     def done(self) -> bool:
-        """Home is found, and the axis stands."""
+        """Whether home is found and the axis is at rest."""
         return self._step is _Step.DONE
 
     def see(self, raw: float, on: bool) -> None:
-        """One sample of the axis and its switch: the mark is where it goes off, to one period."""
+        """Add a sample of position and switch; home is the position at which the switch turns off."""
         if self._step is _Step.LEAVE and self._on and not on and self._mark is None:
             self._mark = raw
         self._on = on
 
     def step(self, now: float) -> None:
-        """Look, and go on."""
+        """Continue the homing."""
         rests = at_rest(self._slides.horizon(), now)
         acts = {
             _Step.BEGIN: self._begin,
@@ -141,7 +144,7 @@ class Homing:
         self._slides.ask_index(f"{self.name}.index", True)
 
     def _look_for_index(self, now: float, rests: bool) -> None:
-        """The bit falls when the index has come by; what was made up for then is where it was."""
+        """Wait until the bit falls at the index; the compensated jump is then the position of the index."""
         if now > self._since + 0.1 and not self._slides.bit(f"{self.name}.index"):
             self._mark = self._slides.figure(f"{self.name}.index-at")
             self._slides.halt()
@@ -185,17 +188,17 @@ class Homing:
         return DriverError("{name}: homing failed: {why}", "homing", reason=reason, name=self.name, why=why)
 
 
-# --- The probe: HAL samples its input and the places of the axes in one period.
+# --- Probe: HAL samples its input and the axis positions in the same period.
 
 
 class HalTouch(FirstTouch):
-    """Touches by HAL's samples."""
+    """Touch input that is based on HAL's samples."""
 
     def __init__(self, period: float, *, active_low: bool) -> None:
         super().__init__()
         self._period, self._low = period, active_low
 
     def see(self, t: float, place: tuple[float, ...], raw: bool) -> None:
-        """One period of the servo thread: its input, and where the slides were."""
+        """Add the input and the axis positions of one period of the servo thread."""
         if self._touches(raw is not self._low):
             self._kept = Latch(t, place, self._period)

@@ -1,4 +1,4 @@
-"""What the bridge has told last, and words to it; a bridge that is silent or gone is a fault."""
+"""Connection to the bridge, with its last report; a silent or ended bridge is a fault."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from drivers.hal.bridge.packets import BridgeConfig, Head, number, pack, packets
 from drivers.hal.hal_session import BridgeLink
 from drivers.setpoint_pieces import Piece
 
-_SILENT = 0.15  # s without a report
-_AT_ONCE = 0.05  # s of silence that one look counts at most: who stood still himself blames nobody
-_SETTLES = 0.5  # s after which debounced inputs tell the truth
-_STARTS = 5.0  # s for the slaves of a bus to become operational after HAL was loaded
-_DOWN = 4.0  # s in which HAL is taken down, what it goes on behind a bridge that has died among them
-_LOOK = 0.002  # s between two looks while something is waited for
+_SILENT = 0.15  # Seconds without a report.
+_AT_ONCE = 0.05  # Maximum silence in s that one check counts, so that a delay of this process is not counted.
+_SETTLES = 0.5  # Seconds after which debounced inputs are valid.
+_STARTS = 5.0  # Seconds for bus slaves to become operational after HAL was loaded.
+_DOWN = 4.0  # Seconds for HAL to shut down, including its continuation after a crashed bridge.
+_LOOK = 0.002  # Seconds between two checks during a wait.
 
 
 class HalLink:
-    """One thread. ``open_link`` starts HAL and its bridge, and again after it was lost."""
+    """Connection to the bridge, used by one thread; ``open_link`` starts HAL and its bridge."""
 
     def __init__(
         self,
@@ -38,15 +38,15 @@ class HalLink:
         self._idle = idle
         self._link: BridgeLink | None = None
         self._sent = 0
-        self._reports = 0  # of this bridge
-        self._looked, self._silent = 0.0, 0.0  # when, and how long it had told nothing then, s
+        self._reports = 0  # Number of reports of this bridge.
+        self._looked, self._silent = 0.0, 0.0  # Time of the last check, and the silence at that time in s.
         self.told: Head = {}
-        self.rows: list[Sequence[float]] = []  # samples that nobody has taken
-        self.lost: Fault | str = ""  # why nothing can be said to it any more
-        self.worst = 0.0  # s by which the bridge woke up too late, at most
+        self.rows: list[Sequence[float]] = []  # Samples that have not been taken.
+        self.lost: Fault | str = ""  # Reason why the connection is lost.
+        self.worst = 0.0  # Maximum wake-up delay of the bridge in s.
 
     def connect(self) -> None:
-        """Start it, and wait for its first report. Raises DriverError."""
+        """Start HAL and wait for the first report. Raises DriverError."""
         if self._link is not None and not self._goes_down(self._link):
             raise DriverError("HAL is still shutting down; press Reset again in a few seconds", "hal-bridge")
         self.close()
@@ -54,7 +54,7 @@ class HalLink:
         try:
             self._link = self._open()
         except DriverError as error:
-            self.lost = error.fault  # the next Reset tries again
+            self.lost = error.fault  # The next Reset tries again.
             raise
         self._looked, self._silent = self._clock.now(), 0.0
         if not self.wait(lambda: self._reports > 0, 3.0):
@@ -63,7 +63,7 @@ class HalLink:
         self.wait(lambda: not self.is_stale, _STARTS)
 
     def _goes_down(self, link: BridgeLink) -> bool:
-        """Whether HAL is down behind a bridge that has ended, or will be in a moment."""
+        """Return whether HAL has shut down after its bridge has ended, within 4 s."""
         end = self._clock.now() + _DOWN
         while not link.down and self._clock.now() < end:
             if self._idle is not None:
@@ -72,13 +72,13 @@ class HalLink:
         return link.down
 
     def give_up(self) -> None:
-        """A bridge to a HAL that stands is of no use any more: it ends, and HAL with it."""
+        """End the bridge and HAL, for example after the servo thread has stopped."""
         if self._link is not None and not self.lost:
             self._link.hang_up()
             self.lost = Fault("HAL was shut down", "hal-thread")
 
     def pump(self) -> None:
-        """Take in what has come. Raises nothing: a bridge that is gone is ``lost``."""
+        """Process received packets, without raising errors; a failure is stored in ``lost``."""
         if self._link is None or self.lost:
             return
         self._silent, self._looked = self.age, self._clock.now()
@@ -98,7 +98,7 @@ class HalLink:
 
     @property
     def trouble(self) -> Fault | str:
-        """Why nothing is known of the machine now; empty while it is."""
+        """The reason why the state of the machine is unknown, or an empty text."""
         silent = self.age
         if self.lost or silent <= _SILENT:
             return self.lost
@@ -108,53 +108,53 @@ class HalLink:
 
     @property
     def blind(self) -> bool:
-        """Whether nothing is known of the machine: no word of the bridge, of HAL's thread or of the board."""
+        """Whether the state of the machine is unknown because bridge, servo thread or board are silent."""
         return bool(self.trouble) or self.told.get("stands") is True or self.is_stale
 
     @property
     def is_stale(self) -> bool:
-        """Return whether HAL's inputs are not current because the board is not reached."""
+        """Whether HAL's inputs are old because the board is not reachable."""
         return self.told.get("stale") is True
 
     @property
     def input_age(self) -> float:
-        """Return the age of the inputs in seconds; inf while the board is not reached."""
+        """The age of the inputs in seconds, or inf while the board is not reachable."""
         return float("inf") if self.is_stale else self.age
 
     @property
     def age(self) -> float:
-        """For how long the bridge has told nothing while this side was listening, s."""
+        """The seconds without a report while this side was listening, or inf after a loss."""
         return float("inf") if self.lost else self._silent + min(self._clock.now() - self._looked, _AT_ONCE)
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What is worth knowing of this session of HAL."""
+        """The warnings of the present HAL session."""
         return self._link.warnings if self._link is not None else ()
 
     def beat(self) -> None:
-        """This side lives. A bridge that is silent has enough to read when it comes back."""
+        """Send a sign of life, unless the bridge is silent."""
         if not self.trouble:
-            with suppress(DriverError):  # it is lost, and that is told
+            with suppress(DriverError):  # The loss is reported separately.
                 self.say("beat")
 
     def say(self, what: str, **values: object) -> int:
-        """One order; its number, which the bridge tells once it is carried out. Raises DriverError."""
+        """Send a command and return its number, which the bridge later reports. Raises DriverError."""
         self._sent += 1
         self._send(pack({"do": what, "n": self._sent, **values}))
         return self._sent
 
     def say_pieces(self, what: str, pieces: Sequence[Piece], **values: object) -> None:
-        """An order with setpoints. Raises DriverError."""
+        """Send a command with setpoints. Raises DriverError."""
         self._sent += 1
         for data in packets_of({"do": what, "n": self._sent, **values}, pieces, self._axes):
             self._send(data)
 
     def done(self, order: int) -> bool:
-        """Whether the bridge has carried this order out."""
+        """Return whether the bridge has executed the command with this number."""
         return number(self.told, "n") >= order
 
     def wait(self, ready: Callable[[], bool], longest: float) -> bool:
-        """Look on until it is so; False when that takes too long, or the bridge is gone."""
+        """Process packets until ``ready`` returns True; return False after ``longest`` seconds or a loss."""
         end = self._clock.now() + longest
         while not self.lost and self._clock.now() < end:
             self.pump()
@@ -166,22 +166,22 @@ class HalLink:
         return False
 
     def bit(self, name: str) -> bool:
-        """A bit of the bridge's, by its pin; one that it has not is off."""
+        """Return a bit of the bridge by its pin; False for an unknown pin."""
         told, at = self.told.get("bits"), self._bits.get(name)
         return isinstance(told, list) and at is not None and told[at] is True
 
     def figure(self, name: str) -> float:
-        """A number of the bridge's, by its pin."""
+        """Return a number of the bridge by its pin; 0 for an unknown pin."""
         told, at = self.told.get("figures"), self._figures.get(name)
         return float(told[at]) if isinstance(told, list) and at is not None else 0.0
 
     def take_rows(self) -> Iterator[Sequence[float]]:
-        """The samples since the last look, as they came."""
+        """Remove and yield the received samples."""
         rows, self.rows = self.rows, []
         yield from rows
 
     def close(self) -> None:
-        """The bridge ends what is left, and HAL with it."""
+        """Close the connection, upon which the bridge stops the machine and ends HAL."""
         if self._link is not None:
             self._link.close()
         self._link = None
@@ -200,7 +200,7 @@ class HalLink:
 
 
 def told_fault(told: Mapping[str, object]) -> Fault | str:
-    """What the bridge says is wrong."""
+    """Return the fault that the bridge reports, or an empty text."""
     words = text(told, "fault")
     code: FaultCode = next((each for each in get_args(FaultCode) if each == told.get("code")), "axis")
     return Fault(words, code) if words else ""

@@ -1,6 +1,6 @@
-"""The machine behind HAL: connected, then ticked by the one loop that owns its bridge.
+"""Machine on HAL, driven by the one loop that owns its bridge.
 
-Its inputs, outputs, pots and operator station are on HAL's pins, by the names of the machine file.
+Inputs, outputs, pots and the operator station are HAL pins with the names of the machine file.
 """
 
 from __future__ import annotations
@@ -18,23 +18,23 @@ from drivers.port_parts import KEPT, SampleLog, demand_output, output_of
 
 
 class HalTerminals:
-    """``core.ports.DigitalIO`` and ``Station``."""
+    """``core.ports.DigitalIO`` and ``Station`` on HAL pins."""
 
     def __init__(self, config: HalConfig, link: HalLink, now: Callable[[], float]) -> None:
         self._config = config
         self._link = link
         self._now = now
-        self._written: dict[str, tuple[bool, int]] = {}  # orders that the bridge has not carried out yet
+        self._written: dict[str, tuple[bool, int]] = {}  # Commands that the bridge has not executed yet.
 
     def inputs(self) -> Mapping[str, bool]:
-        """All inputs by name; active is True."""
+        """Return all inputs by name; True is active."""
         told = self._link.told.get("in")
         raw = told if isinstance(told, list) else [False] * len(self._config.inputs)
         wired = zip(self._config.inputs.items(), raw, strict=True)
         return {name: on is not each.active_low for (name, each), on in wired}
 
     def outputs(self) -> Mapping[str, bool]:
-        """All outputs as they are at HAL's pins."""
+        """Return all outputs by name with the states of their HAL pins."""
         told = self._link.told.get("is")
         real = told if isinstance(told, list) else [False] * len(self._config.outputs)
         found = {name: on is True for name, on in zip(self._config.outputs, real, strict=True)}
@@ -46,7 +46,7 @@ class HalTerminals:
         return found
 
     def write(self, name: str, on: bool) -> None:
-        """Switch one output. Raises DriverError."""
+        """Switch one output. Raises DriverError if the bridge is silent or the E-stop chain is open."""
         output = output_of(name, self._config.outputs)
         demand_output(name, on, self._link.trouble)
         chained = output.safe is not None and not output.lamp
@@ -59,7 +59,7 @@ class HalTerminals:
         self._say(name, on)
 
     def safe(self) -> None:
-        """Every output to its safe state."""
+        """Set every output to its safe state."""
         if self._link.lost:
             return
         order = self._link.say("safe")
@@ -71,7 +71,7 @@ class HalTerminals:
         self._written[name] = on, self._link.say("out", name=name, on=on)
 
     def snapshot(self) -> StationState:
-        """The operator station as its pins have it; its age is that of the inputs."""
+        """Return the state of the operator station; its age is that of the inputs."""
         return station_of(
             self.inputs(),
             self._config.pots,
@@ -81,7 +81,7 @@ class HalTerminals:
         )
 
     def _analog(self, name: str) -> float:
-        """The number at a pin: 1 at the end of a pot's range; 0 where it is not wired."""
+        """Return the value of an analog pin: 1 is the end of a pot's range, 0 if it is not wired."""
         told, names = self._link.told.get("analog"), list(self._config.pots)
         if not isinstance(told, list) or name not in names:
             return 0.0
@@ -89,7 +89,7 @@ class HalTerminals:
 
 
 class HalSamples:
-    """``core.ports.SampleSource``: every period of the servo thread."""
+    """``core.ports.SampleSource`` with each period of the servo thread."""
 
     def __init__(self, axes: HalAxes, period: float) -> None:
         self.rate = 1.0 / period
@@ -97,12 +97,15 @@ class HalSamples:
         axes.keep_samples(self._log.add)
 
     def take(self, most: int = KEPT) -> FloatArray:
-        """What has come since."""
+        """Return at most ``most`` samples since the last call, oldest first."""
         return self._log.take(most)
 
 
 class HalMachine:
-    """Connects when made. Raises DriverError with the first pin that is not as the machine file says."""
+    """Machine on HAL, connected by its constructor.
+
+    The constructor raises DriverError that names the first pin which does not match the machine file.
+    """
 
     def __init__(
         self,
@@ -132,7 +135,7 @@ class HalMachine:
 
     @property
     def ports(self) -> MachinePorts:
-        """What the executor drives; the terminals are the operator station too."""
+        """The ports for the executor; the terminals are also the operator station."""
         follows = self.config.spindle.encoder and bool(self.config.spindle.pins.position)
         return MachinePorts(
             clock=self.clock,
@@ -150,11 +153,14 @@ class HalMachine:
         )
 
     def unknown(self) -> frozenset[Unknown]:
-        """Without a word of the bridge, or of HAL to it, nothing is known."""
+        """Return the unknown states: all of them if bridge, HAL or board do not respond."""
         return ALL_UNKNOWN if self.link.blind else frozenset()
 
     def tick(self) -> None:
-        """One round: take in, supervise, say that this side lives. Call it every few milliseconds."""
+        """Run one cycle: receive, supervise and send a sign of life.
+
+        It must be called every few milliseconds.
+        """
         self.link.pump()
         self.axes.tick()
         self.spindle.tick()
@@ -165,12 +171,12 @@ class HalMachine:
         self.link.beat()
 
     def close(self) -> None:
-        """The bridge brakes, stops the spindle and takes the power; HAL is taken down."""
+        """Close the connection; the bridge brakes and switches off, and HAL is shut down."""
         self.link.close()
 
 
 def _spindle_as_c(config: HalConfig, axes: HalAxes, spindle: HalSpindle, link: HalLink) -> HalSpindleC | None:
-    """None where C has a drive of its own, or there is none."""
+    """Create the C axis of the spindle drive, or return None if C has its own drive or does not exist."""
     number = next((n for n, axis in enumerate(config.axes) if axis.is_spindle), None)
     if number is None:
         return None

@@ -1,8 +1,7 @@
-"""One session of HAL: halrun with the machine's file and our part in it, and a socket to the bridge.
+"""Session of HAL: halrun with the machine's file and TurnDesk's section, and a socket to the bridge.
 
-A folder of a session is locked by whoever runs it, so one without a lock has nobody any more: its control was
-killed. Its bridge has seen the end of the control and takes the machine down in good order; before that no
-other session can begin.
+The owner of a session locks its folder, so a folder without a lock belongs to a control that was killed. The
+bridge of such a session detects the loss and shuts the machine down. A new session can begin only after that.
 """
 
 from __future__ import annotations
@@ -29,7 +28,7 @@ from drivers.hal.bridge.packets import BridgeAxis, BridgeConfig, Head, number, p
 from drivers.hal.hal_border import BIT, BRIDGE, Border, border_of, bridge_nets, columns, session_text
 from drivers.hal.hal_config import HalConfig
 
-# --- Folders of sessions, and what one has left behind whose control was killed.
+# --- Session folders, and the remains of sessions whose control was killed.
 
 
 PREFIX = "turndesk-hal-"
@@ -37,7 +36,7 @@ _LOCK = "session.lock"
 
 
 def new_folder() -> tuple[Path, int]:
-    """A folder for one session, and its lock: the folder counts as used until that is closed."""
+    """Create a session folder and return it with its lock; closing the lock releases the folder."""
     folder = Path(tempfile.mkdtemp(prefix=PREFIX))
     lock = os.open(folder / _LOCK, os.O_CREAT | os.O_RDWR | os.O_CLOEXEC, 0o600)
     fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -45,9 +44,10 @@ def new_folder() -> tuple[Path, int]:
 
 
 def clear_away(goes_on: Callable[[], bool]) -> None:
-    """Remove the folders of sessions whose control has gone, each once its processes have ended.
+    """Remove the folders of sessions without a control, as soon as their processes have ended.
 
-    ``goes_on`` is asked between two looks, and waits: what still runs when it says no is left as it is.
+    ``goes_on`` is called between two checks and must wait briefly. When it returns False, folders with
+    running processes remain.
     """
     for folder in _deserted():
         while _runs(folder) and goes_on():
@@ -58,14 +58,18 @@ def clear_away(goes_on: Callable[[], bool]) -> None:
 
 def _deserted() -> Iterator[Path]:
     for folder in Path(tempfile.gettempdir()).glob(f"{PREFIX}*"):
-        with suppress(OSError):  # somebody else's, or just removed
+        with suppress(OSError):  # The folder belongs to another user or was just removed.
             found = folder.lstat()
             if stat.S_ISDIR(found.st_mode) and os.geteuid() in {0, found.st_uid} and not _locked(folder):
                 yield folder
 
 
 def _locked(folder: Path) -> bool:
-    """Raises OSError for a folder without a lock: it is being made, or none of ours."""
+    """Return whether a session folder is locked.
+
+    Raises OSError for a folder without a lock file, which is just being created or does not belong to
+    TurnDesk.
+    """
     lock = os.open(folder / _LOCK, os.O_RDWR | os.O_NOFOLLOW | os.O_CLOEXEC)
     try:
         fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -77,7 +81,7 @@ def _locked(folder: Path) -> bool:
 
 
 def _runs(folder: Path) -> bool:
-    """Whether halrun, the bridge or anything else that was started with this folder is still there."""
+    """Return whether a process that was started with this folder is still running."""
     name = os.fsencode(str(folder))
     for told in Path("/proc").glob("[0-9]*/cmdline"):
         with suppress(OSError):
@@ -91,18 +95,18 @@ def _runs(folder: Path) -> bool:
 
 PYTHON = "/usr/bin/python3"
 _SCRIPT = Path(__file__).parent / "bridge" / "bridge_process.py"
-_START = 30.0  # s for boards that are slow to be configured
+_START = 30.0  # Seconds for boards that need long to be configured.
 _END = 15.0
-_LINGER = 0.5  # s for which HAL goes on when the bridge has died, behind the end of what it has
-_LOOK = 0.05  # s between two looks whether another session is down
+_LINGER = 0.5  # Seconds for which HAL continues after the end of its setpoints when the bridge has crashed.
+_LOOK = 0.05  # Seconds between two checks for another session.
 _LARGEST = 1 << 17
-_ALIVE = "alive"  # a file that the bridge has locked while it lives
-_IN_ORDER = "ended"  # a file of the bridge's, when it has not died but ended
-# What streamer and bridge share outlives them when the last of them is killed. halrun -U removes HAL's other
-# shared memory only, and streamer refuses a segment that is smaller than it needs.
+_ALIVE = "alive"  # File that the bridge locks while it runs.
+_IN_ORDER = "ended"  # File that the bridge creates when it ends normally.
+# The shared memory of streamer and bridge remains when the last of them is killed. halrun -U removes only
+# HAL's other shared memory, and streamer rejects a segment that is too small.
 CLEAR_STREAMS = "for key in 0x48535430 0x48535431; do ipcrm -M $key 2>/dev/null; done; true\n"
 
-# What halrun says, and what it means for whoever stands before the control.
+# Messages of halrun and their texts for the operator.
 _PLAIN = {
     "Refusing to run as root": "LinuxCNC does not run as root; start TurnDesk as a regular user",
     "Realtime already running": (
@@ -115,7 +119,7 @@ _ENDED, _MUTE = "HAL bridge process has ended", "no error message"
 
 
 class Verdict(NamedTuple):
-    """One pin of the machine file: its key, its name, what is wrong with it."""
+    """Result of the check of one pin: its key in the machine file, its name, and its error."""
 
     path: str
     pin: str
@@ -123,34 +127,34 @@ class Verdict(NamedTuple):
 
 
 class BridgeLink(Protocol):
-    """The way to a bridge and back, in packets. Nothing here waits."""
+    """Packet connection to a bridge, whose methods never wait."""
 
     warnings: tuple[str, ...]
 
     def send(self, data: bytes) -> None:
-        """Raises DriverError when nobody takes it."""
+        """Send a packet. Raises DriverError if the bridge does not accept it."""
         ...
 
     def receive(self) -> Iterator[tuple[Head, Sequence[float]]]:
-        """Whatever has come. Raises DriverError when nobody is there any more."""
+        """Yield the received packets. Raises DriverError if the bridge has ended."""
         ...
 
     @property
     def down(self) -> bool:
-        """Whether HAL is gone behind a bridge that has ended: only then it can be started anew."""
+        """Whether HAL has ended after its bridge, so that it can be started again."""
         ...
 
     def hang_up(self) -> None:
-        """The bridge brakes and takes the power; nothing is said or heard any more."""
+        """Make the bridge brake and switch the power off, and stop communicating."""
         ...
 
     def close(self) -> None:
-        """The bridge ends what is left."""
+        """Close the connection, upon which the bridge ends."""
         ...
 
 
 def bridge_config(config: HalConfig) -> BridgeConfig:
-    """What the bridge has to know."""
+    """Return the configuration of the bridge."""
     pins = border_of(config).pins
     read = [pin for pin in pins if pin.way != "out" and not pin.name.startswith(("in.", "is.", "analog."))]
     written = [pin.name for pin in pins if pin.way == "out"]
@@ -175,7 +179,10 @@ def bridge_config(config: HalConfig) -> BridgeConfig:
 
 
 class HalSession:
-    """Started when made. Raises DriverError where halrun is not, or does not come up."""
+    """HAL session that its constructor starts.
+
+    The constructor raises DriverError if halrun is missing or fails.
+    """
 
     def __init__(self, config: HalConfig, zero: float, *, only_check: bool = False) -> None:
         _demand_halrun()
@@ -190,7 +197,9 @@ class HalSession:
             raise
 
     _halrun: subprocess.Popen[bytes] | None = None
-    _bridge: int | None = None  # of its process: HAL's own ones hold its socket too, so no end of file comes
+    # Process of the bridge; HAL's processes keep its socket open, so the end of the bridge causes no end of
+    # file.
+    _bridge: int | None = None
     _socket: socket.socket | None = None
 
     def _start(self, config: HalConfig, zero: float, *, only_check: bool) -> None:
@@ -200,7 +209,7 @@ class HalSession:
             self._write(config, theirs.fileno(), zero, only_check=only_check)
             log = (self._folder / "halrun.log").open("wb")
             with log:
-                # A session of its own: Ctrl-C is for the control, which then ends this in good order.
+                # A separate process session: Ctrl-C reaches only the control, which then ends HAL in order.
                 self._halrun = subprocess.Popen(
                     ["halrun", "-f", str(self._folder / "session.hal")],
                     cwd=config.file.parent,
@@ -214,7 +223,7 @@ class HalSession:
         ours.setblocking(False)
 
     def _write(self, config: HalConfig, fd: int, zero: float, *, only_check: bool) -> None:
-        """The files of this session."""
+        """Write the files of the session."""
         border = border_of(config)
         try:
             machine = config.file.read_text(encoding="utf-8")
@@ -226,8 +235,8 @@ class HalSession:
         (folder / "bridge.json").write_text(
             json.dumps(_told(config, border, folder, fd, zero, only_check=only_check)), encoding="utf-8"
         )
-        # The bridge holds a lock as long as it lives: waitusr of HAL never sees that one has died.
-        # Behind such a one it goes on for a while: what it has is played, and the limits brake.
+        # The bridge holds a lock while it runs, because waitusr of HAL does not detect a crash. After a
+        # crash, HAL continues for a while: the setpoints are played, and the limits brake.
         ramp = max((axis.vmax / axis.amax for axis in config.driven), default=0.0)
         left = _LINGER + config.table.ahead + config.table.watchdog + ramp
         linger = f'[ -e "{folder / _IN_ORDER}" ] || sleep {left:.2f}\n'
@@ -270,14 +279,15 @@ class HalSession:
                     )
                     raise DriverError(words, "hal-setup")
             elif head.get("ready") is True:
-                with suppress(OSError, AttributeError):  # an old kernel: its silence tells, later
+                # On an old kernel, the end is detected later by silence.
+                with suppress(OSError, AttributeError):
                     self._bridge = os.pidfd_open(int(number(head, "pid")))
                 warnings = head.get("warnings")
                 self.warnings = tuple(map(str, warnings)) if isinstance(warnings, list) else ()
                 return
 
     def _first_words(self, deadline: float) -> Head:
-        """The next of the bridge's packets at its start. Raises DriverError with what halrun has said."""
+        """Return the next packet during startup. Raises DriverError with the output of halrun."""
         assert self._socket is not None
         assert self._halrun is not None
         while time.monotonic() < deadline:
@@ -302,7 +312,7 @@ class HalSession:
         raise DriverError(words, "hal-setup")
 
     def _said(self) -> str:
-        """What halrun has said last that is worth telling."""
+        """Return the relevant last output of halrun."""
         try:
             lines = (self._folder / "halrun.log").read_text(encoding="utf-8", errors="replace").splitlines()
         except OSError:
@@ -316,7 +326,7 @@ class HalSession:
     # --- the link -----------------------------------------------------------------------------------------
 
     def send(self, data: bytes) -> None:
-        """One packet. Raises DriverError when the bridge has gone, or takes no more."""
+        """Send one packet. Raises DriverError if the bridge has ended or accepts no data."""
         assert self._socket is not None
         try:
             self._socket.send(data)
@@ -328,7 +338,7 @@ class HalSession:
             ) from error
 
     def receive(self) -> Iterator[tuple[Head, Sequence[float]]]:
-        """Every packet that has come. Raises DriverError when the bridge has ended."""
+        """Yield all received packets. Raises DriverError if the bridge has ended."""
         assert self._socket is not None
         while True:
             try:
@@ -344,7 +354,7 @@ class HalSession:
             raise DriverError(": ".join(filter(None, (_ENDED, self._said()))), "hal-bridge")
 
     def hang_up(self) -> None:
-        """The bridge brakes at once, and ends."""
+        """Make the bridge brake at once and end."""
         assert self._socket is not None
         with suppress(OSError):
             self._socket.send(pack({"do": "ramp-off"}))
@@ -352,11 +362,11 @@ class HalSession:
 
     @property
     def down(self) -> bool:
-        """Whether HAL has been taken down, behind a bridge that has ended."""
+        """Whether HAL has been shut down after its bridge has ended."""
         return self._halrun is None or self._halrun.poll() is not None
 
     def close(self) -> None:
-        """The bridge brakes what moves and ends; halrun takes HAL down."""
+        """End the bridge, which brakes the axes, and wait until halrun has shut HAL down."""
         if self._socket is not None:
             with suppress(OSError):
                 self._socket.send(pack({"do": "end"}))
@@ -370,7 +380,7 @@ class HalSession:
             except subprocess.TimeoutExpired:
                 self._halrun.kill()
                 failed = self._halrun.wait()
-            if failed:  # it was killed, or HAL's own process was: it has not taken HAL down
+            if failed:  # halrun or HAL's process was killed, so HAL is not shut down.
                 with suppress(OSError, subprocess.TimeoutExpired):
                     subprocess.run(["halrun", "-U"], capture_output=True, timeout=_END, check=False)
         shutil.rmtree(self._folder, ignore_errors=True)
@@ -378,7 +388,7 @@ class HalSession:
 
 
 def _clear_leftovers() -> None:
-    """A control that was killed has left a HAL that is just being taken down: wait for that."""
+    """Wait until the HAL of a killed control has been shut down."""
     deadline = time.monotonic() + _END
 
     def goes_on() -> bool:
@@ -389,7 +399,7 @@ def _clear_leftovers() -> None:
 
 
 def _demand_halrun() -> None:
-    """Raises DriverError where there is no LinuxCNC."""
+    """Raise DriverError if LinuxCNC is not installed."""
     if shutil.which("halrun") is None:
         raise DriverError(
             "halrun was not found; backend hal requires LinuxCNC (apt install linuxcnc-uspace)", "hal-setup"
@@ -399,7 +409,7 @@ def _demand_halrun() -> None:
 def _told(
     config: HalConfig, border: Border, folder: Path, fd: int, zero: float, *, only_check: bool
 ) -> dict[str, object]:
-    """What the bridge's process is told in its file."""
+    """Return the contents of the configuration file for the bridge's process."""
     return {
         "fd": fd,
         "zero": zero,

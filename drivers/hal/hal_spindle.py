@@ -1,11 +1,11 @@
-"""The spindle behind HAL: its speed, index and stop at an angle, and C on its own drive.
+"""Spindle on HAL: speed, index, orientation, and C on the spindle drive.
 
-An angle goes to the pins of LinuxCNC's component ``orient``; how the spindle turns there, and what makes
-``is_oriented`` come on, is said by the HAL file alone.
+An angle is sent to the pins of LinuxCNC's component ``orient``. The HAL file alone defines how the spindle
+turns there and when ``is_oriented`` turns on.
 
-As C it is changed over at standstill to positions and back. ``hal.spindle.position_mode`` asks for it,
-``in_position_mode`` tells it where that is named. Free, C keeps its count whatever the spindle does; held, it
-is one more axis. Its feedback counts the spindle's encoder, 360 a turn.
+The drive changes to position mode at standstill. ``hal.spindle.position_mode`` requests C, and
+``in_position_mode`` reports it if that pin is named. While C is released, its count does not change. While it
+is engaged, it is one more axis, whose feedback is the spindle encoder with 360 per revolution.
 """
 
 from __future__ import annotations
@@ -22,20 +22,20 @@ from drivers.port_parts import demand_free_drive, demand_spindle
 from drivers.setpoint_queue import straight
 
 _MODES = {0: 0, 1: 1, -1: 2}
-_ANGLE_SETTLES = 0.05  # s from the rising of ``orient`` until ``is_oriented`` is that of the new angle
+_ANGLE_SETTLES = 0.05  # Seconds from the rise of ``orient`` until ``is_oriented`` refers to the new angle.
 _STANDS = 2.0  # rpm
 
 
 class HalOrientation:
-    """``core.ports.SpindleOrientation``. ``tick`` with the rounds of the loop."""
+    """``core.ports.SpindleOrientation`` on HAL; ``tick`` is called once per cycle."""
 
     def __init__(self, axes: HalAxes, spindle: HalSpindle, link: HalLink) -> None:
         self._axes, self._spindle, self._link = axes, spindle, link
         self._order: int | None = None
-        self._since: float | None = None  # when HAL was first seen to go there
+        self._since: float | None = None  # Time when HAL was first detected to orient.
 
     def orient(self, angle: float, sense: int = 0) -> None:
-        """Bring it to an angle. Raises DriverError while it turns, with a fault or an open chain."""
+        """Turn the spindle to an angle. Raises DriverError while it turns, with a fault or an open chain."""
         self._spindle.demand_ready()
         if self._order is None and _is_turning(self._spindle):
             raise DriverError(
@@ -45,20 +45,20 @@ class HalOrientation:
         self._order = self._link.say("orient", on=True, angle=angle, mode=_MODES[sense])
 
     def release(self) -> None:
-        """Hold it no longer."""
+        """Cancel the orientation."""
         self._order = self._since = None
         if not self._link.lost:
             self._link.say("orient", on=False)
 
     def oriented(self) -> bool:
-        """Whether HAL says so, and of the angle that was asked for last."""
+        """Return whether HAL reports the angle that was commanded last as reached."""
         since = self._since
         if since is None or self._axes.now() < since + _ANGLE_SETTLES:
             return False
         return self._link.bit("spindle.is_oriented")
 
     def tick(self) -> None:
-        """See whether HAL goes to the angle, and whether something has let it go."""
+        """Detect when HAL starts to orient, and when the orientation has been canceled."""
         if self._order is None or not self._link.done(self._order):
             return
         goes = self._link.told.get("orients") is True
@@ -68,29 +68,32 @@ class HalOrientation:
             self._order = self._since = None
 
 
-# --- The spindle itself.
+# --- Spindle.
 
 
 class HalSpindle:
-    """``core.ports.Spindle``. What E-stop has switched off does not come back by itself."""
+    """``core.ports.Spindle`` on HAL; after an E-stop, it does not restart automatically."""
 
     def __init__(self, config: HalConfig, link: HalLink, axes: HalAxes) -> None:
         self._config = config.spindle
         self._link = link
         self._axes = axes
         self.ordered = 0.0  # rpm
-        self.lent = False  # its drive is C, or becomes it: what it turns then is not the spindle's speed
+        self.lent = False  # The drive is used as C, so its rotation is not the spindle speed.
         self.index = SpindleIndex(axes, link, wired=bool(config.spindle.pins.index_enable))
-        self._unknown: tuple[float, float] | None = None  # what is told of its angle before its index was
+        self._unknown: tuple[float, float] | None = None  # Angle reported before the index is known.
 
     def tick(self) -> None:
-        """An open chain has switched it off."""
+        """Clear the command while the chain is open, and update the index."""
         if self._link.told.get("ok") is not True:
             self.ordered = 0.0
         self.index.look()
 
     def run(self, rpm: float) -> None:
-        """Turn at ``rpm``, signed. Raises DriverError with a fault or an open chain, unless asked to stop."""
+        """Turn the spindle at ``rpm``, signed; 0 stops it.
+
+        Raises DriverError with a fault or an open chain if the speed is not 0.
+        """
         if rpm:
             self.demand_ready()
         limit = self._config.rpm_max
@@ -107,24 +110,28 @@ class HalSpindle:
             )
 
     def coast(self) -> None:
-        """Speed 0, and off: what its drive makes of that is the drive's."""
+        """Command speed 0 and switch off; the drive determines how the spindle stops."""
         self.run(0.0)
 
     def speed(self) -> float:
-        """Measured rpm, signed; without turns or velocity, what it was told once it is at speed."""
+        """Return the measured speed in rpm, signed, or 0 while the drive is C.
+
+        Without position or velocity feedback, it is the commanded speed as soon as the spindle is at speed.
+        """
         return 0.0 if self.lent else self.measured()
 
     def measured(self) -> float:
-        """The same, whatever its drive is."""
+        """Return the same speed, independent of the use as C."""
         pins = self._config.pins
         if pins.position or pins.velocity:
             return 60.0 * self._axes.rps
         return self.ordered if self._link.bit("spindle.at_speed") else 0.0
 
     def angle(self) -> tuple[float, float] | None:
-        """(time, turns) by the encoder, whole turns at its index where it has one; None without one.
+        """Return a (time, revolutions) pair of the encoder, or None without an encoder.
 
-        Before its index has come by it is an old reading: who needs the angle waits for a new one.
+        With an index, whole revolutions are at the index. Before the index is known, an old reading is
+        returned, so that a thread waits for a new one.
         """
         if not self._config.encoder or self._axes.spindle_at is None:
             return None
@@ -136,7 +143,7 @@ class HalSpindle:
         return t, turns - self._axes.index_at
 
     def fault(self) -> str:
-        """What is wrong with it; empty when well."""
+        """Return the fault of the spindle, or an empty text."""
         if why := self._link.trouble:
             return why
         if self.index.trouble:
@@ -146,42 +153,42 @@ class HalSpindle:
 
 
 def _is_turning(spindle: HalSpindle) -> bool:
-    """Return whether the spindle is told to turn, or measured to."""
+    """Return whether the spindle is commanded to turn, or turns by its measured speed."""
     return bool(spindle.ordered) or abs(spindle.measured()) >= _STANDS
 
 
-# --- Its index: asked for with the first turn of a session, so that a thread is found again.
+# --- Index: requested with the first revolution of a session, so that a thread can be resumed.
 
 
 _PIN = "spindle-index"
 _TURNING = 0.1  # turns/s
-_TURNS = 3.0  # within which it must come by
-_SETTLES = 0.02  # s until what was made up for is told as well
+_TURNS = 3.0  # Revolutions within which the index must pass.
+_SETTLES = 0.02  # Seconds until the compensated jump is also reported.
 
 
 class SpindleIndex:
-    """``known`` once it has come by; a spindle without an index begins to count anywhere, and is known."""
+    """Index of the spindle; ``known`` becomes True when it has passed, or at once without an index."""
 
     def __init__(self, axes: HalAxes, link: HalLink, *, wired: bool) -> None:
         self._axes, self._link, self._wired = axes, link, wired
         self.forget()
 
     def forget(self) -> None:
-        """HAL counts anew."""
+        """Discard the index after HAL was loaded again."""
         self.known = not self._wired
         self.trouble: Fault | str = ""
         self._order: int | None = None
-        self._from = 0.0  # turns, where it was asked for
-        self._fell: float | None = None  # when it was seen to have come by
+        self._from = 0.0  # Revolutions at the request.
+        self._fell: float | None = None  # Time when the index was detected.
         self._axes.index_at = 0.0
 
     def clear(self) -> None:
-        """It is asked for again."""
+        """Clear a fault, so that the index is requested again."""
         if self.trouble:
             self.forget()
 
     def look(self) -> None:
-        """Once in a while."""
+        """Request the index when the spindle turns, and evaluate it; called once per cycle."""
         reading = self._axes.spindle_at
         if self.known or self.trouble or self._link.blind or reading is None:
             return
@@ -207,18 +214,18 @@ class SpindleIndex:
             )
 
 
-# --- C on the spindle's own drive.
+# --- C on the spindle drive.
 
 
-_SEARCH = 60.0  # rpm to look for the index
+_SEARCH = 60.0  # Rpm for the index search.
 _INDEX, _CHANGE = 15.0, 2.0  # s
 _TURN = 360.0
-_SLOW = 0.25  # of C's own speed, for the way to its place
-_AFTER = 0.05  # s behind a motion until it is taken for over
+_SLOW = 0.25  # Fraction of C's speed for the move to its position.
+_AFTER = 0.05  # Seconds after a motion until it counts as complete.
 
 
 class Step(Enum):
-    """How far the change-over is."""
+    """Steps of the change between spindle and C."""
 
     FREE = "the drive is running as the spindle drive"
     INDEX = "searching for the encoder index"
@@ -229,10 +236,13 @@ class Step(Enum):
 
 
 class HalSpindleC:
-    """``core.ports.SpindleHold``. ``tick`` with the rounds of the loop."""
+    """``core.ports.SpindleHold`` of the spindle drive; ``tick`` is called once per cycle."""
 
     def __init__(self, axes: HalAxes, spindle: HalSpindle, link: HalLink, axis: int, told: str) -> None:
-        """``told``: the bridge's bit that it is C now; empty where nothing tells."""
+        """Create the C axis.
+
+        The last argument is the bridge bit that reports position mode, or an empty text without such a pin.
+        """
         self._axes, self._spindle, self._link = axes, spindle, link
         self._axis, self._told = axis, told
         self.step = Step.FREE
@@ -243,7 +253,7 @@ class HalSpindleC:
     # --- the port -----------------------------------------------------------------------------------------
 
     def hold(self, on: bool, orient: bool = False) -> None:
-        """Hold it as C, or let it turn again. Raises DriverError where it cannot be held now."""
+        """Engage the drive as C, or release it. Raises DriverError if C cannot be engaged now."""
         if not on:
             self._let_go()
             return
@@ -258,13 +268,13 @@ class HalSpindleC:
             self._change()
 
     def held(self) -> bool:
-        """Whether C may move."""
+        """Return whether C is engaged and may move."""
         return self.step is Step.HELD
 
-    # --- every round --------------------------------------------------------------------------------------
+    # --- each cycle ---------------------------------------------------------------------------------------
 
     def tick(self) -> None:
-        """Go on with what is under way."""
+        """Continue the change that is in progress."""
         if self.step is Step.FREE:
             return
         if self._link.blind or not self._axes.sample().enabled:
@@ -297,7 +307,7 @@ class HalSpindleC:
         self._enter(Step.CHANGE)
 
     def _take(self) -> None:
-        """HAL plays C's setpoint where the spindle stands, and the drive follows it from now on."""
+        """Engage C when HAL plays its setpoint at the position of the spindle and the drive follows it."""
         told = self._link.told.get("c_at") if self._link.done(self._order) else None
         if isinstance(told, float | int) and (not self._told or self._link.bit(self._told)):
             self._hold_at(float(told))
@@ -322,7 +332,7 @@ class HalSpindleC:
             self._enter(Step.HELD)
 
     def _beside(self, count: float) -> float:
-        """Degrees by the short way from where it stands to where its place from the index is its count."""
+        """Return the shortest angle in degrees to the position at which the index matches ``count``."""
         reading = self._spindle.angle()
         phase = _TURN * reading[1] if reading is not None else count
         return math.remainder(count - phase, _TURN)

@@ -1,7 +1,8 @@
-"""[hal] of the machine file: the HAL file of LinuxCNC, and the pins at which this control begins.
+"""Table [hal] of the machine file: LinuxCNC's HAL file, and the pins that TurnDesk uses.
 
-What lies behind these pins (step and direction, ±10 V behind a pid, EtherCAT, a parallel port) is said by the
-HAL file alone. Inputs, outputs and pots have theirs in [io.in], [io.out] and [io.analog]: ``at`` is the pin.
+The HAL file alone defines the hardware at these pins (step and direction, ±10 V with a pid, EtherCAT, a
+parallel port). The pins of inputs, outputs and pots are the values ``at`` of [io.in], [io.out] and
+[io.analog].
 """
 
 from __future__ import annotations
@@ -25,9 +26,9 @@ from core.table_schema import (
 
 _AXES, _SPINDLE = "hal.axes", "hal.spindle"
 _PIN = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.\-]*")
-_COLUMNS = 20  # that a stream of HAL has room for, one of them our own
-HERE = frozenset((35, 37))  # methods of CiA 402 that take the present place for home
-# What a homing method of CiA 402 needs of an axis' pins, by its number.
+_COLUMNS = 20  # Maximum columns of a HAL stream, one of which is the row number.
+HERE = frozenset((35, 37))  # Methods of CiA 402 that use the present position as home.
+# Axis pins that a homing method of CiA 402 needs, by its number.
 NEEDS: Mapping[int, tuple[str, ...]] = {
     1: ("limit_low", "index_enable"),
     2: ("limit_high", "index_enable"),
@@ -41,21 +42,21 @@ NEEDS: Mapping[int, tuple[str, ...]] = {
     34: ("index_enable",),
     **dict.fromkeys(HERE, ()),
 }
-_OFF_LIMIT = {17: 1.0, 18: -1.0}  # homing methods whose mark is a limit switch alone, and the way off it
+_OFF_LIMIT = {17: 1.0, 18: -1.0}  # Homing methods with only a limit switch, and the direction off the switch.
 _OFF_SWITCH = {
     19: -1.0,
     21: 1.0,
-}  # homing methods whose mark is the edge of a home switch, and the way off it
+}  # Homing methods with the edge of a home switch, and the direction off the switch.
 
 
 def _optional(*, meaning: str) -> Any:
-    """Declare a pin that a HAL file may leave out."""
+    """Declare an optional pin."""
     return file_key(default="", meaning=meaning)
 
 
 @key_table
 class HalAxisPins:
-    """Pins of one axis; empty: it has none. Positions in mm (X a radius) or degrees."""
+    """Pins of one axis, in mm (X as a radius) or degrees; an empty name means that the pin does not exist."""
 
     command: str = file_key(meaning="Float in: commanded position.")
     feedback: str = file_key(meaning="Float out: measured position.")
@@ -73,7 +74,7 @@ class HalAxisPins:
 
 @key_table
 class HalSpindlePins:
-    """Pins of the spindle; empty: it has none."""
+    """Pins of the spindle; an empty name means that the pin does not exist."""
 
     speed: str = _optional(meaning="Float in: commanded speed in rpm, negative with M04.")
     speed_abs: str = _optional(
@@ -107,7 +108,10 @@ class HalSpindlePins:
 
 @key_table
 class HalTable:
-    """A machine behind LinuxCNC's HAL. Times in seconds; ``ahead`` is what of setpoints HAL holds."""
+    """Settings of a machine on LinuxCNC's HAL; times are in seconds.
+
+    ``ahead`` is the duration of the setpoints that HAL buffers.
+    """
 
     file: str = file_key(meaning="HAL file, in the folder of the machine file.")
     thread: str = file_key(default="servo-thread", meaning="Name of the servo thread in the HAL file.")
@@ -149,7 +153,7 @@ def _read(file: FileReading) -> Iterator[Finding]:
 
 
 def _pin_tables(file: FileReading) -> dict[str, object]:
-    """The tables inside."""
+    """Return the nested tables of the axes and the spindle."""
     axes = {name: file.values.model(HalAxisPins, f"{_AXES}.{name}") for name in file.names(_AXES)}
     return {"axes": axes, "spindle": file.values.model(HalSpindlePins, _SPINDLE)}
 
@@ -179,7 +183,7 @@ def _rules(file: FileReading) -> Iterator[Finding]:
 
 
 def _pins(file: FileReading) -> Iterator[tuple[str, str]]:
-    """Every pin that the file names, by its path."""
+    """Yield every pin that the file names, with its path."""
     values = file.values
     places = ["hal.machine_on", "hal.charge_pump", "hal.link_fault"]
     places += [f"{_AXES}.{axis}.{each.name}" for axis in file.names(_AXES) for each in fields(HalAxisPins)]
@@ -198,7 +202,7 @@ _DRIVEN = re.compile(
 
 
 def _names(file: FileReading) -> Iterator[Finding]:
-    """Names that can be none of a pin, and pins that two things would drive."""
+    """Yield findings about invalid pin names and pins with two sources."""
     driven: dict[str, str] = {}
     for path, pin in _pins(file):
         ours = path.startswith("hal.") or file.values.says("machine.backend", "hal")
@@ -229,12 +233,12 @@ def _shared_inputs(file: FileReading) -> Iterator[Finding]:
             yield Finding(f"{path}.at", written(terminal), expected)
 
 
-_INVERTED = "-not"  # ends the name of the pin that shows the same input inverted
+_INVERTED = "-not"  # Suffix of the pin that shows the same input inverted.
 _OVER_A_CABLE = re.compile(r"(hm2_|lcec\.).*")
 
 
 def _link(file: FileReading) -> Iterator[Finding]:
-    """Require hal.link_fault where an input comes over a cable: such an input freezes with the cable out."""
+    """Require hal.link_fault if an input comes over a cable, because its value freezes without the cable."""
     if not file.values.has("hal.link_fault") or file.values.text("hal.link_fault"):
         return
     read = (pin for path, pin in _pins(file) if not _DRIVEN.fullmatch(path.removesuffix(".at")))
@@ -271,7 +275,7 @@ def _all_axes(file: FileReading) -> Iterator[Finding]:
 
 
 def _spindle_as_c(file: FileReading) -> Iterator[Finding]:
-    """C on the spindle's own drive needs to change that over, and to know where it stands."""
+    """Yield findings about missing pins for C on the spindle drive."""
     values = file.values
     own = values.has("axis.C.own_drive") and values.flag("axis.C.own_drive")
     if own or not values.says("spindle.driver", "hal") or not values.has(f"{_SPINDLE}.position_mode"):
@@ -287,7 +291,7 @@ def _spindle_as_c(file: FileReading) -> Iterator[Finding]:
 
 
 def _turns(file: FileReading) -> Iterator[Finding]:
-    """A spindle that HAL turns has to be told its speed, and to tell it."""
+    """Yield findings about missing command or feedback pins of a spindle that HAL drives."""
     values = file.values
     paths = {each.name: f"{_SPINDLE}.{each.name}" for each in fields(HalSpindlePins)}
     if not values.has(*paths.values()):
@@ -311,7 +315,7 @@ def _turns(file: FileReading) -> Iterator[Finding]:
 
 
 def _orients(file: FileReading) -> Iterator[Finding]:
-    """A spindle that HAL brings to an angle needs all four pins of that."""
+    """Yield findings about missing pins of a spindle that HAL orients."""
     values = file.values
     if not values.has("spindle.oriented") or not values.flag("spindle.oriented"):
         return
@@ -329,7 +333,7 @@ def _orients(file: FileReading) -> Iterator[Finding]:
 
 
 def _homes(file: FileReading) -> Iterator[Finding]:
-    """The pins that each axis needs to find home."""
+    """Yield findings about the homing method, offset and pins of each axis."""
     values = file.values
     for axis in file.names(_AXES):
         path, pins = f"axis.{axis}.home.method", f"{_AXES}.{axis}"
@@ -382,7 +386,7 @@ def _same_switch(file: FileReading, axis: str) -> str:
 
 
 def _pin(file: FileReading, text: str) -> object:
-    """A pin's name, written as it is."""
+    """Return a pin name unchanged, without surrounding spaces."""
     return text.strip() if file.values.says("machine.backend", "hal") else None
 
 

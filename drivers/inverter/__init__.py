@@ -1,1 +1,1 @@
-"""Spindle inverters on a serial line (RS-485)."""
+"""Driver for spindle inverters on a serial line (RS-485)."""

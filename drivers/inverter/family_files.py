@@ -1,6 +1,7 @@
-"""Families of inverters as TOML files: read, checked, and refused with file, line and key.
+"""Reader and checker of TOML files that describe inverter families.
 
-``families`` has those that are shipped. The machine file may name another file, relative to its own folder.
+The folder ``families`` contains the families that are shipped. The machine file may name another file,
+relative to its own folder.
 """
 
 from __future__ import annotations
@@ -54,14 +55,17 @@ _OF_MODBUS = ("frequency", "command", "read", "report", "faults")
 
 
 def family_table(name: str, folder: Path) -> FamilyTable:
-    """Return a shipped family by its name, or that of a file in ``folder``. Raises as ``read_family``."""
+    """Return a shipped family by its name, or that of a file in ``folder``.
+
+    Raises DriverError as ``read_family`` does.
+    """
     return read_family(FOLDER / f"{name}.toml" if name in FAMILIES else folder / name)
 
 
 def read_family(path: Path) -> FamilyTable:
     """Return the family of a TOML file.
 
-    Raises DriverError, reason ``bad-family``, with file, line, key and remedy of everything that is wrong.
+    Raises DriverError, reason ``bad-family``, with file, line, key and remedy for each finding.
     """
     try:
         text = input_text(path, MB)
@@ -88,7 +92,7 @@ def _refusal(path: Path, text: str, findings: Iterable[Finding]) -> DriverError:
     return DriverError(join_messages("; ", parts), reason="bad-family")
 
 
-# --- Where a key is.
+# --- Line numbers of keys.
 
 
 _HEAD = re.compile(r"\s*(\[\[?)\s*([\w.-]+)\s*\]")
@@ -114,17 +118,17 @@ def _lines_of(text: str) -> dict[str, int]:
 
 
 def _line(lines: Mapping[str, int], path: str) -> int:
-    """Return the line of a key, or of the innermost table around it that is there."""
+    """Return the line of a key, or of the innermost enclosing table that exists."""
     while path and path not in lines:
         path = _LAST.sub("", path)
     return lines.get(path, 1)
 
 
-# --- What the keys say.
+# --- Keys and values.
 
 
 class _Reading:
-    """Tables of one file; ``findings`` is what is wrong with their keys and values."""
+    """Reader of one file that collects the findings about its keys and values."""
 
     def __init__(self, data: Mapping[str, Any]) -> None:
         self._data = data
@@ -170,7 +174,7 @@ class _Reading:
             self.findings += read_table(raw, keys, path, self._values, children)
 
     def _rows(self, path: str, keys: type, raw: object = None, *, needed: bool = False) -> None:
-        """Read a list of tables; ``needed``: at least one."""
+        """Read a list of tables; with ``needed``, the list must have at least one entry."""
         raw = (self._data.get(path) if raw is None else raw) or []
         if not isinstance(raw, list) or (needed and not raw):
             text = "expected a list of tables, such as [{ register = 0x2000, value = 1 }]"
@@ -196,7 +200,7 @@ class _Reading:
                 self._faults[code] = text
 
     def family(self) -> FamilyTable:
-        """Return the table, once nothing is wrong with its keys."""
+        """Return the family, if its keys have no findings."""
         return FamilyTable(
             name=self._values.text("name"),
             protocol=self._values.text("protocol"),

@@ -1,4 +1,4 @@
-"""What must agree between the keys of a family of inverters: each address read once, each value reported."""
+"""Rules between the keys of an inverter family: each address is read once, and each value is reported."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ Address = tuple[str, int]  # "register" or "coil", and its number
 
 
 def broken(table: FamilyTable) -> Iterator[Finding]:
-    """Yield what is wrong with a table of which every key has a value of the right kind."""
+    """Yield the findings about a table whose keys all have values of the right type."""
     said = table.line.parity.split()
     if not said or not set(said) <= _PARITIES:
         yield _finding("line.parity", 'expected one or more of "N", "E" and "O"')

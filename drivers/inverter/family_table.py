@@ -1,4 +1,4 @@
-"""Family of inverters as a table: line, registers, commands, reported values, fault codes and parameters.
+"""Inverter family as a table: line, registers, commands, reported values, fault codes and parameters.
 
 ``family_files.py`` reads these tables from TOML files, whose keys are declared here.
 """
@@ -14,12 +14,12 @@ from core.table_schema import TableReference
 MODBUS, HUANYANG = "modbus", "huanyang"
 _ADDRESS = Range(0, 0xFFFF)
 _COUNTS = Range(0.01, 10_000.0)
-ABSENT = -1  # in the place of an address or of a value that the file does not have
+ABSENT = -1  # Used for an address or value that is not in the file.
 
 
 @key_table
 class FamilyKeys:
-    """What the inverter is called, and the frames that it understands."""
+    """Name of the inverter and the protocol of its frames."""
 
     name: str = file_key(meaning="Name of the inverter, for messages.")
     manual: str = file_key(meaning="Manual from which the registers come, with its number or date.")
@@ -30,7 +30,7 @@ class FamilyKeys:
 
 @key_table
 class LineKeys:
-    """What the inverter can use on its serial line."""
+    """Serial line settings that the inverter supports."""
 
     baud: Pair = file_key(Range(110, 1_000_000), meaning="Lowest and highest bit rate.")
     parity: Words = file_key(meaning="Parities: `N`, `E` and `O`.")
@@ -41,7 +41,7 @@ class LineKeys:
 
 @key_table
 class FrequencyKeys:
-    """A frequency in one or two registers."""
+    """Frequency in one or two registers."""
 
     register: int = file_key(_ADDRESS, meaning="Address of the register in the frame.")
     counts_per_hz: float = file_key(_COUNTS, meaning="Register value for 1 Hz.")
@@ -52,12 +52,12 @@ class FrequencyKeys:
 
     @property
     def highest(self) -> float:
-        """Return the highest frequency in Hz that the registers can hold."""
+        """The highest frequency in Hz that the registers can contain."""
         bits = 16 * self.words - self.signed
         return float((1 << bits) - 1) / self.counts_per_hz
 
     def words_of(self, hz: float) -> tuple[int, ...]:
-        """Return the register values of a frequency in Hz; without ``signed`` its sign is left out."""
+        """Return the register values for a frequency in Hz; without ``signed``, the sign is ignored."""
         counts = round((hz if self.signed else abs(hz)) * self.counts_per_hz)
         return tuple(counts >> 16 * place & 0xFFFF for place in reversed(range(self.words)))
 
@@ -73,7 +73,7 @@ class FrequencyKeys:
 
 @key_table
 class CurrentKeys:
-    """The register that contains the output current."""
+    """Register that contains the output current."""
 
     register: int = file_key(_ADDRESS, meaning="Address of the register.")
     counts_per_a: float = file_key(_COUNTS, meaning="Register value for 1 A.")
@@ -81,7 +81,7 @@ class CurrentKeys:
 
 @key_table
 class StateKeys:
-    """One fact about the inverter: a coil that is on, or a register with one of some values."""
+    """State of the inverter: a coil that is on, or a register with one of several values."""
 
     register: int = file_key(_ADDRESS, default=ABSENT, meaning="Address of the register.")
     coil: int = file_key(_ADDRESS, default=ABSENT, meaning="Address of the coil, if not a register.")
@@ -99,7 +99,7 @@ class StateKeys:
 
 @key_table
 class CodeKeys:
-    """The register with the number of a fault; 0 is no fault."""
+    """Register that contains the fault code; 0 means no fault."""
 
     register: int = file_key(_ADDRESS, meaning="Address of the register.")
     mask: int = file_key(_ADDRESS, default=0xFFFF, meaning="Bits of the register that matter.")
@@ -111,7 +111,7 @@ class CodeKeys:
 
 @key_table
 class ReadKeys:
-    """One read request of each poll."""
+    """Read request of each poll."""
 
     register: int = file_key(_ADDRESS, default=ABSENT, meaning="Address of the first register.")
     coil: int = file_key(_ADDRESS, default=ABSENT, meaning="Address of the first coil, if not a register.")
@@ -120,7 +120,7 @@ class ReadKeys:
 
 @key_table
 class WriteKeys:
-    """One write request of a command."""
+    """Write request of a command."""
 
     register: int = file_key(_ADDRESS, default=ABSENT, meaning="Address of the register.")
     value: int = file_key(_ADDRESS, default=ABSENT, meaning="Value for the register.")
@@ -130,7 +130,7 @@ class WriteKeys:
 
 @key_table
 class CommandKeys:
-    """How the commands are sent."""
+    """Settings for sending commands."""
 
     repeat: bool = file_key(
         default=True,
@@ -149,7 +149,7 @@ class CommandKeys:
 
 @key_table
 class ParameterKeys:
-    """A parameter that TurnDesk checks whenever it connects."""
+    """Parameter that TurnDesk checks at each connection."""
 
     name: str = file_key(meaning="Number of the parameter at the keypad.")
     register: int = file_key(_ADDRESS, meaning="Address of the register.")
@@ -167,7 +167,7 @@ class ParameterKeys:
 
 @key_table
 class TopKeys:
-    """The parameter that limits the output frequency."""
+    """Parameter that limits the output frequency."""
 
     name: str = file_key(meaning="Number of the parameter at the keypad.")
     register: int = file_key(_ADDRESS, meaning="Address of the register.")
@@ -176,7 +176,7 @@ class TopKeys:
 
 @key_table
 class LimitKeys:
-    """What the inverter cannot exceed whatever its parameters are."""
+    """Limits of the inverter that are independent of its parameters."""
 
     max_hz: float = file_key(
         Range(1.0, 5000.0), default=0.0, meaning="Highest output frequency. Default: that of the register."
@@ -269,7 +269,7 @@ TABLES = (
 
 @dataclass(frozen=True, slots=True)
 class RegisterTable:
-    """Registers and coils of an inverter on Modbus; ``commands`` by name, ``faults`` are texts by code."""
+    """Registers and coils of an inverter on Modbus, with commands by name and fault texts by code."""
 
     frequency: FrequencyKeys
     sending: CommandKeys
@@ -284,7 +284,7 @@ class RegisterTable:
 
     @property
     def code_is_polled(self) -> bool:
-        """Whether the fault code is in the reads. Otherwise it is read only when the inverter has tripped."""
+        """Whether a poll contains the fault code; otherwise the code is read only after a trip."""
         return any(
             each.register <= self.code.register < each.register + each.count
             for each in self.reads
@@ -294,7 +294,7 @@ class RegisterTable:
 
 @dataclass(frozen=True, slots=True)
 class FamilyTable:
-    """A family of inverters; ``registers`` is None for one that does not use Modbus."""
+    """Inverter family; ``registers`` is None for a family that does not use Modbus."""
 
     name: str
     protocol: str
@@ -306,13 +306,13 @@ class FamilyTable:
 
     @property
     def max_hz(self) -> float:
-        """Return the highest output frequency in Hz that can be commanded."""
+        """The highest output frequency in Hz that can be commanded."""
         own = self.registers.frequency.highest if self.registers else 0xFFFF / 100.0
         return min(own, self.limits.max_hz or own)
 
     @property
     def step(self) -> float:
-        """Return the resolution of the reported setpoint in Hz."""
+        """The resolution of the reported setpoint in Hz."""
         if self.registers is None:
             return 0.01
         return 1.0 / min(self.registers.frequency.counts_per_hz, self.registers.setpoint.counts_per_hz)

@@ -1,8 +1,9 @@
-"""Huanyang HY: frames of its own with the CRC of Modbus. After LinuxCNC's hy_vfd and the list of Bouni.
+"""Huanyang HY inverters, which use their own frames with the CRC of Modbus.
 
-A frame is unit, function, length, data, CRC. Functions: 1 and 2 read and write a parameter PDnnn, 3 controls
-and answers with the state, 4 reads a value, 5 sets the frequency. The answers name the parameter or value
-that was asked for, so an old one cannot pass for another.
+The protocol follows LinuxCNC's hy_vfd and the list of Bouni. A frame consists of unit, function, length, data
+and CRC. Functions 1 and 2 read and write a parameter PDnnn, 3 controls and returns the state, 4 reads a
+value, and 5 sets the frequency. A response names the requested parameter or value, so an old response is
+detected.
 """
 
 from __future__ import annotations
@@ -24,7 +25,10 @@ _TRIES = 2
 
 
 class HuanyangHy:
-    """Its state is told only in the answer to a command, so each look repeats the command in force."""
+    """Huanyang HY inverter, which reports its state only in the response to a command.
+
+    Each poll therefore repeats the present command.
+    """
 
     warm_up = 10
 
@@ -42,23 +46,29 @@ class HuanyangHy:
         return self._good
 
     def prepare(self, comm_loss: float, highest: float) -> list[str]:
-        """It has no time-out of its own. Parameters are read, never written."""
+        """Check the parameters, which are never written; the inverter has no communication timeout.
+
+        Return the messages for the operator.
+        """
         return check_parameters(self._table, comm_loss, highest, self._parameter, _never_written)
 
     def stop(self) -> None:
-        """By its ramp, PD026 = 0."""
+        """Stop by the inverter's ramp, which requires PD026 = 0."""
         self._word = _HALT
         self._control()
 
     def command(self, hz: float) -> None:
-        """The frequency first."""
+        """Send the frequency in Hz, then the run command; a negative frequency turns in reverse."""
         value = struct.pack(">H", round(abs(hz) * 100.0))
         self._ask(_FREQUENCY, value, value)
         self._word = _RUN_BACK if hz < 0.0 else _RUN
         self._control()
 
     def looks(self) -> Iterator[Look | None]:
-        """State bits: 0 told to run, 2 told to run back, 3 runs, 5 runs back."""
+        """Poll the inverter request by request; yield None between requests and the state at the end.
+
+        State bits: 0 run command, 2 reverse command, 3 running, 5 running in reverse.
+        """
         state = self._control()
         yield None
         values: list[int] = []
@@ -75,7 +85,7 @@ class HuanyangHy:
         )
 
     def reset(self) -> None:
-        """It has none on the line: its keypad has one. A stop makes it ready where nothing had tripped."""
+        """Send a stop, because a trip can be reset only at the keypad."""
         self.stop()
 
     def close(self) -> None:
@@ -93,7 +103,10 @@ class HuanyangHy:
         return int.from_bytes(self._ask(_READ, head + b"\0\0", head)[1:], "big")
 
     def _ask(self, function: int, data: bytes, begins: bytes) -> bytes:
-        """The data of the answer, which begin with what names the question. Raises NoAnswerError."""
+        """Return the data of the response, which begins with ``begins``.
+
+        Raises NoAnswerError without a valid response.
+        """
         for left in reversed(range(_TRIES)):
             answer = self._once(function, data, begins)
             if answer is not None:
@@ -101,7 +114,7 @@ class HuanyangHy:
                 return answer
             self._good = 0
             if not self.hurry():
-                self._wire.receive(_TIMEOUT)  # one that comes later still is of no use, and must not be taken
+                self._wire.receive(_TIMEOUT)  # A late response must be discarded.
             if left and self.hurry() and function in (_READ, _VALUE):
                 break
         raise NoAnswerError(
@@ -125,7 +138,7 @@ class HuanyangHy:
         return answer
 
     def _can_turn(self, function: int) -> bool:
-        """Whether the next frame can make the motor turn, or turn faster."""
+        """Return whether the next frame can start or accelerate the motor."""
         return function == _FREQUENCY or (function == _CONTROL and self._word != _HALT)
 
     def _found(self, come: bytes, function: int, begins: bytes) -> bytes | None:
@@ -139,4 +152,7 @@ class HuanyangHy:
 
 
 def _never_written(_parameter: int, _value: int) -> None:
-    """Leave a parameter as it is: which of them the inverter accepts while it waits is not known."""
+    """Leave the parameter unchanged.
+
+    It is unknown which parameters the inverter accepts during operation.
+    """

@@ -1,7 +1,7 @@
-"""Whoever owns the line: tells the inverter what is wanted, looks at it, and says when it does not obey.
+"""Control of an inverter on its line: commands, polling and detection of an inverter that does not obey.
 
-``Attendant.exchange`` is one round; a thread repeats it (``AttendantThread``), a test calls it. A stop goes
-before everything: at most the answer that is under way is waited for.
+``Attendant.exchange`` is one exchange. ``AttendantThread`` repeats it; tests call it directly. A stop has
+priority over everything and waits at most for the response in progress.
 """
 
 from __future__ import annotations
@@ -17,38 +17,38 @@ from drivers.inverter.inverter_family import Family, Look
 from drivers.inverter.modbus_rtu import HeldBackError, NoAnswerError, RefusedError
 from drivers.serial_line import WireError
 
-# --- Whether an inverter does what it was told.
+# --- Check whether an inverter obeys.
 
 
 OBEYS_WITHIN = 1.0  # s
-_ROUNDING = 0.001  # Hz: what rounding to the step of the setpoint may add
+_ROUNDING = 0.001  # Additional tolerance in Hz for rounding of the setpoint.
 STANDS = 0.5  # Hz
-_FALLS = 0.005  # part of its speed by which it must have fallen at least once a second
+_FALLS = 0.005  # Fraction of the speed by which it must fall at least once per second.
 PRESS = "PRESS E-STOP"
 
 
 def with_stop(why: str) -> str:
-    """Return the fault with the request to press the E-stop."""
+    """Return the fault text with the request to press the E-stop."""
     return Message("{why}: {press}", why=why, press=PRESS)
 
 
 class Obedience:
-    """``judge`` each look; ``command`` when another command goes out.
+    """Check whether an inverter follows its commands; ``command`` notes a command, ``judge`` checks a poll.
 
-    A look on a slow line is as old as its exchange is long: the second that an inverter has begins behind it,
-    and what must fall is compared with the first look behind the command, never with one before it.
-    ``step`` is the resolution of the reported setpoint in Hz.
+    On a slow line, a poll is as old as its exchange is long. The permitted second therefore starts after the
+    exchange, and a falling speed is compared with the first poll after the command. ``step`` is the
+    resolution of the reported setpoint in Hz.
     """
 
     def __init__(self, step: float = 0.01) -> None:
         self._within = step + _ROUNDING
-        self._since: float | None = None  # when it last did what it was told; None: it does
-        self._lowest: float = 0.0  # Hz, on the way down
-        self._unseen = False  # no look has come since the command
+        self._since: float | None = None  # Time since which the inverter does not obey; None: it obeys.
+        self._lowest: float = 0.0  # Lowest output in Hz while the speed falls.
+        self._unseen = False  # No poll has been completed since the command.
         self._asked = 0.0
 
     def command(self, now: float, asked: float, seen: Look | None) -> None:
-        """A command in Hz, signed. Another setpoint of the same direction is not a new start of the clock."""
+        """Note a command in Hz, signed; a new setpoint in the same direction does not restart the limit."""
         if asked == self._asked:
             return
         if seen is not None and (asked == 0.0 or asked * self._asked < 0.0 or abs(asked) < abs(self._asked)):
@@ -59,11 +59,12 @@ class Obedience:
             self._since = now
 
     def judge(self, now: float, look: Look, took: float = 0.0) -> str:
-        """Return why it has not obeyed for a second and ``took``, the seconds of one exchange.
+        """Return the reason why the inverter has not obeyed for one second plus ``took``.
 
-        Empty while all is well or may become so.
+        ``took`` is the duration of one exchange in seconds. The result is empty while the inverter may still
+        obey.
         """
-        if self._unseen:  # it may have been getting faster when the command came
+        if self._unseen:  # The motor may still have accelerated when the command was sent.
             self._lowest, self._unseen = max(self._lowest, look.output), False
         wrong = self._wrong(look)
         if self._falls(look):
@@ -88,7 +89,7 @@ class Obedience:
         return "a stop was commanded, but the inverter still reports that it is running" if look.run else ""
 
     def _understood(self, look: Look) -> str:
-        """Its own words for what it is to do."""
+        """Return the difference between the command and the reported setpoint, run state and direction."""
         asked = abs(self._asked)
         if abs(look.setpoint - asked) > self._within:
             return Message(
@@ -107,7 +108,7 @@ class Obedience:
         )
 
     def _turning(self, look: Look) -> str:
-        """What it does: on the way down, or round to the other direction, it must get slower."""
+        """Return a wrong output: the speed must fall toward a lower setpoint or before a reversal."""
         back = look.reverse != (self._asked < 0.0) and look.output > STANDS
         if back and not self._falls(look):
             return "the inverter runs in the direction opposite to its command"
@@ -120,22 +121,22 @@ class Obedience:
         return ""
 
     def _falls(self, look: Look) -> bool:
-        """Slower than ever since it was told, by more than a ripple."""
+        """Return whether the output is below its lowest value since the command by more than a ripple."""
         return look.output < self._lowest * (1.0 - _FALLS)
 
 
-# --- Whether encoder and inverter tell of the same spindle: open couplings, slipping belts, wrong counts.
-# The inverter's figure is late by a round of its line, so it is compared only while it does not change.
+# --- Comparison of encoder and inverter, to detect open couplings, slipping belts and wrong counts. The value
+# of the inverter is delayed by one exchange, so it is compared only while it is constant.
 
 
-_EVEN_RPM, _EVEN = 10.0, 0.01  # a change of the output that is none
-_SETTLED = 0.5  # s of an even output before it is compared
-_LONG = 1.0  # s for which both must disagree
+_EVEN_RPM, _EVEN = 10.0, 0.01  # A smaller change of the output is ignored.
+_SETTLED = 0.5  # Seconds of constant output before the comparison.
+_LONG = 1.0  # Seconds for which both must differ.
 _SLACK = 30.0  # rpm
 
 
 class Agreement:
-    """``fraction`` by which they may differ."""
+    """Comparison of encoder and inverter speed; ``fraction`` is the permitted relative difference."""
 
     def __init__(self, fraction: float) -> None:
         self._fraction = fraction
@@ -144,7 +145,10 @@ class Agreement:
         self._off_since: float | None = None
 
     def look(self, measured: float, given: float, now: float) -> str:
-        """What is wrong; empty when they agree, or cannot be compared. rpm, signed; 0 given: it runs down."""
+        """Return the fault when the speeds have differed for 1 s, or an empty text.
+
+        Both speeds are in rpm, signed. They are compared only at a constant inverter output other than 0.
+        """
         if abs(given - self._given) > _EVEN_RPM + _EVEN * abs(given):
             self._given, self._even_since = given, now
         off = abs(measured - given) > _SLACK + self._fraction * abs(given)
@@ -164,20 +168,23 @@ class Agreement:
         )
 
 
-# --- The attendant.
+# --- Polling and commands.
 
 
-LOST = 1.0  # s without an answer after which the inverter counts as lost
-DEAD = LOST + 0.5  # s: by then the attendant itself has reported the silence
-_PARTS = 2.0  # s after a look for which single answers count, before the next look has to be whole
-_AGAIN = 1.0  # s between two attempts to open a port that has gone
-_MOST = 60  # rounds in which a warm-up must have come to its end
-_RESTARTS = 3.0  # s in which an inverter may be silent after a reset
+LOST = 1.0  # Seconds without a response after which the inverter counts as lost.
+DEAD = LOST + 0.5  # Seconds after which the exchange itself has reported the silence.
+_PARTS = 2.0  # Seconds after a poll in which single responses count, before the next poll must be complete.
+_AGAIN = 1.0  # Seconds between two attempts to open a lost port.
+_MOST = 60  # Polls until the inverter must be trusted.
+_RESTARTS = 3.0  # Seconds in which an inverter may be silent after a reset.
 
 
 @dataclass(frozen=True, slots=True)
 class Seen:
-    """The last look and its time; ``asked``: a command from before then was sent before the look began."""
+    """Last poll and its time.
+
+    ``asked`` is a time before which all commands were sent when the poll began.
+    """
 
     t: float
     look: Look
@@ -185,10 +192,12 @@ class Seen:
 
 
 class Attendant:
-    """``want`` (Hz, signed) may be set by any thread; all else belongs to the one that calls ``round``.
+    """Owner of the inverter's line.
 
-    ``open_line`` makes the family on a freshly opened line; it raises DriverError. ``step`` is the
-    resolution of the reported setpoint in Hz.
+    Any thread may set ``want``; all else belongs to the thread of ``exchange``.
+
+    ``open_line`` opens the line and returns the inverter; it raises DriverError. ``step`` is the resolution
+    of the reported setpoint in Hz.
     """
 
     def __init__(
@@ -202,22 +211,22 @@ class Attendant:
         self._open, self._clock = open_line, clock
         self._comm_loss, self._highest, self._step = comm_loss, highest, step
         self._want = 0.0
-        self._told: float | None = None  # None: nothing since the line was opened
+        self._told: float | None = None  # None: no command since the line was opened.
         self._obedience = Obedience(self._step)
         self._family: Family | None = None
         self._retry = 0.0
-        self._began = self._began_before = clock.now()  # the exchange that is under way, and the last one
-        self._answered = clock.now()  # when an answer has last come in an exchange without a failure
+        self._began = self._began_before = clock.now()  # Start times of the present and the last exchange.
+        self._answered = clock.now()  # Time of the last response in an exchange without an error.
         self._reset = False
-        self.grace = 0.0  # until then silence is no trouble
+        self.grace = 0.0  # Silence is permitted until this time.
         self.seen: Seen | None = None
-        self.trouble: Fault | str = ""  # latched until ``clear``
-        self.missed = ""  # why the last exchange failed
+        self.trouble: Fault | str = ""  # Latched until ``clear``.
+        self.missed = ""  # Reason why the last exchange failed.
         self.warnings: tuple[str, ...] = ()
 
     @property
     def want(self) -> float:
-        """Hz, signed. Trouble makes it 0, and it stays so."""
+        """The commanded frequency in Hz, signed; a fault sets it permanently to 0."""
         return 0.0 if self.trouble else self._want
 
     @want.setter
@@ -226,17 +235,17 @@ class Attendant:
 
     @property
     def warm(self) -> bool:
-        """Whether enough has been answered to trust it."""
+        """Whether the inverter has sent enough valid responses to be trusted."""
         return self._family is not None and self._family.good >= self._family.warm_up
 
     @property
     def unheard(self) -> bool:
-        """Whether nothing is known of the inverter now: its port is gone, or it has not answered of late."""
+        """Whether the state is unknown, because the port is closed or the inverter is silent."""
         return self._family is None or self.seen is None or self.silent_for > LOST
 
     @property
     def silent_for(self) -> float:
-        """Return the seconds since a look, or an answer on the way to one; 0 while it may be silent."""
+        """The seconds since the last poll or partial response; 0 while silence is permitted."""
         seen, now = self.seen, self._clock.now()
         if seen is None or now <= self.grace:
             return 0.0
@@ -244,12 +253,12 @@ class Attendant:
 
     @property
     def lag(self) -> float:
-        """Return the seconds by which the line delays a command and the look that shows it."""
+        """The seconds by which the line delays a command and the poll that shows its effect."""
         seen = self.seen
         return self._clock.now() - seen.asked if seen is not None else 0.0
 
     def connect(self) -> None:
-        """Open, stop, check, look until it is trusted. Raises DriverError."""
+        """Open the line, stop the inverter, check it, and poll until it is trusted. Raises DriverError."""
         self._prepare()
         for _ in range(_MOST):
             self._look()
@@ -262,7 +271,7 @@ class Attendant:
         )
 
     def exchange(self) -> None:
-        """One exchange; what goes wrong is trouble, never an exception."""
+        """Perform one exchange; errors become the fault and are never raised."""
         try:
             if self._family is None:
                 self._reopen()
@@ -273,23 +282,23 @@ class Attendant:
             self._let_go(str(error))
         except (NoAnswerError, RefusedError) as error:
             self.missed = str(error)
-            self._told = None  # whether it has heard is not known: it is told again
-            self._answered = 0.0  # what else it has answered makes no look
+            self._told = None  # The command may be lost, so it is sent again.
+            self._answered = 0.0  # Other responses do not complete the poll.
         self._supervise()
 
     def clear(self) -> None:
-        """Forget the trouble and reset a trip; what was wanted before is not wanted any more. Any thread."""
+        """Clear the fault, reset a trip and discard the commanded frequency; callable from any thread."""
         self._want = 0.0
         self._reset = True
         self.trouble = ""
 
     def begin_again(self) -> None:
-        """Nothing is known before the next look, which may take a moment."""
+        """Discard the known state; the next poll may take a few seconds."""
         self.clear()
         self._told, self.seen, self.grace = None, None, self._clock.now() + _RESTARTS
 
     def close(self) -> None:
-        """Stop, and let the line go."""
+        """Stop the inverter and close the line."""
         self._want = 0.0
         if self._family is not None:
             try:
@@ -328,12 +337,12 @@ class Attendant:
         self._began_before, self._began = self._began, self._clock.now()
         if self._reset:
             self._clear_now()
-        with suppress(HeldBackError):  # the next exchange says the stop first
+        with suppress(HeldBackError):  # The next exchange starts with the stop.
             self._tell()
             self._look()
 
     def _clear_now(self) -> None:
-        """Only what answers can be cleared; a trip that stays comes back with the next look."""
+        """Stop and reset a trip; a trip that remains is reported by the next poll."""
         self._familiar.stop()
         self._told = 0.0
         self._obedience = Obedience(self._step)
@@ -345,7 +354,7 @@ class Attendant:
 
     def _tell(self) -> None:
         want, look = self.want, self.seen.look if self.seen else None
-        # A stop is said until it stands.
+        # A stop is repeated until standstill.
         turns = want == 0.0 and look is not None and (look.run or look.output > STANDS)
         if want == self._told and not turns:
             return
@@ -353,7 +362,7 @@ class Attendant:
         if want == 0.0:
             self._familiar.stop()
         else:
-            self._told = None  # from its first frame on a stop has to be said, and holds back the others
+            self._told = None  # From the first frame on, a stop must be sent and has priority.
             self._familiar.command(want)
         self._told, self._answered = want, self._clock.now()
 
@@ -369,7 +378,7 @@ class Attendant:
         now = self._clock.now()
         self.seen = Seen(now, look, self._began_before)
         if self._reset:
-            return  # a look from before the operator's word
+            return  # This poll started before the operator's reset.
         if look.trip:
             self._latch(Message("the inverter has tripped: {trip}", trip=look.trip), "spindle")
         elif why := self._obedience.judge(now, look, now - self._began):
@@ -383,7 +392,7 @@ class Attendant:
         self._latch(with_stop(why) if self._may_turn() else why, "inverter-silent")
 
     def _supervise(self) -> None:
-        """Nothing seen for too long is trouble, also when nothing was wanted of it."""
+        """Set a fault if the inverter has been silent for too long, even if no command is active."""
         never = self.seen is None and self._clock.now() >= self.grace
         if (never or self.silent_for >= LOST) and not self.trouble:
             why = self.missed or "no response from inverter"
@@ -398,14 +407,14 @@ class Attendant:
         self._want, self._reset = 0.0, False
 
 
-# --- The thread that repeats the attendant's rounds. Its end is seen by whoever asks for the spindle's fault.
+# --- Thread that repeats the exchanges. The spindle's fault reports its end.
 
 
-_END = 3.0  # s: the longest exchange and its retries
+_END = 3.0  # Seconds for the longest exchange with its retries.
 
 
 class AttendantThread:
-    """Rounds without a pause: the line itself keeps the pace of its requests."""
+    """Thread that repeats the exchanges without a pause; the line limits the rate of requests."""
 
     def __init__(self, attendant: Attendant) -> None:
         self._attendant = attendant
@@ -413,11 +422,11 @@ class AttendantThread:
         self.thread = self._made()
 
     def start(self) -> None:
-        """Once."""
+        """Start the thread; must be called only once."""
         self.thread.start()
 
     def revive(self) -> None:
-        """In the place of a thread that has failed another one goes round; the first it says is a stop."""
+        """Start a new thread if the last one has failed; its first command is a stop."""
         if not self.alive and not self._ended.is_set():
             self._attendant.begin_again()
             self.thread = self._made()
@@ -425,12 +434,12 @@ class AttendantThread:
 
     @property
     def alive(self) -> bool:
-        """Whether it still goes round."""
+        """Whether the thread is running."""
         return self.thread.is_alive()
 
     def close(self) -> None:
-        """The last word on the line is a stop."""
-        self._attendant.want = 0.0  # holds back what the thread has not sent yet
+        """End the thread and send a final stop."""
+        self._attendant.want = 0.0  # Prevents further commands of the thread.
         self._ended.set()
         if self.thread.is_alive():
             self.thread.join(_END)

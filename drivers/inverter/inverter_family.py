@@ -1,4 +1,4 @@
-"""What every family of inverters offers, and what one look at an inverter tells."""
+"""Interface of all inverter families, the polled state of an inverter, and its parameters."""
 
 from __future__ import annotations
 
@@ -13,74 +13,78 @@ from drivers.inverter.modbus_rtu import NoAnswerError, RefusedError
 
 @dataclass(frozen=True, slots=True)
 class Look:
-    """An inverter as it said it was. Frequencies in Hz, never negative; directions apart."""
+    """Polled state of an inverter; frequencies are in Hz and never negative."""
 
     output: float
-    setpoint: float  # as the inverter has understood it
-    run: bool  # as the inverter has understood it: it is to turn
-    reverse: bool  # turns, or last turned, against M03
-    asked_reverse: bool  # and is to
-    trip: str = ""  # what has tripped it
+    setpoint: float  # As the inverter has received it.
+    run: bool  # Run command as the inverter has received it.
+    reverse: bool  # Turns, or last turned, in reverse.
+    asked_reverse: bool  # A reverse command is active.
+    trip: str = ""  # Reason for a trip.
     current: float = 0.0  # A
 
     @property
     def signed(self) -> float:
-        """Output frequency with the sign of M03 and M04."""
+        """The output frequency in Hz, positive as M03 and negative as M04."""
         return -self.output if self.reverse else self.output
 
 
 class Family(Protocol):
-    """One kind of inverter on its line. Whatever talks raises NoAnswerError, RefusedError or WireError.
+    """Inverter on its line. Methods that communicate raise NoAnswerError, RefusedError or WireError.
 
-    ``hurry`` is asked between requests: a stop is waiting, so that what is not a stop breaks off. It is asked
-    right before each frame that can make the motor turn, which is then not sent: HeldBackError.
+    ``hurry`` returns whether a stop is pending. It is called between requests, so that other requests are
+    canceled. It is also called directly before each frame that can turn the motor; the frame is then not sent
+    and HeldBackError is raised.
     """
 
-    warm_up: int  # good answers in a row before it is trusted
+    warm_up: int  # Consecutive valid responses before the inverter is trusted.
     hurry: Callable[[], bool]
 
     @property
     def good(self) -> int:
-        """Good answers in a row."""
+        """The number of consecutive valid responses."""
         ...
 
     def prepare(self, comm_loss: float, highest: float) -> list[str]:
-        """Once a connection: its own time-out (s) and its settings against ``highest`` Hz.
+        """Check the communication timeout (``comm_loss``, seconds) and the settings, once per connection.
 
-        Answers what has to be known.
+        ``highest`` is the required frequency in Hz. Return the messages for the operator.
         """
         ...
 
     def stop(self) -> None:
-        """Stop by its ramp."""
+        """Stop by the inverter's ramp."""
         ...
 
     def command(self, hz: float) -> None:
-        """Turn; negative against M03. Raises HeldBackError."""
+        """Turn at a frequency in Hz, negative against M03. Raises HeldBackError if a stop is pending."""
         ...
 
     def looks(self) -> Iterator[Look | None]:
-        """One look, request by request: None between them, the look at last. Raises HeldBackError."""
+        """Poll the inverter; yield None between requests and the state at the end.
+
+        Raises HeldBackError if a stop is pending.
+        """
         ...
 
     def reset(self) -> None:
-        """Clear a trip, said once."""
+        """Reset a trip once."""
         ...
 
     def close(self) -> None:
-        """Let the line go."""
+        """Close the line."""
         ...
 
 
-# --- Parameters of an inverter that this control needs: read, written where that may be, read back.
+# --- Required parameters of an inverter: read, written if permitted, and read back.
 
 
-Read = Callable[[int], int]  # the value of a parameter by its register
+Read = Callable[[int], int]  # Returns the value of a parameter by its register.
 Write = Callable[[int, int], None]
 
 
 class Setting(NamedTuple):
-    """A register, what it ought to hold, its name at the keypad, and what for."""
+    """Required parameter value: register, value, name at the keypad, and purpose."""
 
     register: int
     value: int
@@ -88,7 +92,7 @@ class Setting(NamedTuple):
     why: str
 
     def differs(self, read: Read) -> str:
-        """A sentence when it holds something else; it is left as it is. Empty when it is right."""
+        """Return a message if the inverter has another value, or an empty text; nothing is written."""
         try:
             there = read(self.register)
         except RefusedError as error:
@@ -113,9 +117,9 @@ class Setting(NamedTuple):
 def check_parameters(
     table: FamilyTable, comm_loss: float, highest: float, read: Read, write: Write
 ) -> list[str]:
-    """Write what may be written, and return a sentence for each parameter that is not as it must be.
+    """Write the parameters that may be written and return a message for each wrong parameter.
 
-    ``comm_loss`` is in seconds, ``highest`` in Hz. Raises NoAnswerError, WireError.
+    ``comm_loss`` is in seconds, ``highest`` in Hz. Raises NoAnswerError or WireError.
     """
     known = [] if any(each.counts_per_s for each in table.parameters) else [_no_timeout(table, comm_loss)]
     known += _settled(_settings(table, comm_loss, write=True), read, write)
@@ -137,9 +141,9 @@ def _setting(each: ParameterKeys, comm_loss: float) -> Setting:
 
 
 def _settled(wanted: Iterable[Setting], read: Read, write: Write) -> list[str]:
-    """Write what differs, and read it back; a sentence for each that is still not as it must be.
+    """Write the values that differ, read them back, and return a message for each wrong value.
 
-    Only what differs is written: such memory wears out.
+    Equal values are not written, because the memory wears out.
     """
     wanted = list(wanted)
     for setting in wanted:
@@ -147,12 +151,12 @@ def _settled(wanted: Iterable[Setting], read: Read, write: Write) -> list[str]:
             try:
                 write(setting.register, setting.value)
             except (RefusedError, NoAnswerError):
-                continue  # told below, by what it holds now
+                continue  # Reported below with the present value.
     return [text for setting in wanted if (text := setting.differs(read))]
 
 
 def _below(top: TopKeys, highest: float, read: Read) -> str:
-    """A sentence when the inverter ends below ``highest`` Hz; empty when it is enough."""
+    """Return a message if the inverter limits its output below ``highest`` Hz, or an empty text."""
     try:
         there = read(top.register)
     except RefusedError as error:

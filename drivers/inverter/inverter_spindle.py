@@ -1,4 +1,4 @@
-"""The spindle behind an inverter. Nothing here waits for the line."""
+"""Spindle with an inverter, whose methods never wait for the serial line."""
 
 from __future__ import annotations
 
@@ -22,23 +22,23 @@ from drivers.serial_line import Wire
 
 
 class Encoder(Protocol):
-    """What measures the spindle itself, where the machine has such a thing."""
+    """Encoder that measures the spindle independently of the inverter."""
 
     def speed(self) -> float:
-        """rpm, signed."""
+        """Return the measured speed in rpm, signed."""
         ...
 
     def angle(self) -> tuple[float, float] | None:
-        """(time, turns) or None."""
+        """Return a (time, revolutions) pair, or None."""
         ...
 
 
 class InverterSpindle:
-    """``core.ports.Spindle``. Without an encoder its speed is what the inverter gives, and it has no angle.
+    """``core.ports.Spindle`` of an inverter. Without an encoder, its speed is the inverter's output.
 
-    ``alive`` tells whether somebody still attends the line, ``revive`` asks for somebody else; ``estop``
-    whether E-stop is pressed; ``lost`` why the encoder is not to be believed, which is a fault as long as the
-    spindle turns or has to.
+    ``alive`` returns whether the inverter is still monitored, and ``revive`` restarts the monitoring.
+    ``estop`` returns whether the E-stop is pressed. ``lost`` returns the reason why the encoder is invalid,
+    which is a fault while the spindle turns or must turn.
     """
 
     def __init__(
@@ -57,14 +57,18 @@ class InverterSpindle:
         self._encoder, self._alive, self._estop, self._lost = encoder, alive, estop, lost
         self._agreement = Agreement(config.disagree)
         self._revive = revive
-        self._unmeasured = ""  # why it has stopped measuring; latched until ``clear_fault``
+        self._unmeasured = ""  # Reason for an invalid measurement, latched until ``clear_fault``.
 
     def run(self, rpm: float) -> None:
-        """Turn at ``rpm``, signed. Raises DriverError with a fault or in E-stop, unless asked to stop."""
+        """Turn the spindle at ``rpm``, signed; 0 stops it.
+
+        Raises DriverError with a fault or in E-stop if the speed is not 0.
+        """
         if rpm:
             demand_estop_released(self._estop())
             demand_spindle(self.fault() or self._lost())
-            # One that turns goes on: a surface speed that is refused for a lost answer costs the part.
+            # A spindle that turns may change its speed, because a rejected surface speed would scrap the
+            # part.
             if not (self._attendant.want or self._attendant.warm):
                 raise DriverError(
                     "the spindle stays off until the inverter has sent the required number of "
@@ -76,20 +80,21 @@ class InverterSpindle:
         self._attendant.want = min(max(rpm, -limit), limit) * self._config.hz_per_rpm
 
     def coast(self) -> None:
-        """Over its line an inverter knows one stop, that of its ramp; to run free is what its STO is for."""
+        """Stop by the inverter's ramp, because coasting is possible only by its STO input."""
         self._attendant.want = 0.0
 
     def clear_fault(self) -> None:
-        """Forget a fault; a reset goes to the inverter where it has tripped. Nothing turns."""
+        """Clear the fault and reset a trip of the inverter, without turning the spindle."""
         if not self._alive():
             self._revive()
         self._attendant.clear()
         self._unmeasured = ""
 
     def speed(self) -> float:
-        """Measured rpm, signed: by the encoder, else what the inverter last said that it gives.
+        """Return the speed in rpm, signed, measured by the encoder or reported by the inverter.
 
-        The inverter's word also while the encoder is lost; of two that disagree the higher.
+        The inverter's value is used while the encoder is invalid. If both disagree, the higher value is
+        returned.
         """
         if self._encoder is None or self._lost():
             return self.reported_rpm
@@ -99,32 +104,32 @@ class InverterSpindle:
 
     @property
     def reported_rpm(self) -> float:
-        """rpm, signed, as the inverter last said."""
+        """The speed in rpm, signed, by the last poll of the inverter."""
         seen = self._attendant.seen
         return seen.look.signed / self._config.hz_per_rpm if seen else 0.0
 
     def lag(self) -> float:
-        """Return the seconds by which the line delays a command and the speed that shows it."""
+        """Return the seconds by which the line delays a command and the speed that shows its effect."""
         return self._attendant.lag
 
     @property
     def load(self) -> float:
-        """Per cent of the motor's rated current that the inverter gives; nan where nobody tells."""
+        """The output current in percent of the motor's rated current, or nan if unknown."""
         seen, rated = self._attendant.seen, self._config.rated
         if not rated or seen is None or self._attendant.unheard:
             return math.nan
         return 100.0 * seen.look.current / rated
 
     def angle(self) -> tuple[float, float] | None:
-        """By the encoder; None without one, and of one that is not to be believed."""
+        """Return a (time, revolutions) pair of the encoder, or None without a valid encoder."""
         if self._encoder is None or self._unmeasured or self._lost():
             return None
         return self._encoder.angle()
 
     def fault(self) -> str:
-        """What is wrong, with the word for the operator; empty when well.
+        """Return the fault with the instruction for the operator, or an empty text.
 
-        It is asked all the time: so an E-stop that is seen ends what was commanded before its release.
+        The method is called continuously, so an E-stop also cancels the commanded speed.
         """
         attendant = self._attendant
         if self._estop():
@@ -146,7 +151,7 @@ class InverterSpindle:
         return ""
 
     def _wrong(self, encoder: Encoder) -> bool:
-        """Whether it turns, or has to, and nobody measures it."""
+        """Return whether the spindle turns or must turn without a valid measurement."""
         needed = self._attendant.want != 0.0 or self.reported_rpm != 0.0
         if needed and not self._unmeasured:
             now = self._clock.now()
@@ -155,13 +160,13 @@ class InverterSpindle:
 
     @property
     def unknown(self) -> bool:
-        """Whether nobody knows if it turns: no encoder tells, and the inverter has not been heard of late."""
+        """Whether it is unknown if the spindle turns, because encoder and inverter are both unavailable."""
         if self._encoder is not None and not (self._unmeasured or self._lost()):
             return False
         return not self._alive() or self._attendant.unheard
 
     def status(self) -> str:
-        """One line about it, for a check."""
+        """Return one line about the state of the inverter for a check."""
         seen = self._attendant.seen
         if seen is None:
             return "no response yet"
@@ -176,16 +181,16 @@ class InverterSpindle:
         )
 
 
-# --- From a configuration to an inverter that is attended.
+# --- Creation from a configuration.
 
 
 def attendant(
     config: InverterTable, open_wire: Callable[[], Wire], clock: Clock, folder: Path = Path()
 ) -> Attendant:
-    """Whoever attends this inverter; nothing is opened yet. ``open_wire`` raises WireError.
+    """Create the control of an inverter without opening its line; ``open_wire`` raises WireError.
 
-    ``folder`` has the file of a family that is not shipped. Raises DriverError for a family that cannot be
-    read, or does not fit the machine.
+    ``folder`` contains the file of a family that is not shipped. Raises DriverError if the family cannot be
+    read or does not fit the machine.
     """
     table = family_table(config.family, folder)
     highest = config.rpm_max * config.hz_per_rpm
@@ -198,7 +203,7 @@ def attendant(
 
 
 def _check_fits(table: FamilyTable, config: InverterTable, highest: float) -> None:
-    """Raise DriverError for a line or a frequency in Hz that the inverter does not support."""
+    """Raise DriverError if the inverter does not support the line settings or the maximum frequency in Hz."""
     slowest, fastest = table.line.baud
     if not slowest <= config.baud <= fastest:
         raise DriverError(
@@ -230,7 +235,7 @@ def _check_fits(table: FamilyTable, config: InverterTable, highest: float) -> No
 
 
 def _family(table: FamilyTable, config: InverterTable, wire: Wire, clock: Clock) -> Family:
-    """Return the inverter on an open line."""
+    """Create the inverter on an open line."""
     if table.registers is None:
         return HuanyangHy(table, wire, clock, config.unit, config.line.character)
     line = Modbus(wire, clock, config.unit, config.line.character)

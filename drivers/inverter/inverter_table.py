@@ -1,4 +1,4 @@
-"""[spindle.vfd] of the machine file: the inverter that turns the spindle, and the line to it."""
+"""Table [spindle.vfd] of the machine file: the spindle inverter and its serial line."""
 
 from __future__ import annotations
 
@@ -21,9 +21,10 @@ _PATH = "spindle.vfd"
 
 @key_table
 class InverterTable:
-    """An inverter and the serial line to it.
+    """Settings of an inverter and its serial line.
 
-    ``hz_per_rpm`` is of the spindle, with its belt; ``comm_loss`` the inverter's own time-out in s.
+    ``hz_per_rpm`` refers to the spindle, including the belt. ``comm_loss`` is the inverter's communication
+    timeout in seconds.
     """
 
     _: KW_ONLY
@@ -66,14 +67,17 @@ class InverterTable:
 
     @property
     def line(self) -> LineSettings:
-        """The serial line of eight bits."""
+        """The settings of the serial line with eight data bits."""
         from drivers.serial_line import LineSettings  # noqa: PLC0415  few machines have one
 
         return LineSettings(self.port, self.baud, parity=self.parity, stop=self.stop)
 
 
 def _unknown_family(file: FileReading) -> Iterator[Finding]:
-    """A family that is neither shipped nor the name of a file, which is read when the line is opened."""
+    """Yield a finding for a family that is neither shipped nor the name of a TOML file.
+
+    A file is read only when the line is opened.
+    """
     path = f"{_PATH}.family"
     if file.values.has(path) and (name := file.values.text(path)) not in FAMILIES and name[-5:] != ".toml":
         text = "expected one of {families}, or the name of a .toml file in the folder of the machine file"

@@ -1,4 +1,4 @@
-"""A Modbus RTU master on one line: one request at a time, retried, resynchronised after what went wrong."""
+"""Modbus RTU master with one request at a time, retries, and resynchronization after an error."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _SHORTEST = 5
 
 
 def crc16(data: bytes) -> int:
-    """CRC-16 with the polynomial x¹⁶+x¹⁵+x²+1 reflected (A001), beginning with FFFF."""
+    """Return the CRC-16 with the reflected polynomial x¹⁶+x¹⁵+x²+1 (A001) and initial value FFFF."""
     crc = 0xFFFF
     for byte in data:
         crc ^= byte
@@ -28,45 +28,45 @@ def crc16(data: bytes) -> int:
 
 
 def sealed(body: bytes) -> bytes:
-    """With its CRC."""
+    """Return a frame with its CRC appended."""
     return body + struct.pack("<H", crc16(body))
 
 
 def whole(frame: bytes) -> bool:
-    """Whether the CRC at its end is right."""
+    """Return whether the CRC at the end of a frame is correct."""
     return len(frame) >= _SHORTEST - 1 and crc16(frame[:-2]) == int.from_bytes(frame[-2:], "little")
 
 
 def read(function: int, address: int, count: int) -> bytes:
-    """Function and data of a read."""
+    """Return function and data of a read request."""
     return struct.pack(">BHH", function, address, count)
 
 
 def write_coil(address: int, on: bool) -> bytes:
-    """05."""
+    """Return function and data of a request to write one coil (05)."""
     return struct.pack(">BHH", WRITE_COIL, address, 0xFF00 if on else 0)
 
 
 def write_register(address: int, value: int) -> bytes:
-    """06."""
+    """Return function and data of a request to write one register (06)."""
     return struct.pack(">BHH", WRITE_REGISTER, address, value)
 
 
 def write_registers(address: int, values: Sequence[int]) -> bytes:
-    """10."""
+    """Return function and data of a request to write several registers (10 hex)."""
     head = struct.pack(">BHHB", WRITE_REGISTERS, address, len(values), 2 * len(values))
     return head + struct.pack(f">{len(values)}H", *values)
 
 
 def loopback(value: int) -> bytes:
-    """08, sub-function 0: comes back as it is."""
+    """Return function and data of an echo request (08, sub-function 0)."""
     return struct.pack(">BHH", LOOPBACK, 0, value)
 
 
 def answer_in(buffer: bytes, unit: int, function: int) -> bytes | None:
-    """The first whole answer to ``function`` anywhere in what has come; noise before and behind is skipped.
+    """Return the first complete response to ``function`` in the buffer, or None if it is incomplete.
 
-    None: not yet.
+    Noise before and after the response is ignored.
     """
     for start in range(len(buffer) - _SHORTEST + 1):
         if buffer[start] != unit or buffer[start + 1] & ~FAILED != function:
@@ -83,23 +83,23 @@ def _length(frame: bytes) -> int:
     return 5 + frame[2] if frame[1] <= READ_REGISTERS else 8
 
 
-# --- What can go wrong between a request and its answer.
+# --- Errors between a request and its response.
 
 
 class NoAnswerError(DriverError):
-    """The device has not answered, or nothing that could be read."""
+    """Failure to receive a readable response from the device."""
 
 
 class RefusedError(DriverError):
-    """The device answered that it will not."""
+    """Rejection of a request by the device."""
 
 
 class HeldBackError(Exception):
-    """A stop came before the request was sent."""
+    """Request that was not sent because a stop is pending."""
 
 
-PACE = 0.03  # s between the beginnings of two requests: inverters lose their line when asked more often
-TIMEOUT = 0.2  # s for an answer
+PACE = 0.03  # Seconds between the starts of two requests; inverters lose more frequent requests.
+TIMEOUT = 0.2  # Seconds for a response.
 TRIES = 3
 _EXCEPTIONS = {
     1: "illegal function",
@@ -112,54 +112,57 @@ _EXCEPTIONS = {
 
 
 def never() -> bool:
-    """Nothing is more urgent."""
+    """Return False, because no stop can be pending."""
     return False
 
 
 class Modbus:
-    """``hurry`` tells that a stop is waiting to go out, which ends retries of a read early.
+    """Modbus RTU master; ``hurry`` returns whether a stop is pending, which ends the retries of a read.
 
-    A write that ``gives_way`` is then not sent either: it raises HeldBackError, also in place of a retry.
+    A write with ``gives_way`` is then not sent or repeated, and raises HeldBackError.
     """
 
     def __init__(self, wire: Wire, clock: Clock, unit: int, character: float, pace: float = PACE) -> None:
         self.wire, self._clock, self._unit, self._pace = wire, clock, unit, pace
-        self._gap = max(3.5 * character, 0.00175)  # a fixed 1.75 ms above 19200 baud
+        self._gap = max(3.5 * character, 0.00175)  # A fixed 1.75 ms above 19200 baud.
         self._free = clock.now()
-        self._doubt = False  # an answer may still be on its way
+        self._doubt = False  # A late response may still arrive.
         self._echo = 0
         self.hurry: Callable[[], bool] = never
-        self.good = 0  # answers in a row
-        self.bad = 0  # all that failed since the start
+        self.good = 0  # Consecutive responses.
+        self.bad = 0  # Failures since the start.
 
     def registers(self, address: int, count: int = 1) -> list[int]:
-        """03. Raises NoAnswerError, RefusedError, WireError; so do all others."""
+        """Read holding registers (03). Raises NoAnswerError, RefusedError or WireError, as all methods do."""
         frame = self._read(read(READ_REGISTERS, address, count), 2 * count)
         return [word for (word,) in struct.iter_unpack(">H", frame[3:-2])]
 
     def coils(self, address: int, count: int = 1) -> list[bool]:
-        """01."""
+        """Read coils (01)."""
         packed = self._read(read(READ_COILS, address, count), (count + 7) // 8)[3:-2]
         return [bool(int.from_bytes(packed, "little") >> number & 1) for number in range(count)]
 
     def write_coil(self, address: int, on: bool, tries: int = TRIES, *, gives_way: bool = False) -> None:
-        """05."""
+        """Write one coil (05)."""
         self._write(write_coil(address, on), tries, gives_way)
 
     def write_register(
         self, address: int, value: int, tries: int = TRIES, *, gives_way: bool = False
     ) -> None:
-        """06; ``tries`` 1: what must not be said twice."""
+        """Write one register (06); ``tries`` 1 prevents a repeated command."""
         self._write(write_register(address, value), tries, gives_way)
 
     def write_registers(
         self, address: int, values: Sequence[int], tries: int = TRIES, *, gives_way: bool = False
     ) -> None:
-        """10."""
+        """Write several registers (10 hex)."""
         self._write(write_registers(address, values), tries, gives_way)
 
     def _read(self, pdu: bytes, size: int) -> bytes:
-        """An answer says nothing of what was asked: after a doubt an echo comes first."""
+        """Send a read request and return its response.
+
+        A response does not identify its request, so an echo is exchanged first after an error.
+        """
         for left in reversed(range(TRIES)):
             try:
                 if self._doubt:
@@ -174,7 +177,7 @@ class Modbus:
         raise NoAnswerError("the inverter's responses do not match the requests")
 
     def _write(self, pdu: bytes, tries: int, gives_way: bool) -> None:
-        """The answer repeats address and value, or address and count."""
+        """Send a write request, whose response must repeat the address and the value or count."""
         for left in reversed(range(tries)):
             try:
                 if self._once(pdu, gives_way)[1:6] == pdu[:5]:
@@ -186,13 +189,13 @@ class Modbus:
         raise NoAnswerError("the inverter's response does not match the write request")
 
     def _settle(self) -> None:
-        """Nothing that comes late can be this echo."""
+        """Exchange an echo with a new value, so that late responses are detected."""
         self._echo = self._echo % 0xFFFF + 1
         pdu = loopback(self._echo)
         try:
             frame = self._once(pdu)
         except RefusedError:
-            self._doubt = False  # it knows no loopback, and has said so
+            self._doubt = False  # The device has rejected the echo, so it is synchronized.
             return
         if frame[1:6] != pdu:
             self._failed()

@@ -1,4 +1,4 @@
-"""Inverter on Modbus that follows the register table of its family."""
+"""Inverter on Modbus that is controlled by the register table of its family."""
 
 from __future__ import annotations
 
@@ -12,31 +12,31 @@ from drivers.inverter.modbus_rtu import TRIES, Modbus
 
 
 class RegisterFamily:
-    """``Family`` of a register table, on the line that it alone uses."""
+    """``Family`` with a register table and the exclusive use of its line."""
 
     warm_up = 1
 
     def __init__(self, table: FamilyTable, registers: RegisterTable, line: Modbus, clock: Clock) -> None:
         self._table, self._registers, self._line, self._clock = table, registers, line, clock
-        self._said: Sequence[WriteKeys] = ()  # the run command in force, as far as is known
+        self._said: Sequence[WriteKeys] = ()  # Run command that is known to be active.
 
     @property
     def hurry(self) -> Callable[[], bool]:
-        """Whether a stop waits."""
+        """The function that returns whether a stop is pending."""
         return self._line.hurry
 
     @hurry.setter
     def hurry(self, asked: Callable[[], bool]) -> None:
-        """``asked`` tells whether a stop waits: what is no stop breaks off, and no run command is sent."""
+        """Set the function that returns whether a stop is pending and other requests must be canceled."""
         self._line.hurry = asked
 
     @property
     def good(self) -> int:
-        """Good answers in a row."""
+        """The number of consecutive valid responses."""
         return self._line.good
 
     def prepare(self, comm_loss: float, highest: float) -> list[str]:
-        """Check the parameters of the table; ``comm_loss`` in s, ``highest`` in Hz."""
+        """Check the parameters of the table; ``comm_loss`` in seconds, ``highest`` in Hz."""
         self._said = ()
         return check_parameters(
             self._table, comm_loss, highest, lambda register: self._line.registers(register)[0], self._write
@@ -49,7 +49,7 @@ class RegisterFamily:
             self._send(each)
 
     def command(self, hz: float) -> None:
-        """Send the frequency first, so that the inverter never starts at an old one."""
+        """Send the frequency first, so that the inverter never starts with an old frequency."""
         frequency = self._registers.frequency
         words = frequency.words_of(hz)
         if len(words) > 1:
@@ -59,13 +59,13 @@ class RegisterFamily:
         writes = self._registers.commands["reverse" if hz < 0.0 else "forward"]
         if writes == self._said and not self._registers.sending.repeat:
             return
-        self._said = ()  # until all of it is answered
+        self._said = ()  # Until all writes are acknowledged.
         for each in writes:
             self._send(each, gives_way=True)
         self._said = writes
 
     def looks(self) -> Iterator[Look | None]:
-        """One look, read by read."""
+        """Poll the inverter read by read; yield None between requests and the state at the end."""
         words: dict[int, int] = {}
         coils: dict[int, bool] = {}
         for each in self._registers.reads:
@@ -77,7 +77,7 @@ class RegisterFamily:
         yield self._look(words, coils)
 
     def reset(self) -> None:
-        """Clear a trip. The next command is sent from the beginning."""
+        """Reset a trip; the next command is then sent completely."""
         self._said = ()
         sending = self._registers.sending
         for each in self._registers.commands["reset"]:
@@ -86,7 +86,7 @@ class RegisterFamily:
             self._clock.sleep_until(self._clock.now() + sending.reset_pause)
 
     def close(self) -> None:
-        """Let the line go."""
+        """Close the line."""
         self._line.wire.close()
 
     def _send(self, each: WriteKeys, tries: int = TRIES, *, gives_way: bool = False) -> None:
@@ -115,7 +115,7 @@ class RegisterFamily:
         )
 
     def _trip(self, words: Mapping[int, int]) -> str:
-        """Return the text of the fault code. Without a fault state, code 0 is no fault."""
+        """Return the text of the fault code; without a fault state, code 0 means no fault."""
         table = self._registers
         register = table.code.register
         code = words[register] if table.code_is_polled else self._line.registers(register)[0]

@@ -1,1 +1,1 @@
-"""The simulated machine as a backend: the plant of the simulators behind ``core.ports``."""
+"""Backend that connects the ports to the simulated machine."""

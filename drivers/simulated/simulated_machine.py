@@ -1,4 +1,4 @@
-"""The simulated machine behind ``core.ports``: default backend, and the machine of everyone who has none."""
+"""Ports of the simulated machine, which is the default backend."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ from drivers.simulators.plant_hands import PlantHands, Schedule
 
 
 class _OnPlant:
-    """What looks at the plant."""
+    """Base class of the ports of a plant."""
 
     def __init__(self, plant: Plant) -> None:
         self._plant = plant
 
 
 class SimAxes(_OnPlant):
-    """``core.ports.AxisSink`` on the plant."""
+    """``core.ports.AxisSink`` of the simulated machine."""
 
     def __init__(self, plant: Plant) -> None:
         super().__init__(plant)
@@ -40,26 +40,29 @@ class SimAxes(_OnPlant):
         self.commit = plant.config.commit
 
     def now(self) -> float:
-        """The machine's clock."""
+        """Return the time of the machine's clock in seconds."""
         return self._plant.clock.now()
 
     def horizon(self) -> float:
-        """End of what is queued; now when nothing is."""
+        """Return the end time of the setpoint queue, or the present time if it is empty."""
         with self._plant.lock:
             return self._plant.queue.horizon(self._plant.clock.now())
 
     def splice(self, segments: Segments) -> None:
-        """Queue setpoints; raises DriverError as the port says."""
+        """Splice setpoints into the queue.
+
+        Raises DriverError if they are invalid or the drives cannot follow.
+        """
         self._plant.splice(segments)
 
     def demand_at(self, t: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Queued position and velocity at ``t``."""
+        """Return the queued positions and velocities at time ``t``."""
         with self._plant.lock:
             self._plant.advance()
             return self._plant.queue.demand_at(t)
 
     def sample(self) -> AxisSample:
-        """The axes now, on the model's grid."""
+        """Return the state of the axes at the last grid point of the model."""
         plant = self._plant
         with plant.lock:
             plant.advance()
@@ -79,47 +82,47 @@ class SimAxes(_OnPlant):
             )
 
     def enable(self, on: bool) -> None:
-        """Drives on or off; raises DriverError in E-stop or fault."""
+        """Switch the drives on or off. Raises DriverError in E-stop or with a fault."""
         self._plant.power(on)
 
     def stop(self, how: Stop) -> None:
-        """The drives' own stop, at once."""
+        """Stop the axes by the ramps of the drives."""
         self._plant.stop(how)
 
     def home(self, axis: str) -> None:
-        """Start looking for the home switch; ``sample().homed`` says when it is found."""
+        """Start to home an axis; ``sample().homed`` becomes True when it is done."""
         demand_axis(axis, self.axes)
         self._plant.home(axis)
 
     def clear_fault(self) -> None:
-        """Forget the fault; the drives stay off."""
+        """Clear the fault; the drives remain off."""
         with self._plant.lock:
             self._plant.clear_fault()
 
 
 class SimGear(_OnPlant):
-    """``core.ports.Gear`` on the plant."""
+    """``core.ports.Gear`` of the simulated machine."""
 
     def mesh(self, cam: Cam) -> None:
-        """Follow the spindle; raises DriverError as the port says."""
+        """Make the axes follow the spindle. Raises DriverError if the cam is invalid or too fast."""
         self._plant.mesh(cam)
 
     def geared(self) -> Geared | None:
-        """Where on the cam the slides are."""
+        """Return the position of the axes on the cam, or None if they do not follow the spindle."""
         with self._plant.lock:
             self._plant.advance()
             return self._plant.queue.geared()
 
 
 class SimSamples(_OnPlant):
-    """``core.ports.SampleSource`` on the plant: its model's grid, from the first time on that it is asked."""
+    """``core.ports.SampleSource`` of the simulated machine; sampling starts with the first request."""
 
     def __init__(self, plant: Plant) -> None:
         super().__init__(plant)
         self.rate = 1.0 / plant.config.step
 
     def take(self, most: int = KEPT) -> FloatArray:
-        """What has been sampled since."""
+        """Return at most ``most`` samples since the last call, oldest first."""
         plant = self._plant
         with plant.lock:
             if plant.log is None:
@@ -128,10 +131,13 @@ class SimSamples(_OnPlant):
 
 
 class SimSpindlePort(_OnPlant):
-    """``core.ports.Spindle`` on the plant."""
+    """``core.ports.Spindle`` of the simulated machine."""
 
     def run(self, rpm: float) -> None:
-        """Turn at ``rpm``, signed; raises DriverError in E-stop or inverter fault, unless asked to stop."""
+        """Turn the spindle at ``rpm``, signed; 0 stops it.
+
+        Raises DriverError in E-stop or with an inverter fault if the speed is not 0.
+        """
         plant = self._plant
         with plant.lock:
             now = plant.advance()
@@ -140,18 +146,21 @@ class SimSpindlePort(_OnPlant):
             plant.spindle.order(now, rpm)
 
     def coast(self) -> None:
-        """No torque: it runs down by itself."""
+        """Remove the torque, so that the spindle coasts to a stop."""
         with self._plant.lock:
             self._plant.spindle.order(self._plant.advance(), 0.0, coast=True)
 
     def speed(self) -> float:
-        """Measured rpm, signed."""
+        """Return the measured speed in rpm, signed."""
         with self._plant.lock:
             self._plant.advance()
             return self._plant.spindle.speed
 
     def angle(self) -> tuple[float, float] | None:
-        """(time, revolutions counted), in steps of the encoder's four edges; None without an encoder."""
+        """Return a (time, counted revolutions) pair, or None without an encoder.
+
+        The resolution is a quarter of a pulse.
+        """
         if not self._plant.config.spindle.ppr:
             return None
         with self._plant.lock:
@@ -159,21 +168,21 @@ class SimSpindlePort(_OnPlant):
             return self._plant.spindle.t, self._plant.spindle.counted
 
     def fault(self) -> str:
-        """What the inverter says is wrong; empty when well."""
+        """Return the fault text of the inverter, or an empty text without a fault."""
         return self._plant.spindle.faults.fault
 
 
 def _demand_spindle(plant: Plant) -> None:
-    """Raise DriverError in E-stop, or with a fault of the inverter."""
+    """Raise DriverError in E-stop or with an inverter fault."""
     demand_estop_released(plant.panel.estop)
     demand_spindle(plant.spindle.faults.fault)
 
 
 class SimOrientation(_OnPlant):
-    """``core.ports.SpindleOrientation`` on the plant."""
+    """``core.ports.SpindleOrientation`` of the simulated machine."""
 
     def orient(self, angle: float, sense: int = 0) -> None:
-        """Bring it to an angle; raises DriverError while it turns, in E-stop or with a fault."""
+        """Turn the spindle to an angle in degrees. Raises DriverError in E-stop or with an inverter fault."""
         plant = self._plant
         with plant.lock:
             now = plant.advance()
@@ -181,54 +190,54 @@ class SimOrientation(_OnPlant):
             plant.spindle.orient(now, angle, sense)
 
     def release(self) -> None:
-        """Hold it no longer."""
+        """Cancel the orientation."""
         with self._plant.lock:
             self._plant.advance()
             self._plant.spindle.release()
 
     def oriented(self) -> bool:
-        """Whether it is held at its angle."""
+        """Return whether the spindle is at the commanded angle."""
         with self._plant.lock:
             self._plant.advance()
             return self._plant.spindle.oriented
 
 
 class SimIO(_OnPlant):
-    """``core.ports.DigitalIO`` on the plant."""
+    """``core.ports.DigitalIO`` of the simulated machine."""
 
     def inputs(self) -> Mapping[str, bool]:
-        """All inputs by name, active is True."""
+        """Return all inputs by name; True is active."""
         with self._plant.lock:
             return self._plant.terminals.read(self._plant.advance())
 
     def outputs(self) -> Mapping[str, bool]:
-        """All outputs as last written."""
+        """Return all outputs by name, as last written."""
         with self._plant.lock:
             return dict(self._plant.terminals.outputs)
 
     def write(self, name: str, on: bool) -> None:
-        """Switch one output; raises DriverError for an unknown name."""
+        """Switch one output. Raises DriverError for an unknown name."""
         with self._plant.lock:
             self._plant.terminals.write(name, on, self._plant.advance())
 
     def safe(self) -> None:
-        """Every output to its safe state."""
+        """Set every output to its safe state."""
         with self._plant.lock:
             self._plant.terminals.safe(self._plant.advance())
 
 
 class SimTouch(_OnPlant):
-    """``core.ports.TouchInput`` on the plant: on its model's grid."""
+    """``core.ports.TouchInput`` of the simulated machine, at the resolution of the model's grid."""
 
     def arm(self) -> None:
-        """Forget what was kept."""
+        """Clear the latched touch."""
         with self._plant.lock:
             self._plant.advance()
             if self._plant.terminals.setter is not None:
                 self._plant.terminals.setter.kept = None
 
     def latched(self) -> Latch | None:
-        """The first touch since."""
+        """Return the first touch since ``arm``, or None."""
         with self._plant.lock:
             self._plant.advance()
             setter = self._plant.terminals.setter
@@ -237,10 +246,10 @@ class SimTouch(_OnPlant):
 
 
 class SimStation(_OnPlant):
-    """``core.ports.Station`` on the plant."""
+    """``core.ports.Station`` of the simulated machine."""
 
     def snapshot(self) -> StationState:
-        """The station as the control reads it now."""
+        """Return the present state of the operator station."""
         plant = self._plant
         with plant.lock:
             state, _ = plant.hands(plant.clock.now())
@@ -249,14 +258,14 @@ class SimStation(_OnPlant):
 
 
 class Simulation(NamedTuple):
-    """The ports for the executor, and the handle for whoever plays the operator."""
+    """Ports for the executor, and the controls by which a test or operator acts on the machine."""
 
     ports: MachinePorts
     machine: PlantHands
 
 
 def build_simulation(config: SimConfig, clock: Clock) -> Simulation:
-    """One simulated machine on ``clock``: its ports and its handle."""
+    """Create a simulated machine on ``clock`` and return its ports and its controls."""
     plant = Plant(config, clock)
     ports = MachinePorts(
         clock=clock,

@@ -1,4 +1,4 @@
-"""[sim] of the machine file: the simulation's pace and seed, and what breaks in it by itself."""
+"""Table [sim] of the machine file: pace, random seed and scheduled faults of the simulated machine."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _OF_AN_AXIS = frozenset(
 
 @key_table
 class PlannedFault:
-    """``what`` happens ``at`` so many seconds, for ``seconds``, or for good where that is 0."""
+    """Scheduled fault that starts at ``at`` and lasts ``seconds``; 0 makes it permanent."""
 
     at: float = file_key(
         Range(0.0, 1e6, Unit.SECONDS), meaning="Time after the start at which the fault occurs."
@@ -59,7 +59,7 @@ class PlannedFault:
 
 
 class _Tip:
-    """Where the slides are when a tip is at part zero, mm."""
+    """Axis positions in mm at which a tool tip is at part zero."""
 
     x: float = file_key(
         Range(-5000.0, 5000.0, Unit.LENGTH),
@@ -73,7 +73,7 @@ class _Tip:
 
 @key_table
 class SimulatedTable:
-    """The simulated machine's own settings."""
+    """Settings of the simulated machine."""
 
     seed: int = file_key(
         Range(0, 2**31),
@@ -85,7 +85,7 @@ class SimulatedTable:
         meaning="true: a run without a screen also takes real time. false: it runs as fast as possible.",
     )
     faults: tuple[PlannedFault, ...] = ()
-    tips: tuple[tuple[float, float], ...] = ()  # where the slides stand when a tip is on part zero, mm
+    tips: tuple[tuple[float, float], ...] = ()  # Axis positions when a tip is at part zero, in mm.
 
 
 def _read(file: FileReading) -> Iterator[Finding]:
@@ -99,7 +99,7 @@ def _read(file: FileReading) -> Iterator[Finding]:
 
 
 def _paths(file: FileReading, name: str = "sim.faults") -> list[str]:
-    """Of the entries of a list, counted from 1."""
+    """Return the paths of the entries of a list, counted from 1."""
     entries = file.raw(name)
     return [f"{name}.{n}" for n in range(1, len(entries) + 1)] if isinstance(entries, list) else []
 
@@ -126,7 +126,7 @@ def _rules(file: FileReading) -> Iterator[Finding]:
 
 
 def _listed(file: FileReading) -> dict[str, object]:
-    """The entries of the two lists."""
+    """Return the entries of the lists ``faults`` and ``tips``."""
     values = file.values
     tips = ((values.number(f"{path}.x"), values.number(f"{path}.z")) for path in _paths(file, "sim.tips"))
     return {

@@ -1,1 +1,1 @@
-"""Look-alikes: the far ends of the drivers' wires, played by us for simulation, tests and benches."""
+"""Simulators of the machine and of the devices that TurnDesk controls."""

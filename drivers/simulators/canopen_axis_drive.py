@@ -1,4 +1,4 @@
-"""A CiA 402 drive on a simulated slide: power states, modes, the PVT queue, and what it faults on."""
+"""Simulated CiA 402 drive of an axis: power states, modes of operation, PVT queue and faults."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from drivers.canopen.driven_axes import unpacked, unpacked_segment
 from drivers.canopen.pvt_mode import hermite
 from drivers.simulators.servo_axis import Servo
 
-# --- The power states of a CiA 402 drive as the drive keeps them, with the transitions of the profile.
+# --- Power states of a CiA 402 drive with the transitions of the profile.
 
 
 _BITS = {
@@ -32,32 +32,32 @@ _POWERED = frozenset((DriveState.ENABLED, DriveState.QUICK_STOP, DriveState.REAC
 
 
 class PowerStates:
-    """``control`` takes control words, ``stopped`` ends a braking; ``sto`` is the hardware's word."""
+    """Power state machine of a CiA 402 drive; ``sto`` is the state of the hardware input STO."""
 
     def __init__(self, powered_up: Callable[[], None]) -> None:
         self.state = DriveState.OFF
         self.last = 0  # control word
         self.sto = False
-        self.refuses = False  # a drive that does not come on, for tests
+        self.refuses = False  # A drive that does not switch on, for tests.
         self._powered_up = powered_up
 
     @property
     def powered(self) -> bool:
-        """The motor has current."""
+        """Whether the motor has current."""
         return self.state in _POWERED
 
     @property
     def braking(self) -> bool:
-        """On its own way to rest."""
+        """Whether the drive is braking to standstill after a quick stop or a fault."""
         return self.state in {DriveState.QUICK_STOP, DriveState.REACTING}
 
     @property
     def word(self) -> int:
-        """The state's bits of the status word."""
+        """The bits of the status word for the present state."""
         return _BITS[self.state] | _VOLTAGE | _REMOTE
 
     def control(self, word: int) -> None:
-        """One transition at most, as the profile's figure has them."""
+        """Apply a control word, which causes at most one transition of the CiA 402 state machine."""
         rising = word & 0x80 and not self.last & 0x80
         self.last = word
         if self.state is DriveState.FAULT:
@@ -70,23 +70,23 @@ class PowerStates:
             self._step(word)
 
     def quick_stop(self) -> None:
-        """Brake where there is power, lose it at once where there is none to brake with."""
+        """Brake if the motor has power; otherwise switch off."""
         if self.state is DriveState.ENABLED:
             self.state = DriveState.QUICK_STOP
         elif not self.powered and self.state is not DriveState.FAULT:
             self.state = DriveState.OFF
 
     def off(self) -> None:
-        """No voltage."""
+        """Switch off without braking, except in a fault state."""
         if self.state not in {DriveState.FAULT, DriveState.REACTING}:
             self.state = DriveState.OFF
 
     def trip(self) -> None:
-        """A fault: brake, then no power."""
+        """Enter the fault state, after braking if the motor has power."""
         self.state = DriveState.REACTING if self.powered else DriveState.FAULT
 
     def stopped(self) -> None:
-        """At rest after braking."""
+        """End braking at standstill: in the fault state after a fault, otherwise off."""
         self.state = DriveState.FAULT if self.state is DriveState.REACTING else DriveState.OFF
 
     def _step(self, word: int) -> None:
@@ -109,7 +109,7 @@ _HOME_SETTLE = 0.1  # s
 
 
 class AxisDrive:
-    """``step`` once a millisecond of the plant; objects come by ``read`` and ``write``."""
+    """Simulated axis drive; ``step`` is called once per millisecond of the plant."""
 
     def __init__(
         self,
@@ -121,23 +121,24 @@ class AxisDrive:
         self.servo = servo
         self.emergency = emergency
         self.profile = profile
-        self.unit = counts_per_rev / 60.0 if counts_per_rev else 1.0  # counts/s of one unit of its velocities
-        self.interpolates = False  # from 60C1 to 60C1, let begin by bit 4
-        self._left = 0.0  # s to its target, in a mode that takes one each SYNC
+        # Counts/s per unit of the drive's velocities.
+        self.unit = counts_per_rev / 60.0 if counts_per_rev else 1.0
+        self.interpolates = False  # Interpolates between values of 60C1; enabled by bit 4.
+        self._left = 0.0  # Seconds to the target in a mode with one target per SYNC.
         self._next = 0  # count of the next segment
         self.power = PowerStates(self._hold)
         self.mode = 0
         self.target = 0
         self.p, self.v = servo.p, 0.0  # demand, mm
         self.queue: deque[tuple[int, int, int]] = deque()
-        self.least = QUEUE  # records left while playing, for tests
+        self.least = QUEUE  # Fewest records that remained in the queue, for tests.
         self.playing = False
         self.homed = False
         self._now: tuple[int, int, int] = (0, 0, 0)
-        self._in = 0.0  # s since the present record
+        self._in = 0.0  # Seconds since the start of the present record.
         self._homing = False
         self._settled = 0.0
-        self._pending = False  # a new target, to be acknowledged
+        self._pending = False  # A new target must be acknowledged.
         self._going = False
         self.values: dict[tuple[int, int], int] = {}
         self.second: Callable[[], int] | None = None  # counts of a second encoder input
@@ -154,7 +155,7 @@ class AxisDrive:
     # --- objects ------------------------------------------------------------------------------------------
 
     def read(self, index: int, _sub: int) -> int | None:
-        """Return a value that lives in the drive, None where the stored one counts."""
+        """Return the value of an object that the drive calculates, or None if the stored value applies."""
         reader = self._readers.get(index)
         if reader is not None:
             return reader()
@@ -167,7 +168,7 @@ class AxisDrive:
         return round((self.p - self.servo.reading) / self.servo.axis.count) if self.power.powered else 0
 
     def write(self, index: int, sub: int, value: int) -> None:
-        """What the host says."""
+        """Apply an object value that the host has written."""
         self.values[index, sub] = value
         if index == od.CONTROL:
             self._control(value)
@@ -181,14 +182,14 @@ class AxisDrive:
             self.queue.clear()
 
     def host_lost(self) -> None:
-        """Abort connection option: 3 is a quick stop."""
+        """React to a lost host by the abort connection option: 1 and 2 are a fault, 3 is a quick stop."""
         if self.values.get((od.ABORT_OPTION, 0), 0) == 3:
             self.power.quick_stop()
         elif self.values.get((od.ABORT_OPTION, 0), 0) in {1, 2}:
             self.power.trip()
 
     def reset(self) -> None:
-        """Volatile things are gone; so is the reference of an encoder that only counts."""
+        """Clear volatile values, and the reference of an incremental encoder."""
         self.power.off()
         self.mode, self.playing, self._homing, self._going = 0, False, False, False
         self.interpolates = False
@@ -197,7 +198,7 @@ class AxisDrive:
         self.servo.power_lost()
 
     def status(self) -> int:
-        """0x6041."""
+        """Return the status word, object 0x6041."""
         word = self.power.word
         if (
             self.playing
@@ -214,7 +215,7 @@ class AxisDrive:
 
     @property
     def rests(self) -> bool:
-        """Whether further steps change nothing until a frame or a hand comes."""
+        """Whether further steps change nothing until a frame arrives or the axis is moved externally."""
         servo = self.servo
         if servo.v or self.v:
             return False
@@ -226,7 +227,7 @@ class AxisDrive:
         return not self._steps_to_target or self.p == self.target * servo.axis.count
 
     def step(self, dt: float) -> None:
-        """One step of drive and slide."""
+        """Advance the drive and its axis by ``dt`` seconds."""
         if not self.power.powered:
             self.playing = self._homing = self._going = self.interpolates = False
             self.servo.roll(dt)
@@ -268,11 +269,11 @@ class AxisDrive:
             self._pending = bool(word & NEW)
 
     def _cyclic(self) -> bool:
-        """A setpoint each SYNC, not records."""
+        """Return whether interpolated mode takes one setpoint per SYNC instead of queued records."""
         return self.values.get((od.IP_SUBMODE, 0), 0) == 0
 
     def _period(self) -> float:
-        """Time from setpoint to setpoint."""
+        """Return the time between two setpoints in seconds."""
         return float(self.values.get((od.IP_TIME, 1), 0) * 10.0 ** self.values.get((od.IP_TIME, 2), -3))
 
     @property
@@ -280,7 +281,7 @@ class AxisDrive:
         return self.mode == CSP or self.interpolates
 
     def _step_to_target(self, dt: float) -> None:
-        """In a straight line, so that it is there when the next is due; then it stays."""
+        """Move linearly to the target within one period, then stay there."""
         goal, before = self.target * self.servo.axis.count, self.p
         self.p += (goal - self.p) * min(dt / max(self._left, dt), 1.0)
         self._left = max(self._left - dt, 0.0)
@@ -300,7 +301,7 @@ class AxisDrive:
             self._queue((ms, round(speed), place))
 
     def _order(self, code: int) -> None:
-        """To a queue of Copley."""
+        """Apply a command code to the queue of a Copley drive."""
         if code == 0x80:
             self.queue.clear()
         elif code == 0x83:
@@ -337,7 +338,7 @@ class AxisDrive:
         self.v = (self.p - before) / dt
 
     def _towards(self, goal: float, dt: float) -> None:
-        """Profile position: up and down with the profile's acceleration, no faster than its speed."""
+        """Move to ``goal`` in profile position mode, within the profile's speed and acceleration."""
         count = self.servo.axis.count
         accel = max(self.values.get((od.PROFILE_ACCEL, 0), 0), 1) * count
         accel *= self.unit if self.profile.rpm else 1.0
@@ -351,7 +352,7 @@ class AxisDrive:
             self.p += self.v * dt
 
     def _look_for_home(self, dt: float) -> None:
-        """To the switch at the first homing speed; the reference once it stands there."""
+        """Move to the home switch at the first homing speed, and set the reference after a standstill."""
         way = self.servo.switch - self.p
         speed = max(self.values.get((od.HOME_SPEEDS, 1), 0), 1) * self.unit * self.servo.axis.count
         self.v = math.copysign(min(speed, abs(way) / dt), way)
@@ -373,7 +374,7 @@ class AxisDrive:
             self.power.stopped()
 
     def _hold(self) -> None:
-        """Power has come on: stay here."""
+        """Start at the present position with an empty queue after power-up."""
         self.p, self.v = self.servo.reading, 0.0
         self.queue.clear()
 

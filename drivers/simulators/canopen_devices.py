@@ -1,6 +1,6 @@
-"""All devices of a machine on one bus, with the simulated slides, spindle and terminals behind them.
+"""Simulated CANopen devices of a machine on one bus, connected to the simulated plant.
 
-Devices that only switch and measure are here too: a CiA 401 module, and a CiA 406 encoder.
+In addition to the drives, there are a CiA 401 I/O module and a CiA 406 encoder.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _STATION = frozenset({"estop", "start", "hold", "spindle_auto"})
 
 
 class TerminalBoard:
-    """Outputs switch what hangs on the plant; inputs and pots are read from it."""
+    """Simulated CiA 401 module whose inputs, outputs and pots are those of the plant."""
 
     def __init__(self, name: str, config: CanopenConfig, plant: Plant) -> None:
         self._name = name
@@ -37,11 +37,11 @@ class TerminalBoard:
         self._plant = plant
         self.outputs = bytearray(8)
         self.values: dict[tuple[int, int], int] = {}
-        self._wired: dict[int, list[tuple[str, CanTerminal]]] = {}  # inputs by sub-index
+        self._wired: dict[int, list[tuple[str, CanTerminal]]] = {}  # Inputs by sub-index.
         for name_of_input, where in config.inputs.items():
             if where.node == name:
                 self._wired.setdefault(where.sub, []).append((name_of_input, where))
-        self._hands: object = None  # of the plant, as ``_bytes`` of the inputs show them
+        self._hands: object = None  # State of the plant that ``_bytes`` represents.
         self._bytes: dict[int, int] = {}
         self._pots = {
             pot.terminal.sub: (of, pot) for of, pot in config.pots.items() if pot.terminal.node == name
@@ -51,7 +51,7 @@ class TerminalBoard:
                 self.outputs[model.terminal.sub - 1] |= 1 << model.terminal.bit
 
     def read(self, index: int, sub: int) -> int | None:
-        """What lives in the module."""
+        """Return the value of an object that the module calculates, or None if the stored value applies."""
         if index == od.DEVICE_TYPE:
             return 0x000F0191
         if index == od.DIGITAL_IN and sub:
@@ -63,20 +63,23 @@ class TerminalBoard:
         return None
 
     def write(self, index: int, sub: int, value: int) -> None:
-        """What the host says."""
+        """Apply an object value that the host has written."""
         self.values[index, sub] = value
         if index == od.DIGITAL_OUT:
             self._switch(sub, value)
 
     def host_lost(self) -> None:
-        """Every output that has an error value takes it; the others stay."""
+        """Set every output with an error mode to its error value; the others do not change."""
         for sub in range(1, 9):
             mode = self.values.get((od.ERROR_MODE, sub), 0xFF)
             value = self.values.get((od.ERROR_VALUE, sub), 0)
             self._switch(sub, self.outputs[sub - 1] & ~mode | value & mode)
 
     def reset(self) -> None:
-        """A module without power drops what it can; the valve of the collet stays where it is."""
+        """Switch off the outputs that have an error mode, as a loss of power does.
+
+        Bistable outputs, such as the collet valve, do not change.
+        """
         for sub in range(1, 9):
             kept = self.values.get((od.ERROR_MODE, sub), 0)
             self._switch(sub, self.outputs[sub - 1] & ~kept if kept else self.outputs[sub - 1])
@@ -119,20 +122,20 @@ class TerminalBoard:
         return round(32767 * min(max(fraction, 0.0), 1.0))
 
 
-# --- A CiA 406 encoder on the simulated spindle, and the second input of a drive with one behind it.
+# --- A CiA 406 encoder on the simulated spindle, or at the second encoder input of a drive.
 
 
-TURNS = 4096  # it goes round after so many
+TURNS = 4096  # Number of revolutions after which the position wraps.
 
 
 class EncoderDevice:
-    """``stuck`` no longer turns with the spindle: its coupling has come off."""
+    """Simulated CiA 406 encoder on the spindle; ``stuck`` is its position when the coupling is off."""
 
     def __init__(self, plant: Plant, counts: int) -> None:
         self._plant = plant
-        self.counts = counts  # a turn, signed
+        self.counts = counts  # Per revolution, signed.
         self.turns = TURNS
-        self.steps = abs(counts)  # as it says of itself
+        self.steps = abs(counts)  # The resolution that the encoder reports.
         self.stuck: int | None = None
         self.values: dict[tuple[int, int], int] = {}
         self._readers: dict[int, Callable[[], int]] = {
@@ -143,28 +146,28 @@ class EncoderDevice:
         }
 
     def read(self, index: int, _sub: int) -> int | None:
-        """What lives in the device."""
+        """Return the value of an object that the encoder calculates, or None if the stored value applies."""
         reader = self._readers.get(index)
         return None if reader is None else reader()
 
     @property
     def position(self) -> int:
-        """Counts since it was made."""
+        """The counts since the start of the simulation."""
         return round(self._plant.spindle.turns * self.counts) if self.stuck is None else self.stuck
 
     def come_off(self) -> None:
-        """The coupling: it stays where it is."""
+        """Detach the coupling, so that the position no longer changes."""
         self.stuck = self.position
 
     def write(self, index: int, sub: int, value: int) -> None:
-        """What the host says."""
+        """Store an object value that the host has written."""
         self.values[index, sub] = value
 
     def host_lost(self) -> None:
-        """It only measures."""
+        """Do nothing, because an encoder only measures."""
 
     def reset(self) -> None:
-        """It knows its turns without power."""
+        """Clear the stored values; the absolute position is preserved."""
         self.values.clear()
 
 
@@ -172,7 +175,7 @@ _SETTLED = 1e-9
 
 
 class DevicePlant(Plant):
-    """The simulated machine, its slides moved by drives that think for themselves."""
+    """Simulated machine whose axes are moved by simulated CANopen drives."""
 
     def __init__(self, config: SimConfig, clock: Clock) -> None:
         super().__init__(config, clock)
@@ -181,7 +184,7 @@ class DevicePlant(Plant):
         self._at = clock.now()
 
     def advance(self) -> float:
-        """Bring everything up to the clock in steps of the model; returns the clock's time."""
+        """Advance the model to the present time of the clock in steps, and return this time in seconds."""
         now = self.clock.now()
         with self.lock:
             self._break(now)
@@ -206,19 +209,19 @@ class DevicePlant(Plant):
             self.spindle.cut_load(self._at, cutting=self.cuts())
 
     def _drives_rest(self) -> bool:
-        """Whether further steps change nothing until a frame or a hand comes."""
+        """Return whether further steps change nothing until a frame arrives or the operator acts."""
         if self.spindle.faults.belt or (self.spindle_drive is not None and not self.spindle_drive.rests):
             return False
         return all(drive.rests for drive in self.drives.values())
 
     def trip(self, fault: str) -> None:
-        """The drive named before the colon gives up, with an EMCY."""
+        """Trip the drive that is named before the colon, and send its EMCY."""
         name = fault.partition(":")[0]
         self.drives[name].power.trip()
         self.drives[name].emergency(0x4210)
 
     def press_estop(self) -> None:
-        """The hardware chain: drives brake and lose power, the spindle too."""
+        """Activate STO: the axes brake and lose power, and the spindle coasts."""
         with self.touch:
             now = self.advance()
             self.panel.estop = True
@@ -232,7 +235,7 @@ class DevicePlant(Plant):
 
 
 class CanopenDevices:
-    """``pump`` takes in what has come and lets time pass; call it from one thread."""
+    """All simulated devices on one bus; ``pump`` must be called from one thread only."""
 
     def __init__(self, config: CanopenConfig, sim: SimConfig, clock: Clock) -> None:
         self.config = config
@@ -244,13 +247,14 @@ class CanopenDevices:
         self.network = DeviceNetwork(opened(config.bus))
         self.nodes: dict[str, DeviceNode] = {}
         self.encoder: EncoderDevice | None = None
-        self.cut = False  # the cable is off
-        self.arrival: Callable[[float], float] | None = None  # a frame's time stamp to this clock's time
+        self.cut = False  # The cable is disconnected.
+        # Converts the time stamp of a frame to the time of this clock.
+        self.arrival: Callable[[float], float] | None = None
         self._early: can.Message | None = None
         self._build()
 
     def pump(self, wait: float = 0.0) -> None:
-        """Everything that is due now; waits at most so many seconds for the first frame."""
+        """Process received frames and advance the devices; ``wait`` limits the seconds to the first frame."""
         now = self.plant.advance()
         if self.plant.drives and not self.plant.panel.estop:
             self._reset_sto()
@@ -261,7 +265,7 @@ class CanopenDevices:
             if message is None:
                 break
             if self.arrival is not None and self.arrival(message.timestamp) > now:
-                self._early = message  # a peer that was away takes each frame at its time, not all at once
+                self._early = message  # A process that was suspended handles each frame at its own time.
                 break
             wait = 0.0
             if not self.cut and not message.is_error_frame:
@@ -275,13 +279,13 @@ class CanopenDevices:
                 node.take(can_id, data)
 
     def cable(self, *, out: bool) -> None:
-        """Pull the cable out or put it in again: nothing is heard on either side."""
+        """Disconnect or connect the bus cable in both directions."""
         self.cut = out
         for node in self.nodes.values():
             node.silent = out
 
     def close(self) -> None:
-        """Let the bus go."""
+        """Shut down the connection to the bus."""
         if self.network.bus is not None:
             self.network.bus.shutdown()
             self.network.bus = None
@@ -327,7 +331,10 @@ class CanopenDevices:
 
 
 def _played(node: CanNode) -> tuple[ObjectDictionary, DriveProfile]:
-    """The dictionary of a drive, as its EDS file or its family has it; what it says no value of is 0."""
+    """Return the object dictionary and the profile of a drive, from its EDS file or its family.
+
+    Numbers without a default value are 0.
+    """
     objects, profile = od.drive_dictionary(node)
     for entry in objects.values():
         for variable in [entry] if isinstance(entry, ODVariable) else entry.values():

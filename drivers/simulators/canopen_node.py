@@ -1,4 +1,7 @@
-"""A CANopen device: SDO server of the library; NMT, PDO, SYNC, heartbeats and EMCY of our own."""
+"""Simulated CANopen node with NMT, PDO, SYNC, heartbeat and EMCY.
+
+The SDO server is that of the canopen library.
+"""
 
 from __future__ import annotations
 
@@ -21,30 +24,30 @@ _OFF = 1 << 31
 
 
 class Device(Protocol):
-    """What stands behind the objects."""
+    """Device that provides the values of a node's objects."""
 
     def read(self, index: int, sub: int, /) -> int | None:
-        """A value that lives in the device; None: the stored one."""
+        """Return the value of an object that the device calculates, or None if the stored value applies."""
         ...
 
     def write(self, index: int, sub: int, value: int, /) -> None:
-        """Called behind every write, by SDO and by PDO."""
+        """Apply a written value; called after each write by SDO or PDO."""
         ...
 
     def host_lost(self) -> None:
-        """The heartbeat that 0x1016 watches has stopped."""
+        """React to the loss of the host's heartbeat, SYNC or PDO."""
         ...
 
     def reset(self) -> None:
-        """Power or NMT reset: everything volatile is gone."""
+        """Clear all volatile values after power-up or an NMT reset."""
         ...
 
 
 class DeviceNetwork(canopen.Network):
-    """A bus without a reading thread and without periodic jobs: both are done by ``CanopenDevices.pump``."""
+    """CANopen network without a receiving thread or periodic jobs; ``CanopenDevices.pump`` does both."""
 
     def send_message(self, can_id: int, data: bytes, remote: bool = False) -> None:
-        """One frame; without a bus it is lost."""
+        """Send one frame; without a bus the frame is lost."""
         if self.bus is not None:
             frame = can.Message(
                 arbitration_id=can_id, data=bytes(data), is_extended_id=False, is_remote_frame=remote
@@ -52,35 +55,35 @@ class DeviceNetwork(canopen.Network):
             self.bus.send(frame)
 
     def send_periodic(self, *_: object, **__: object) -> _NoTask:
-        """The node's own heartbeat is sent by its tick."""
+        """Return a task that does nothing, because ``DeviceNode.tick`` sends the heartbeat."""
         return _NoTask()
 
 
 class _NoTask(canopen.network.PeriodicMessageTask):
     def __init__(self) -> None:
-        """Nothing to send."""
+        """Create a task that sends nothing."""
 
     def stop(self) -> None:
-        """Nothing runs."""
+        """Do nothing, because nothing runs."""
 
     def update(self, data: bytes) -> None:
-        """Nothing runs."""
+        """Do nothing, because nothing runs."""
 
 
-_Entry = tuple[int, int, int, bool]  # index, sub-index, bytes and sign of an entry of a PDO
+_Entry = tuple[int, int, int, bool]  # Index, sub-index, number of bytes and sign of a PDO entry.
 _SIGNED = frozenset(datatypes.SIGNED_TYPES)
 
 
 class _Taken(NamedTuple):
-    """An RPDO."""
+    """RPDO with its mapped objects."""
 
     number: int
-    waits: bool  # for the next SYNC
+    waits: bool  # The RPDO takes effect at the next SYNC.
     entries: list[_Entry]
 
 
 class _Sent(NamedTuple):
-    """A TPDO that goes out at every ``kind``-th SYNC."""
+    """TPDO that is sent at every ``kind``-th SYNC."""
 
     cob: int
     kind: int
@@ -88,20 +91,23 @@ class _Sent(NamedTuple):
 
 
 class _Communication(NamedTuple):
-    """What the objects of CiA 301 say, read once behind every write to them; times in s, 0 is never."""
+    """Communication settings of a node, read again after a write to an object of CiA 301.
+
+    Times are in seconds; 0 disables the function.
+    """
 
     beat: float
-    watched: int  # COB-ID of the heartbeat that is watched
+    watched: int  # COB-ID of the monitored heartbeat.
     patience: float
     sync: float
-    longest: float  # between two of the first RPDO
+    longest: float  # Longest time between two frames of the first RPDO.
     taken: dict[int, _Taken]
     sent: list[_Sent]
     hears: frozenset[int]
 
 
 class DeviceNode:
-    """One device on the bus. Tests may make it ``silent``, or let it ``reboot``."""
+    """One node on the bus. Tests can set ``silent`` or call ``boot``."""
 
     def __init__(
         self, network: DeviceNetwork, node_id: int, objects: ObjectDictionary, device: Device
@@ -119,16 +125,16 @@ class DeviceNode:
         self._next_beat = 0.0
         self._host_heard: float | None = None
         self._syncs = 0
-        self._sync_at: float | None = None  # of the last SYNC, and of the last of its first PDO
+        self._sync_at: float | None = None  # Time of the last SYNC.
         self._told_at: float | None = None
         self._waiting: dict[
             int, tuple[list[_Entry], bytes]
-        ] = {}  # by number of the RPDO, until the next SYNC
-        self._communication: _Communication | None = None  # None: to be read again
+        ] = {}  # By number of the RPDO, until the next SYNC.
+        self._communication: _Communication | None = None  # None: the settings must be read again.
         self.boot()
 
     def boot(self) -> None:
-        """Say that it is there; everything volatile is gone."""
+        """Clear all volatile values and send the boot-up message."""
         self.state = _PRE_OPERATIONAL
         self.local.data_store.clear()
         self._communication = None
@@ -139,11 +145,11 @@ class DeviceNode:
 
     @property
     def hears(self) -> frozenset[int]:
-        """Identifiers of the frames that it takes in."""
+        """The identifiers of the frames that the node accepts."""
         return self._told().hears
 
     def take(self, can_id: int, data: bytes) -> None:
-        """One frame of those that it hears."""
+        """Handle one accepted frame."""
         told = self._told()
         if self.silent:
             return
@@ -157,7 +163,7 @@ class DeviceNode:
             self._process_data(can_id, data, told)
 
     def tick(self, now: float) -> None:
-        """Heartbeat, and watching the host's."""
+        """Send the heartbeat when it is due, and check the host's heartbeat and setpoints."""
         self.now = now
         told = self._told()
         if told.beat and now >= self._next_beat and not self.silent:
@@ -170,7 +176,7 @@ class DeviceNode:
         self._miss_setpoints(now, told)
 
     def _miss_setpoints(self, now: float, told: _Communication) -> None:
-        """A SYNC, or a first PDO, that stays away for longer than this device was told."""
+        """Report the host as lost if SYNC or the first RPDO is missing for longer than configured."""
         if self.state != _OPERATIONAL:
             self._sync_at = self._told_at = None
         if told.sync and self._sync_at is not None and now - self._sync_at > _PATIENT * told.sync:
@@ -183,7 +189,7 @@ class DeviceNode:
             self.device.host_lost()
 
     def emergency(self, code: int, register: int = 1) -> None:
-        """An EMCY, unless the node is silent."""
+        """Send an EMCY unless the node is silent."""
         if not self.silent:
             self.network.send_message(0x80 + self.id, struct.pack("<HB5x", code, register))
 
@@ -210,7 +216,7 @@ class DeviceNode:
 
     def _apply(self, entries: list[_Entry], data: bytes) -> None:
         at = 0
-        for index, sub, size, signed in entries:  # as the library's node does, which takes longer
+        for index, sub, size, signed in entries:  # Faster than the node of the library.
             part = data[at : at + size]
             if len(part) == size:
                 self.local.data_store.setdefault(index, {})[sub] = part
@@ -223,7 +229,7 @@ class DeviceNode:
                 self.network.send_message(cob, b"".join([self._value(*entry) for entry in entries]))
 
     def _value(self, index: int, sub: int, size: int, _signed: bool) -> bytes:
-        """As the library's node has it, which takes longer."""
+        """Return an object value in bytes, faster than the node of the library does."""
         value = self.device.read(index, sub)
         if value is None:
             stored = self.local.data_store.setdefault(index, {})
@@ -233,7 +239,7 @@ class DeviceNode:
         return value.to_bytes(size, "little", signed=value < 0)
 
     def _told(self) -> _Communication:
-        """What this device was told of its communication."""
+        """Return the communication settings, which are read again after a change."""
         if self._communication is None:
             self._communication = self._read()
         return self._communication
@@ -264,7 +270,7 @@ class DeviceNode:
         )
 
     def _mapped(self, index: int) -> list[_Entry]:
-        """What a PDO holds."""
+        """Return the entries that are mapped into a PDO."""
         entries = [self._stored(index, sub) for sub in range(1, self._stored(index, 0) + 1)]
         places = [(entry >> 16, entry >> 8 & 0xFF, (entry & 0xFF) // 8) for entry in entries]
         return [(index, sub, size, self._is_signed(index, sub)) for index, sub, size in places]
@@ -274,13 +280,13 @@ class DeviceNode:
         return variable is not None and variable.data_type in _SIGNED
 
     def _stored(self, index: int, sub: int) -> int:
-        """A number that is kept as it was written, such as those of communication; 0 where none is."""
+        """Return a stored number such as a communication parameter, or 0 if no value is stored."""
         return int.from_bytes(self.local.data_store.get(index, {}).get(sub, b""), "little")
 
     def _on_read(self, index: int, subindex: int, **_: object) -> int | None:
         return self.device.read(index, subindex)
 
     def _on_write(self, index: int, subindex: int, od: ODVariable, data: bytes) -> None:
-        if index < 0x2000:  # of CiA 301; the device's own are not asked here
+        if index < 0x2000:  # The objects of CiA 301.
             self._communication = None
         self.device.write(index, subindex, int(od.decode_raw(data)))

@@ -1,4 +1,4 @@
-"""A CiA 402 drive on the simulated spindle: velocities, and positions where the spindle is C too."""
+"""Simulated CiA 402 drive of the spindle: velocity mode, and position modes where the spindle is also C."""
 
 from __future__ import annotations
 
@@ -20,45 +20,45 @@ _TURN = 360.0
 
 
 class SpindleSlide(Servo):
-    """The spindle as an axis in degrees: it is where it is told to be, and homes on its index."""
+    """Spindle as an axis in degrees that follows its setpoints exactly and homes on its index."""
 
     def __init__(self, axis: SimAxis, motor: SpindleMotor) -> None:
         super().__init__(axis)
         self._motor = motor
-        self._zero = 0.0  # degrees of the motor at which it counts 0
-        self.offset = 0.0  # what it counts once it is homed
+        self._zero = 0.0  # Motor angle in degrees at count 0.
+        self.offset = 0.0  # Position in degrees after homing.
 
     @property
     def place(self) -> float:
-        """Degrees as the drive counts them."""
+        """The angle in degrees in the count of the drive."""
         return self._motor.turns * _TURN - self._zero
 
     def adopt(self) -> None:
-        """It has turned as the spindle."""
+        """Take over the motor's angle after the spindle has turned."""
         self.p, self.v = self.place, 0.0
 
     def seek(self, method: int) -> None:
-        """What a homing goes to: the next index, or where it stands."""
+        """Set the home position: the next index for an index method, otherwise the present position."""
         ahead = (math.floor(self._motor.turns + 1e-9) + 1) * _TURN - self._zero
         self.switch = ahead if method in _INDEX else self.p
 
     def follow(self, p: float, v: float, _dt: float) -> bool:
-        """Without an error."""
+        """Move the spindle exactly to setpoint ``p``, ``v``; never trip."""
         self.p, self.v = p, v
         self._motor.turns = (p + self._zero) / _TURN
         return False
 
     def roll(self, _dt: float) -> None:
-        """The motor is somebody else's."""
+        """Do nothing, because the spindle motor advances separately."""
 
     def reference(self) -> None:
-        """It counts ``offset`` here."""
+        """Make ``offset`` the count at the present position."""
         self._zero += self.p - self.offset
         self.p = self.offset
 
 
 class SpindleDrive:
-    """``step`` with the plant's time."""
+    """Simulated spindle drive; ``step`` is called with the time of the plant."""
 
     def __init__(
         self,
@@ -94,11 +94,11 @@ class SpindleDrive:
 
     @property
     def as_axis(self) -> bool:
-        """It positions, or looks for its place."""
+        """Whether the mode of operation is interpolated position or homing."""
         return self.mode in {IP, HM}
 
     def read(self, index: int, _sub: int) -> int | None:
-        """What lives in the drive."""
+        """Return the value of an object that the drive calculates, or None if the stored value applies."""
         reader = self._readers.get(index)
         return None if reader is None else reader()
 
@@ -110,7 +110,7 @@ class SpindleDrive:
         return REACHED if abs(self.motor.speed - self.target) < 10 else 0
 
     def write(self, index: int, sub: int, value: int) -> None:
-        """What the host says."""
+        """Apply an object value that the host has written."""
         self.values[index, sub] = value
         if index == od.MODE:
             self._change(value)
@@ -127,7 +127,7 @@ class SpindleDrive:
             self.power.control(value)
 
     def _change(self, mode: int) -> None:
-        """Only at standstill, and not while it positions."""
+        """Change the mode of operation, only at standstill and while no positions are played."""
         if mode == self.mode or abs(self.motor.speed) > 1.0 or self.axis.playing:
             return
         self.mode = mode
@@ -137,24 +137,24 @@ class SpindleDrive:
             self.axis.p, self.axis.v = self.slide.p, 0.0
 
     def host_lost(self) -> None:
-        """Abort connection option."""
+        """Quick stop after the loss of the host if the abort connection option is 3."""
         if self.values.get((od.ABORT_OPTION, 0), 0) == 3:
             self.power.quick_stop()
 
     def reset(self) -> None:
-        """No power, no target."""
+        """Clear power, mode, target and all stored values."""
         self.axis.reset()
         self.mode = self.target = 0
         self.values.clear()
 
     @property
     def rests(self) -> bool:
-        """Whether further steps change nothing until a frame comes or the motor's speed changes."""
+        """Whether further steps change nothing until a frame arrives or the motor's speed changes."""
         obeyed = self.power.powered == (self._ordered is not None)
         return obeyed and not self.as_axis and not self.power.braking
 
     def step(self, now: float) -> None:
-        """Obey; lose power when braked."""
+        """Command the motor's speed by mode and power state, and end braking at standstill."""
         dt, self.at = now - self.at, now
         if self.motor.faults.fault and self.power.state is not DriveState.FAULT:
             self.power.trip()

@@ -1,6 +1,6 @@
-"""Motion of the simulated axes that is known ahead: one setpoint piece, followed without any limit acting.
+"""Predicted motion of the simulated axes along one setpoint piece without active limits.
 
-A look at the machine then costs one formula per moving axis, and the samples of the scope are calculated for
+One formula per moving axis then replaces the single steps, and the samples for the scope are calculated for
 many grid points at once.
 """
 
@@ -16,17 +16,17 @@ from core.ports import BoolArray, FloatArray
 from drivers.setpoint_pieces import INF, Piece
 from drivers.simulators.servo_axis import AT_REST, Response, Servo, Setpoints
 
-_FARTHEST = 256  # grid points; new setpoints usually replace the piece before that
-_WORTH_FORESEEING = 4  # grid points; fewer are quicker one by one
+_FARTHEST = 256  # Grid points; new setpoints usually replace a piece earlier.
+_WORTH_FORESEEING = 4  # Grid points; fewer are faster to calculate step by step.
 
 
 def foresee(
     servos: Sequence[Servo], piece: Piece, until: float, first: int, dt: float
 ) -> ForeseenMotion | None:
-    """Return the motion from grid point ``first`` along ``piece``, which is played before ``until`` (s).
+    """Return the motion from grid point ``first`` along ``piece``, which is valid before ``until`` seconds.
 
-    ``dt`` is the interval of the grid, s. None where a fault or a limit may act, where it is too short, and
-    behind the last piece, where the axes may settle at any grid point.
+    ``dt`` is the grid interval in seconds. Return None where a fault or a limit may act, for short pieces,
+    and after the last piece, where the axes may settle at any grid point.
     """
     if until == INF:
         return None
@@ -48,7 +48,7 @@ def foresee(
 
 
 class ForeseenMotion:
-    """How the axes follow ``piece`` at the grid points ``points``; ``foresee`` makes it."""
+    """Predicted motion of the axes along ``piece`` at the grid points ``points``, created by ``foresee``."""
 
     def __init__(
         self,
@@ -62,24 +62,25 @@ class ForeseenMotion:
         self._moving = [move for move in moves if move[2] is not AT_REST]
         self._piece, self._until, self._dt = piece, until, dt
         self._points = points
-        self._loads = [servo.load for servo, _, _ in moves]  # at the first grid point, as the speeds are
+        self._loads = [servo.load for servo, _, _ in moves]  # At the first grid point, like the speeds.
         self._speeds = [servo.v for servo, _, _ in moves]
         for servo, _, response in moves:
             if response is AT_REST:
                 servo.load = servo.over = 0.0
-        self.last = points.stop  # the grid point at which it ends
+        self.last = points.stop  # Grid point at which the motion ends.
         self._note(points.start)
 
     def holds(self, piece: Piece, until: float, k: int) -> bool:
-        """Return whether the axes still do this at grid point ``k``: same setpoints, and nothing has happened
-        to an axis since ``move_to``.
+        """Return whether the prediction is still valid at grid point ``k``.
+
+        It requires the same setpoints and axes that have not changed since ``move_to``.
         """
         if piece is not self._piece or until != self._until or k != self._k or k >= self.last:
             return False
         return all(servo.p == p and servo.v == v and servo.sound for servo, p, v in self._left)
 
     def move_to(self, k: int) -> None:
-        """Put the axes where they are at grid point ``k``."""
+        """Move the axes to their state at grid point ``k``."""
         steps = k - self._points.start
         for servo, setpoints, response in self._moving:
             servo.glide(setpoints, response, steps)
@@ -92,14 +93,16 @@ class ForeseenMotion:
     # --- for the scope ------------------------------------------------------------------------------------
 
     def rows(self, begin: int, end: int) -> FloatArray:
-        """Return samples from grid point ``begin`` up to ``end`` (without it), as ``core.ports.SampleSource``
-        has them; the columns of the spindle and of the queue are the caller's to fill.
+        """Return sample rows from grid point ``begin`` to ``end``, exclusive.
+
+        The columns are those of ``core.ports.SampleSource``. The caller fills those of the spindle and the
+        queue.
         """
         first = self._points.start
         return self._rows[begin - first : end - first]
 
     def cuts(self, begin: int, end: int) -> BoolArray:
-        """Return at which of the same grid points an axis feeds."""
+        """Return for each grid point from ``begin`` to ``end``, exclusive, whether an axis cuts."""
         first = self._points.start
         return self._cuts[begin - first : end - first]
 
@@ -122,7 +125,7 @@ class ForeseenMotion:
 
     @cached_property
     def _states(self) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Positions, velocities and loads at all grid points, also at the one at which it ends."""
+        """Positions, velocities and loads at all grid points, including the end point."""
         k = np.arange(len(self._points) + 1, dtype=np.float64)
         each = [servo.states(setpoints, response, k) for servo, setpoints, response in self._moves]
         places, speeds, loads = (np.column_stack(part) for part in zip(*each, strict=True))

@@ -1,4 +1,4 @@
-"""The simulator at the other end of a pseudo terminal or a TCP port."""
+"""Connections of the grblHAL simulator to the host: a pseudo terminal or a TCP port."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _ROUND = 0.002  # s
 
 
 class PtyEnd:
-    """The controller's end of a pseudo terminal; the host opens ``name`` as a serial device."""
+    """Controller side of a pseudo terminal; the host opens ``name`` as a serial device."""
 
     def __init__(self) -> None:
         self._ours, self._theirs = os.openpty()
@@ -24,7 +24,7 @@ class PtyEnd:
         self.name = os.ttyname(self._theirs)
 
     def pump(self, firmware: Firmware, patience: float = 0.0) -> None:
-        """Carry bytes both ways; waits ``patience`` for some."""
+        """Transfer bytes in both directions; wait up to ``patience`` seconds for input."""
         ready, _, _ = select.select([self._ours], [], [], patience)
         if ready:
             firmware.feed(os.read(self._ours, 4096))
@@ -33,13 +33,13 @@ class PtyEnd:
             os.write(self._ours, data)
 
     def close(self) -> None:
-        """Unplug."""
+        """Close both sides of the pseudo terminal."""
         os.close(self._ours)
         os.close(self._theirs)
 
 
 class TcpEnd:
-    """The controller's end of a TCP port, one host at a time; like the real one it goes on without."""
+    """Controller side of a TCP port for one host at a time; the controller continues without a host."""
 
     def __init__(self, host: str, port: int) -> None:
         try:
@@ -52,7 +52,7 @@ class TcpEnd:
         self._host: socket.socket | None = None
 
     def pump(self, firmware: Firmware, patience: float = 0.0) -> None:
-        """Carry bytes both ways; waits ``patience`` for some."""
+        """Transfer bytes in both directions; wait up to ``patience`` seconds for input."""
         ends = [self._listener] + ([self._host] if self._host else [])
         ready, _, _ = select.select(ends, [], [], patience)
         if self._listener in ready:
@@ -68,7 +68,7 @@ class TcpEnd:
                 self._hang_up()
 
     def close(self) -> None:
-        """Close the port."""
+        """Close the connection and the port."""
         self._hang_up()
         self._listener.close()
 
@@ -90,7 +90,7 @@ class TcpEnd:
 
 
 def serve(end: PtyEnd | TcpEnd, firmware: Firmware, going: Callable[[], bool]) -> None:
-    """Answer while ``going``."""
+    """Connect the simulator to the host while ``going`` returns True, then close the connection."""
     try:
         while going():
             end.pump(firmware, _ROUND)

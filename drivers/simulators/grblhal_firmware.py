@@ -1,4 +1,4 @@
-"""A grblHAL controller played by us: buffers, real-time bytes, states, alarms, resets and status reports."""
+"""Simulated grblHAL controller: buffers, real-time bytes, states, alarms, resets and status reports."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ from drivers.simulators.grblhal_slides import PlannedBlock, Slides
 from drivers.simulators.plant_config import SimSpindle
 from drivers.simulators.spindle_motor import SpindleMotor, TurnedSpindle
 
-# --- What the simulator's real-time bytes do, in whatever state it is.
+# --- Effects of the real-time bytes in all states.
 
 
 _STEPS = {0x91: 10, 0x92: -10, 0x93: 1, 0x94: -1}
 
 
 def act(m: Firmware, byte: int) -> None:
-    """At once."""
+    """Execute a real-time byte immediately."""
     if byte == 0x18:
         m.reset()
     elif byte == 0x19:
         _stop(m)
     elif m.waits:
-        return  # flags are looked at when the wait is over; here they are gone
+        return  # The firmware reads its flags after the wait; here they are discarded.
     elif byte in {0x80, 0x87}:
         m.say(m.reports.text(m, full=byte == 0x87) + "\r\n")
     elif byte == 0x83:
@@ -43,7 +43,7 @@ def act(m: Firmware, byte: int) -> None:
 
 
 def _stop(m: Firmware) -> None:
-    """0x19 ends the steps where they are, and unlocks most alarms; in the wait for an index it is a reset."""
+    """Stop without deceleration and clear most alarms; while a thread waits for its index, reset instead."""
     if m.blocking:
         return
     if m.waits:
@@ -87,15 +87,15 @@ def _override(m: Firmware, byte: int) -> None:
     m.turn(m.rpm)
 
 
-# --- One step of the simulator's machine: homing, the wait for an index, slides that move and stop.
+# --- One step of the machine: homing, the wait for an index, motion and stops.
 
 
 STEP = 0.001  # s
-_INDEX = 5.0  # s that a thread waits for the index
+_INDEX = 5.0  # Seconds that a thread waits for the index.
 
 
 def step(m: Firmware) -> None:
-    """Let ``STEP`` pass."""
+    """Advance the controller by ``STEP``."""
     if m.homing is not None:
         _home(m, *m.homing)
         return
@@ -129,7 +129,10 @@ def _home(m: Firmware, until: float, axes: int) -> None:
 
 
 def _wants_index(m: Firmware, block: PlannedBlock) -> bool:
-    """A thread begins at the second index from now; until then nothing is heard and nothing is said."""
+    """Return whether a thread still waits for its start, which is at the second index after the request.
+
+    No byte is processed during the wait. A missing index raises alarm 14 after 5 s.
+    """
     if not block.thread or m.slides.begun:
         return False
     if m.index_since is None:
@@ -142,19 +145,20 @@ def _wants_index(m: Firmware, block: PlannedBlock) -> bool:
     return True
 
 
-# --- The simulator's status reports, with what each carries and what it leaves out.
+# --- Status reports and their contents.
 
 
-_OFFSETS_BUSY, _OFFSETS_IDLE = 30, 10  # every so many reports
+_OFFSETS_BUSY, _OFFSETS_IDLE = 30, 10  # Intervals in reports.
 _OVERRIDES_BUSY, _OVERRIDES_IDLE = 20, 10
 _BUSY = frozenset(("Run", "Hold", "Jog", "Home", "Door"))
 
 
 @dataclass(slots=True)
 class Reports:
-    """Offsets and overrides come every so often, and when they have changed; offsets wait where both would.
+    """Generator of status reports that decides when offsets and overrides are included.
 
-    A full report has both. Firmware of 2023 let the overrides wait, and they were never in a full one.
+    Both are included at intervals and after a change. If both are due, the offsets wait for the next report.
+    A full report has both. Firmware of 2023 delayed the overrides and never put them into a full report.
     """
 
     offsets_in: int = 0
@@ -164,7 +168,7 @@ class Reports:
     accessories_due: bool = False
 
     def text(self, m: Firmware, *, full: bool) -> str:
-        """One report, without its end of line."""
+        """Return one report without its line end."""
         busy = m.state.partition(":")[0] in _BUSY
         overrides = self._overrides(full, busy)
         offsets = self._offsets(full, overrides, busy)
@@ -188,7 +192,7 @@ class Reports:
 
 
 def _stepped(place: float, steps: float) -> float:
-    """It counts whole steps."""
+    """Round a position to whole steps."""
     return round(place * steps) / steps
 
 
@@ -223,16 +227,16 @@ def _extras(m: Firmware, offsets: bool, overrides: bool, full: bool) -> str:
 
 
 _STEP = 0.001  # s
-_BUFFER = 1023  # bytes for lines; one of the 1024 stays free
+_BUFFER = 1023  # Bytes for lines; one of the 1024 stays free.
 _CRITICAL = frozenset((1, 2, 10, 17))
 _BANNER = "\r\nGrblHAL 1.1f ['$' or '$HELP' for help]\r\n"
-_GATE = 100  # free bytes of its buffer, with no more than which the simulator takes nothing from its socket
+_GATE = 100  # With this many free bytes or fewer, the simulator reads nothing from its socket.
 
 
 class Firmware:
-    """Bytes in by ``feed``, bytes out by ``take``; ``advance`` brings it up to the clock.
+    """Simulated controller: ``feed`` takes received bytes, ``take`` returns bytes for the host.
 
-    ``out`` is what waits for the host, ``rx`` what it has sent and nobody has read.
+    ``out`` buffers bytes for the host. ``rx`` buffers received bytes that are not yet interpreted.
     """
 
     def __init__(self, clock: Clock, quirks: Quirks | None = None) -> None:
@@ -244,47 +248,47 @@ class Firmware:
         self.outputs: dict[str, bool] = {}
         self.pins = ""
         self.inputs: dict[int, bool] = {}
-        self.read: int | None = None  # what the last M66 has found
-        self.homed = 0  # bit by axis
+        self.read: int | None = None  # Result of the last M66.
+        self.homed = 0  # One bit per axis.
         self.alarm = 11 if int(self.registers[22]) & 5 == 5 else 0
-        self.blocking = False  # behind a critical alarm: nothing but a reset
+        self.blocking = False  # After a critical alarm, only a reset is accepted.
         self.door = False
-        self.overflowed = 0  # bytes that did not fit
-        self.torn = 0  # how often moving slides have been stopped dead
+        self.overflowed = 0  # Number of bytes lost because the buffer was full.
+        self.torn = 0  # Number of stops without deceleration.
         self.feed_percent, self.rapid_percent, self.spindle_percent = 100, 100, 100
         self.rpm = 0.0
         self.jogs = False
         self.hold = False
-        self.paused = False  # spindle stopped in a hold
+        self.paused = False  # The spindle is stopped during a feed hold.
         self.rx = bytearray()
         self.out = bytearray()
         self.k = clock.now()
-        self.cancels = False  # a jog
+        self.cancels = False  # A jog is being canceled.
         self.index_since: float | None = None
         self.index_at = 0
-        self.homing: tuple[float, int] | None = None  # until, axes
+        self.homing: tuple[float, int] | None = None  # End time and axes.
         self.reports = Reports()
         self.program = Program(self)
-        self._wire = bytearray()  # not yet taken from the socket
+        self._wire = bytearray()  # Bytes not yet read from the socket.
         self._next_byte = 0.0
 
     # --- the wire -----------------------------------------------------------------------------------------
 
     def feed(self, data: bytes) -> None:
-        """Bytes from the host: real-time ones act at once, others wait their turn."""
+        """Receive bytes from the host; real-time bytes take effect immediately, others are buffered."""
         self.advance()
         self._wire += data
         self._take_in()
         self.program.pump()
 
     def take(self) -> bytes:
-        """Bytes for the host."""
+        """Return the buffered bytes for the host."""
         self.advance()
         data, self.out = bytes(self.out), bytearray()
         return b"" if self.quirks.deaf else data
 
     def advance(self) -> None:
-        """Up to the clock."""
+        """Advance the controller to the present time of the clock."""
         now, idle = self.clock.now(), self._idle
         while self.k + _STEP <= now + 1e-9:
             self.k += _STEP
@@ -298,14 +302,14 @@ class Firmware:
             self.spindle.advance(self.k)
 
     def reset(self) -> None:
-        """0x18: modes are lost, a moving slide's position too."""
+        """Perform the reset 0x18: modes are lost, and also the position if an axis moves."""
         if "E" in self.pins:
             return
         moved = self.slides.moving or self.homing is not None or self.index_since is not None
         self.restart(moved)
 
     def power_cycle(self) -> None:
-        """Its supply was away: it counts from where it stands as 0, and knows no home."""
+        """Switch the power off and on: the position becomes 0 and homing is lost."""
         self.alarm, self.homed = 0, 0
         self.door = self.blocking = False
         self.slides.place = (0.0, 0.0)
@@ -332,7 +336,7 @@ class Firmware:
                 self.rx.append(byte)
 
     def restart(self, moved: bool) -> None:
-        """Begin anew; ``moved``: the position is lost."""
+        """Restart the controller; with ``moved``, the position is lost and alarm 3 is raised."""
         self.torn += self.slides.moving
         self.halt()
         self.blocking = False
@@ -348,7 +352,7 @@ class Firmware:
             self.say("[MSG:'$H'|'$X' to unlock]\r\n")
 
     def halt(self) -> None:
-        """Everything ends at once."""
+        """Stop motion, spindle, coolant and program immediately."""
         self.slides.drop()
         self.program.drop()
         self.hold = self.cancels = self.jogs = self.slides.held = self.paused = False
@@ -356,16 +360,16 @@ class Firmware:
         self.turn(0.0)
         self.outputs.update(flood=False, mist=False)
 
-    # --- what it is in: alarms, holds, spindle, and the lines that wait for it --------------------------
+    # --- state: alarms, holds, spindle and pending lines ------------------------------------------------
 
     @property
     def rx_free(self) -> int:
-        """Bytes that still fit."""
+        """The free bytes of the receive buffer."""
         return _BUFFER - len(self.rx)
 
     @property
     def state(self) -> str:
-        """What it is in."""
+        """The state as in a status report."""
         if self.alarm:
             return f"Alarm:{self.alarm}"
         if self.homing is not None:
@@ -379,7 +383,7 @@ class Firmware:
         return "Idle"
 
     def told_state(self, full: bool) -> str:
-        """As a report tells it: the number of an alarm is a matter of $10."""
+        """Return the state as it is reported; ``$10`` decides whether an alarm has its number."""
         numbered = full or int(self.registers[10]) & 0x400
         return self.state if numbered else self.state.replace(f"Alarm:{self.alarm}", "Alarm")
 
@@ -396,14 +400,14 @@ class Firmware:
 
     @property
     def commanded(self) -> float:
-        """Signed rpm that the spindle is told, within its settings."""
+        """The commanded spindle speed in rpm, signed, after override and limits."""
         if not self.rpm or self.paused:
             return 0.0
         rpm = abs(self.rpm) * self.spindle_percent / 100.0
         return math.copysign(min(max(rpm, self.registers[31]), self.registers[30]), self.rpm)
 
     def raise_alarm(self, number: int) -> None:
-        """Stops at once; the block stays in the planner."""
+        """Stop immediately and raise an alarm; the present block stays in the planner."""
         self.alarm = number
         self.torn += self.slides.moving
         self.slides.v = 0.0
@@ -414,11 +418,11 @@ class Firmware:
         self.say(f"ALARM:{number}\r\n")
 
     def begin_homing(self, axes: int) -> None:
-        """It takes half a second here."""
+        """Start homing of the axes in a bit mask, which takes 0.5 s in the simulator."""
         self.homing = self.k + 0.5, axes
 
     def next_line(self) -> str | None:
-        """The next whole line of the buffer."""
+        """Return the next complete line of the buffer, or None."""
         if b"\n" not in self.rx:
             return None
         line, _, rest = bytes(self.rx).partition(b"\n")
@@ -426,24 +430,24 @@ class Firmware:
         return line.decode("ascii", "replace").strip()
 
     def queue(self, block: PlannedBlock) -> None:
-        """Into the planner; nothing for a block without length."""
+        """Append a block to the planner; a block without length is ignored."""
         if block.length > 0.0:
             self.slides.queue.append(block)
             self.jogs = block.jog
 
     def say(self, text: str) -> None:
-        """Out."""
+        """Send text to the host."""
         self.out += text.encode("ascii")
 
     def answer(self, error: int = 0) -> None:
-        """The answer for a line."""
+        """Acknowledge a line with ``ok`` or an error code."""
         if not error and self.quirks.garble:
             self.out += self.quirks.garble.pop(0) + b"\r\n"
         else:
             self.say(f"error:{error}\r\n" if error else "ok\r\n")
 
     def turn(self, rpm: float) -> None:
-        """Command the spindle."""
+        """Command the spindle speed in rpm, signed."""
         self.reports.accessories_due = self.reports.accessories_due or (rpm > 0.0) - (rpm < 0.0) != (
             self.rpm > 0.0
         ) - (self.rpm < 0.0)

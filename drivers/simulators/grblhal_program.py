@@ -1,4 +1,4 @@
-"""The lines that a grblHAL simulator reads: modes, functions, blocks and ``$`` commands."""
+"""Line interpreter of the grblHAL simulator: modes, functions, blocks and ``$`` commands."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from drivers.simulators.spindle_motor import TurnedSpindle
 
 
 class Controller(Protocol):
-    """What a line may look at, and do to the controller that it has come to."""
+    """Parts of the controller that the line interpreter uses."""
 
     quirks: Quirks
     registers: Registers
@@ -56,7 +56,7 @@ class Controller(Protocol):
     def raise_alarm(self, number: int) -> None: ...
 
 
-# --- The simulator's modal state, and the words that change it.
+# --- Modal state and the words that change it.
 
 
 _MODAL = {
@@ -75,7 +75,7 @@ _PLAIN = frozenset(("G4", "G10", "G49", "G53", "G54", "G92.1"))
 
 @dataclass(slots=True)
 class Modes:
-    """A reset and a stop bring back these."""
+    """Modal state with the values after a reset or stop."""
 
     motion: str = "G0"
     plane: str = "G17"
@@ -88,7 +88,7 @@ class Modes:
     hold_disabled: bool = False  # M53 P0
 
     def take(self, code: str, *, lathe: bool) -> int:
-        """A word; the error, 0 for none."""
+        """Apply a G word and return the error code, or 0 without an error."""
         if code in _LATHE and not lathe:
             return 20
         if code in _MODAL:
@@ -98,7 +98,7 @@ class Modes:
         return 0
 
     def told(self, rpm: float, feed: float, outputs: dict[str, bool], *, lathe: bool) -> str:
-        """As ``$G`` says it."""
+        """Return the modal state as the report of ``$G``."""
         spindle = "M5" if not rpm else "M3" if rpm > 0.0 else "M4"
         coolant = "M7 " * outputs.get("mist", False) + "M8 " * outputs.get("flood", False) or "M9 "
         radius, speed = (f" {self.radius}", f" {self.speed}") if lathe else ("", "")
@@ -110,15 +110,15 @@ class Modes:
         )
 
 
-# --- The simulator's ``$`` lines: identity, settings, unlocking, homing, the parser's state.
+# --- The ``$`` lines: identity, settings, unlocking, homing and parser state.
 
 
 _AXES = {"": 7, "X": 1, "Y": 2, "Z": 4}
-_BLOCKING = frozenset(("$X", "$J", "$H", "$HX", "$HY", "$HZ"))  # refused behind a critical alarm
+_BLOCKING = frozenset(("$X", "$J", "$H", "$HX", "$HY", "$HZ"))  # Rejected after a critical alarm.
 
 
 def identity(m: Controller) -> list[str]:
-    """What ``$I`` tells; auxiliary ports only where there are any."""
+    """Return the lines of ``$I``; the auxiliary ports appear only if there are any."""
     quirks = m.quirks
     lathe = "LATHE," if m.registers.lathe else ""
     home = "HOME," if int(m.registers[22]) & 1 else ""
@@ -138,7 +138,10 @@ def identity(m: Controller) -> list[str]:
 
 
 def answer(m: Controller, line: str, modes: str) -> int | None:
-    """Carry a line out: its error, 0 for none; None where the answer comes later. ``$G`` tells ``modes``."""
+    """Execute a ``$`` line and return its error code, or 0 without an error.
+
+    Return None if the acknowledgment follows later. ``modes`` is the report of ``$G``.
+    """
     command = line.partition("=")[0]
     if m.blocking and (command in _BLOCKING):
         return 79
@@ -190,39 +193,39 @@ def _home(m: Controller, letter: str) -> int | None:
 _WORD = re.compile(r"([A-Z])(-?\d*\.?\d+)")
 _WORDS = re.compile(
     r"([A-Z] *[-+]?(\d+\.?\d*|\.\d+) *)*", re.IGNORECASE
-)  # a letter without its number is none
+)  # A letter without a number is not a word.
 _MOST_LINES = 10_000_000
 
 __all__ = ["Modes", "Program"]
 
 
 class Program:
-    """Carries lines out in order, as far as planner and standstills allow."""
+    """Executor of the received lines in order, as the planner and required standstills permit."""
 
     def __init__(self, machine: Controller) -> None:
         self._m = machine
         self.modes = Modes(radius="G7" if machine.quirks.diameter else "G8")
         self.offset = [0.0, 0.0, 0.0]  # G54
-        self.executed: list[str] = []  # lines that were carried out
-        self.end: Place = (0.0, 0.0)  # where the planner's last block ends
+        self.executed: list[str] = []  # Executed lines.
+        self.end: Place = (0.0, 0.0)  # End point of the planner's last block.
         self.error = 0
         self._f = 0.0
-        self._waits: str | None = None  # a line that waits for a standstill
-        self._cuts = False  # a thread, whose answer comes at its end
-        self.wait: Wait | None = None  # inside a function, whose answer comes at its end
+        self._waits: str | None = None  # Line that waits for a standstill.
+        self._cuts = False  # A thread, which is acknowledged at its end.
+        self.wait: Wait | None = None  # Wait of a function, which is acknowledged at its end.
 
     def told(self) -> str:
-        """As ``$G`` says it."""
+        """Return the report of ``$G``."""
         m = self._m
         return self.modes.told(m.rpm, self._f, m.outputs, lathe=m.registers.lathe)
 
     def drop(self) -> None:
-        """A stop or a reset."""
+        """Discard pending lines and waits after a stop or a reset."""
         self._waits, self._cuts, self.error, self.end = None, False, 0, self._m.slides.place
         self.wait = None
 
     def pump(self) -> None:
-        """Carry out what has come in."""
+        """Execute the received lines until one has to wait."""
         machine = self._m
         if self.wait is not None and not self._end_wait(self.wait):
             return
@@ -242,11 +245,11 @@ class Program:
 
     @property
     def reads_on(self) -> bool:
-        """Whether the line before is done."""
+        """Whether the preceding line is complete."""
         return self._waits is None and not self._cuts and self.wait is None
 
     def _end_wait(self, wait: Wait) -> bool:
-        """Acknowledge the function once its wait is over; a spindle that stays slow is ALARM:14."""
+        """Acknowledge the function when its wait is over; a speed that is not reached raises alarm 14."""
         if not wait.is_over(self._m):
             return False
         self.wait = None
@@ -349,7 +352,7 @@ class Program:
         return 0
 
     def _turn(self, code: str, rpm: float) -> None:
-        """Another speed in the same direction is not waited for."""
+        """Command the spindle; only a start, stop or reversal waits for the speed."""
         machine = self._m
         before = math.copysign(1.0, machine.rpm) if machine.rpm else 0.0
         way = {"M3": 1.0, "M4": -1.0, "M5": 0.0}[code]
@@ -408,7 +411,7 @@ class Program:
 
 
 def _waits_for_rest(line: str) -> bool:
-    """Functions, dwells and threads wait until the planner is empty; auxiliary outputs do not."""
+    """Return whether a line waits for an empty planner: functions, dwells and threads except M64 and M65."""
     words = {(letter, float(value)) for letter, value in _WORD.findall(line) if letter in "GM"}
     return any(
         (letter == "M" and v not in {64, 65}) or (letter == "G" and v in {4, 33}) for letter, v in words

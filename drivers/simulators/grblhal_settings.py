@@ -1,7 +1,7 @@
-"""Settings of a grblHAL simulator, refused as the real ones are, the habits that can be switched, its waits.
+"""Settings of the grblHAL simulator, its switchable behavior, and its waits for the spindle and coolant.
 
-The waits are those of ``spindle_set_state_wait`` and ``coolant_set_state`` of grblHAL: no line is
-acknowledged or read in a wait, reports are answered, and a feed hold stops its clock.
+The waits are those of ``spindle_set_state_wait`` and ``coolant_set_state`` of grblHAL. During a wait, no line
+is read or acknowledged, reports are sent, and a feed hold stops the clock of the wait.
 """
 
 from __future__ import annotations
@@ -12,38 +12,44 @@ from typing import Protocol
 
 from drivers.simulators.spindle_motor import TurnedSpindle
 
-# --- What the simulator does like the real one, or is made to do; each can be switched.
+# --- Behavior of the controller that can be switched.
 
 
 @dataclass(slots=True)
 class Quirks:
-    """As the firmware's simulator, but with an encoder, auxiliary ports and the figures of a machine file."""
+    """Behavior of the simulator that tests can change.
+
+    The defaults are those of the firmware's simulator, with an encoder, auxiliary ports and the values of a
+    machine file.
+    """
 
     encoder: bool = True
-    diameter: bool = False  # comes up in G7, as $N0=G7 would make it
+    diameter: bool = False  # Starts in G7, as with $N0=G7.
     index_missing: bool = False
     outputs: int = 16
     inputs: int = 8
-    build: str = "VNML+"  # letters of $I: V variable spindle, M mist
-    signals: str | None = "RHSDLTEF"  # control inputs of its board; the simulator itself has a door alone, D
+    build: str = "VNML+"  # Letters of $I: V variable spindle, M mist.
+    # Control inputs of the board; the firmware's simulator has only D (door).
+    signals: str | None = "RHSDLTEF"
     lathe: bool = True
-    built_for_lathes: bool = False  # always in lathe mode: there is no $32
-    homing: int | bool = 0  # its $22; True: 3, axis by axis, and it does not insist
-    mute: bool = True  # takes nothing from the wire while a thread waits for its index, as the simulator
-    drip: float = 0.0  # s from byte to byte that it takes: the simulator where a busy computer starves it
-    deaf: bool = False  # answers nothing
-    garble: list[bytes] = field(default_factory=list)  # instead of the next ``ok``s
+    built_for_lathes: bool = False  # Always in lathe mode; $32 does not exist.
+    homing: int | bool = 0  # Value of $22. True: 3 (single axes, homing not required).
+    mute: bool = True  # Reads nothing while a thread waits for its index, as the firmware's simulator does.
+    drip: float = 0.0  # Seconds between two bytes that are read, as on a busy computer.
+    deaf: bool = False  # Sends nothing.
+    garble: list[bytes] = field(default_factory=list)  # Sent instead of the next ``ok``s.
     hold_broken: bool = False  # 0x82 does nothing
-    stubborn: bool = False  # takes no override
+    stubborn: bool = False  # Ignores override commands.
     toggle_broken: bool = False  # 0x9E does nothing
-    settings: dict[int, float] = field(default_factory=dict)  # other than the machine file's
+    # Values that differ from those of the machine file.
+    settings: dict[int, float] = field(default_factory=dict)
 
 
 _NUMBER = re.compile(r"-?(\d+\.?\d*|\.\d+)")
 _MODE, _LATHE = 32, 2
 _DECIMALS = {11: 3, 12: 3, 24: 1, 25: 1, 27: 3, 30: 3, 31: 3, **dict.fromkeys((340, 394, 539, 673), 1)}
 _AXES = {100: 5, 110: 3, 120: 3, 130: 3}  # first number of three, decimals
-# Travel is that of the machine file; rates and accelerations too, so that programs take their proved time.
+# Travel, rates and accelerations are those of the machine file, so that programs take the forecast time.
 _THERE = {
     **{10: 511.0, 11: 0.01, 12: 0.002, 13: 0.0, 20: 0.0, 22: 0.0, 24: 25.0, 25: 500.0, 27: 1.0},
     **{30: 3500.0, 31: 0.0, 32: 2.0, 40: 0.0, 60: 0.0, 63: 3.0},
@@ -56,7 +62,7 @@ _THERE = {
 
 
 class Registers:
-    """Numbers by number."""
+    """Setting values of the controller by number."""
 
     def __init__(self, quirks: Quirks) -> None:
         self._values = {
@@ -73,18 +79,18 @@ class Registers:
 
     @property
     def lathe(self) -> bool:
-        """Whether it is in lathe mode."""
+        """Whether the controller is in lathe mode."""
         return self._values.get(_MODE, _LATHE) == _LATHE
 
     def told(self) -> list[str]:
-        """All of them, as ``$$`` tells them."""
+        """Return all settings as lines of ``$$``."""
         return [f"${n}={self._text(n)}" for n in sorted(self._values)]
 
     def store(self, number: int, text: str) -> int:
-        """The error, 0 for none."""
+        """Store a setting and return the error code, or 0 without an error."""
         if number not in self._values:
             return 53
-        begin = _NUMBER.match(text)  # what comes behind is not read: 1e3 is 1
+        begin = _NUMBER.match(text)  # Text after the number is ignored: 1e3 is 1.
         if begin is None:
             return 2
         value = float(begin[0])
@@ -105,13 +111,13 @@ class Registers:
 
 
 TOLERANCE, SPINDLE_ON, SPINDLE_OFF, COOLANT_ON = 340, 394, 539, 673
-_AT_MOST = 60.0  # s without a delay
-_LOOK = 0.2  # s between two looks at the speed
+_AT_MOST = 60.0  # Longest wait in s if no delay is set.
+_LOOK = 0.2  # Seconds between two checks of the speed.
 _STANDS = 1.0  # rpm
 
 
 class Waiting(Protocol):
-    """What a wait reads of the controller."""
+    """State of the controller that a wait reads."""
 
     registers: Registers
     spindle: TurnedSpindle
@@ -124,16 +130,19 @@ class Waiting(Protocol):
 
 @dataclass(slots=True)
 class Wait:
-    """One wait: ``left`` seconds, ended earlier by the speed where ``tolerance`` (percent) is above 0."""
+    """Wait inside a function: at most ``left`` seconds, or until the spindle is at speed.
+
+    The speed ends the wait only if ``tolerance`` (percent) is above 0.
+    """
 
     left: float
     tolerance: float
     since: float
     look_in: float = _LOOK
-    failed: bool = False  # the speed was not reached: ALARM:14
+    failed: bool = False  # The speed was not reached (ALARM:14).
 
     def is_over(self, m: Waiting) -> bool:
-        """Let time pass up to the controller's; whether the wait has ended."""
+        """Update the wait to the controller's time and return whether it has ended."""
         passed, self.since = m.k - self.since, m.k
         if m.hold:
             return False
@@ -149,7 +158,7 @@ class Wait:
 
 
 def spindle_wait(m: Waiting, *, on: bool) -> Wait | None:
-    """The wait of M3, M4 or M5; None where its settings are 0."""
+    """Return the wait of M3, M4 or M5, or None if its settings are 0."""
     delay, tolerance = m.registers[SPINDLE_ON if on else SPINDLE_OFF], m.registers[TOLERANCE]
     if not delay and not tolerance:
         return None
@@ -157,6 +166,6 @@ def spindle_wait(m: Waiting, *, on: bool) -> Wait | None:
 
 
 def coolant_wait(m: Waiting) -> Wait | None:
-    """The wait of M7 or M8; None where its setting is 0."""
+    """Return the wait of M7 or M8, or None if its setting is 0."""
     delay = m.registers[COOLANT_ON]
     return Wait(delay, 0.0, m.k) if delay else None

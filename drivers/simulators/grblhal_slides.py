@@ -1,4 +1,7 @@
-"""The simulator's planner and slides: blocks on a path, always able to stop at its end."""
+"""Planner and axes of the grblHAL simulator.
+
+The speed on the path always permits a stop at the end of the last block.
+"""
 
 from __future__ import annotations
 
@@ -11,17 +14,20 @@ from dataclasses import dataclass
 from drivers.simulators.grblhal_settings import Registers
 
 Place = tuple[float, float]  # X as a radius, Z; mm
-Shape = tuple[float, Callable[[float], Place]]  # length, and distance to place
+Shape = tuple[float, Callable[[float], Place]]  # Length, and a function from distance to point.
 _NOTHING = 5e-7  # radians
-_CREEP = 1e-3  # mm/s: nothing stops a hair before its place
-_NEAR = 1e-3  # mm, over which a direction is taken
+_CREEP = 1e-3  # mm/s; prevents a stop just before the end.
+_NEAR = 1e-3  # Distance in mm over which a direction is calculated.
 _RATE, _ACCELERATION = 110, 120  # settings of the first axis
-_STRAIGHT = 0.999999  # cosine of a corner that is none, or that turns back
+_STRAIGHT = 0.999999  # Cosine beyond which a corner counts as straight or as a reversal.
 
 
 @dataclass(slots=True)
 class PlannedBlock:
-    """``way``: distance (mm) to place. ``per_rev``: ``speed`` is mm a turn; ``thread`` awaits the index."""
+    """Block in the planner, with its path as a function of the distance in mm from its start.
+
+    With ``per_rev``, ``speed`` is in mm per revolution. ``thread`` waits for the spindle index.
+    """
 
     number: int
     length: float
@@ -31,10 +37,10 @@ class PlannedBlock:
     per_rev: bool = False
     thread: bool = False
     jog: bool = False
-    limits: tuple[float, float] | None = None  # the most that the slides do on it: mm/s, mm/s²
+    limits: tuple[float, float] | None = None  # Limits of the axes: mm/s, mm/s².
 
     def heading(self, at: float) -> Place:
-        """Direction of the way (unit length) close to a distance."""
+        """Return the unit direction of the path at a distance in mm."""
         if isinstance(self.way, _Line):
             return self.way.heading
         first = min(max(at - _NEAR, 0.0), max(self.length - _NEAR, 0.0))
@@ -44,7 +50,7 @@ class PlannedBlock:
 
 
 class _Line:
-    """Way from ``start`` to ``end``, whose ``heading`` is the same everywhere."""
+    """Straight path from ``start`` to ``end`` with a constant ``heading``."""
 
     def __init__(self, start: Place, end: Place) -> None:
         self._start, self._dx, self._dz = start, end[0] - start[0], end[1] - start[1]
@@ -57,16 +63,16 @@ class _Line:
 
 
 def straight(start: Place, end: Place) -> Shape:
-    """Length and way of a line."""
+    """Return the length in mm and the path of a line."""
     line = _Line(start, end)
     return line.length, line
 
 
 def circle(start: Place, end: Place, centre: Place, *, counter: bool) -> Shape | None:
-    """Length and way of an arc in the plane of Z and X; None when the end is not on it.
+    """Return the length in mm and the path of an arc in the ZX plane, or None if the end is not on it.
 
-    The angle from the start to the end counts from Z to X; one that is nothing, or goes the other way, is
-    made a turn more or less: so the arc that rounds to nothing becomes a whole circle.
+    The angle counts from Z to X. A sweep that is zero or has the wrong sign is changed by one revolution, so
+    an arc that rounds to zero becomes a full circle.
     """
     radius = math.dist(start, centre)
     off = abs(math.dist(end, centre) - radius)
@@ -91,7 +97,7 @@ def circle(start: Place, end: Place, centre: Place, *, counter: bool) -> Shape |
 
 
 class Slides:
-    """Advanced in small steps by the firmware; ``turns_per_s`` is the spindle's."""
+    """Planner and axes, advanced in small steps by the firmware."""
 
     def __init__(self, registers: Registers, capacity: int) -> None:
         self.queue: deque[PlannedBlock] = deque()
@@ -99,33 +105,33 @@ class Slides:
         self.place: Place = (0.0, 0.0)
         self.v = 0.0
         self.feed = self.rapid = 1.0  # overrides
-        self.held = False  # asked to stop
+        self.held = False  # A stop is requested.
         self.travelled = 0.0  # mm since power-up
         self._registers = registers
         self._s = 0.0
 
     @property
     def begun(self) -> bool:
-        """Whether the first block is under way, or held in the middle of it."""
+        """Whether the first block has started, also while it is in feed hold."""
         return self._s > 0.0 or self.v > 0.0
 
     @property
     def free(self) -> int:
-        """Blocks that still fit."""
+        """The number of blocks that the planner can still accept."""
         return self.capacity - len(self.queue)
 
     @property
     def moving(self) -> bool:
-        """Whether it has speed."""
+        """Whether the axes move."""
         return self.v > 0.0
 
     def drop(self) -> None:
-        """Forget every block; stands at once where it is."""
+        """Discard all blocks and stop immediately."""
         self.queue.clear()
         self.v = self._s = 0.0
 
     def step(self, dt: float, turns_per_s: float) -> None:
-        """Let ``dt`` pass."""
+        """Advance by ``dt`` seconds at a spindle speed of ``turns_per_s``."""
         if not self.queue:
             self.v = 0.0
             return
@@ -140,30 +146,36 @@ class Slides:
         self._go(self.v * dt)
 
     def _limits(self, block: PlannedBlock, at: float) -> tuple[float, float]:
-        """Return the most that the slides do ``at`` mm from the block's beginning; a line has one limit."""
+        """Return the speed and acceleration limits at ``at`` mm from the start of the block.
+
+        The limits of a line are constant.
+        """
         if block.limits is None or not isinstance(block.way, _Line):
             heading = block.heading(at)
             block.limits = self._along(_RATE, heading) / 60.0, self._along(_ACCELERATION, heading)
         return block.limits
 
     def _speed(self, block: PlannedBlock, most: float, turns_per_s: float) -> float:
-        """mm/s, no slide faster than it may. A jog knows no override, a thread none either."""
+        """Return the speed of a block in mm/s, limited to ``most``; no override affects jogs and threads."""
         speed = min(block.speed * turns_per_s if block.per_rev else block.speed, most)
         if block.rapid:
             return speed * self.rapid
         return speed if block.jog or block.thread else min(speed * self.feed, most)
 
     def _along(self, first: int, heading: Place) -> float:
-        """The most on a way of this direction by the settings of X and Z, from ``first`` on (planner.c)."""
+        """Return the limit along a direction from the settings of X and Z, as planner.c does.
+
+        ``first`` is the number of the setting for X.
+        """
         x, z = abs(heading[0]), abs(heading[1])
         along_x = self._registers[first] / x if x else math.inf
         along_z = self._registers[first + 2] / z if z else math.inf
         return min(along_x, along_z) if x or z else self._registers[first]
 
     def _allowed(self, accel: float, turns_per_s: float) -> float:
-        """Speed from which every corner ahead, and the end, can still be taken as slowly as it has to be.
+        """Return the highest speed in mm/s that still permits all corners ahead and the stop at the end.
 
-        ``accel``: mm/s², in the present block.
+        ``accel`` is the acceleration in the present block in mm/s².
         """
         before = self.queue[0]
         left = max(before.length - self._s, 0.0)
@@ -178,12 +190,12 @@ class Slides:
         return min(most, math.sqrt(brakes)) + _CREEP
 
     def _corner(self, before: PlannedBlock, block: PlannedBlock) -> float:
-        """The fastest through the joint of two blocks, by the deviation of ``$11``; turning back stops."""
+        """Return the speed limit at the corner of two blocks by the deviation ``$11``; a reversal stops."""
         (x0, z0), (x1, z1) = before.heading(before.length), block.heading(0.0)
         cosine = x0 * x1 + z0 * z1
         if abs(cosine) > _STRAIGHT:
             return math.inf if cosine > 0.0 else 0.0
-        half = math.sqrt(0.5 * (1.0 + cosine))  # sine of half the angle between the two ways
+        half = math.sqrt(0.5 * (1.0 + cosine))  # Sine of half the angle between the two directions.
         turn = math.hypot(x1 - x0, z1 - z0)
         accel = self._along(_ACCELERATION, ((x1 - x0) / turn, (z1 - z0) / turn))
         return math.sqrt(accel * self._registers[11] * half / (1.0 - half))

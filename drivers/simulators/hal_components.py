@@ -1,6 +1,6 @@
-"""LinuxCNC's stock components as far as our part of the HAL file uses them, on cells that stand for signals.
+"""LinuxCNC components as far as TurnDesk's part of the HAL file uses them, on cells that replace signals.
 
-Written from their sources of 2026; ``limit3`` follows its limits in a simpler way.
+They follow the LinuxCNC sources of 2026. ``limit3`` approaches its limits in a simpler manner.
 """
 
 from __future__ import annotations
@@ -10,16 +10,16 @@ from collections import deque
 from collections.abc import Callable
 from typing import Any
 
-Cells = dict[str, float]  # by signal, or by pin where it is on none
-Pin = Callable[[str], str]  # a pin's name to its cell
-Step = Callable[[float], None]  # one call of a function of the thread, with its period in s
+Cells = dict[str, float]  # By signal, or by pin if it is not connected to a signal.
+Pin = Callable[[str], str]  # Maps the name of a pin to its cell.
+Step = Callable[[float], None]  # One call of a thread function, with the period in s.
 
-_DEPTH = 8192  # of a stream whose depth nobody asks for
+_DEPTH = 8192  # Default depth of a stream.
 _HAIR = 1e-9
 
 
 class Fifo:
-    """``hal.stream``: rows between a process and the servo thread."""
+    """Replacement for ``hal.stream``: a FIFO of rows between a process and the servo thread."""
 
     def __init__(self, depth: int = _DEPTH) -> None:
         self._rows: deque[tuple[float, ...]] = deque()
@@ -27,30 +27,30 @@ class Fifo:
 
     @property
     def depth(self) -> int:
-        """Rows that wait."""
+        """The number of rows in the FIFO."""
         return len(self._rows)
 
     @property
     def writable(self) -> bool:
-        """Whether there is room."""
+        """Whether the FIFO has room for a row."""
         return len(self._rows) < self._most
 
     @property
     def readable(self) -> bool:
-        """Whether a row waits."""
+        """Whether the FIFO contains a row."""
         return bool(self._rows)
 
     def write(self, row: tuple[float, ...]) -> None:
-        """One row; the oldest is kept where there is no room."""
+        """Append one row; a row that does not fit is discarded."""
         if self.writable:
             self._rows.append(row)
 
     def read(self) -> tuple[float, ...]:
-        """The oldest row."""
+        """Remove and return the oldest row."""
         return self._rows.popleft()
 
 
-# What a component without memory calculates, by its pins and parameters.
+# Formulas of the components without memory, with their pins and parameters.
 _FORMULAS = {
     "near": "abs({in1} - {in2}) <= {difference}",
     "not": "not {in}",
@@ -64,7 +64,7 @@ _FORMULAS = {
 
 
 class Program:
-    """The calls of a thread in their order, as one function on ``cells``."""
+    """Function calls of a thread in their order, compiled into one function on ``cells``."""
 
     def __init__(self, cells: Cells) -> None:
         self._cells = cells
@@ -77,14 +77,14 @@ class Program:
         self._steps.append(step)
 
     def add_component(self, component: str, name: str, at: Pin, value: Callable[[str], float]) -> None:
-        """Append the function of one instance; ``value`` returns what was set for a pin or parameter."""
+        """Append the function of one component; ``value`` returns the value set for a pin or parameter."""
         if component in _FORMULAS:
             self._lines.append(f"cells[{at(f'{name}.out')!r}] = {_formula(component, name, at, value)}")
         else:
             self.add(_STEPS[component](self._cells, name, at, value))
 
     def compiled(self) -> Step:
-        """Return the function: to call each component costs several times what it calculates."""
+        """Compile the calls into one function, which is several times faster than single calls."""
         names: dict[str, Any] = {"cells": self._cells, "steps": self._steps}
         exec("\n    ".join(["def run(period):", *self._lines, "return"]), names)
         run: Step = names["run"]
@@ -139,10 +139,13 @@ def _timedelay(cells: Cells, name: str, at: Pin, value: Callable[[str], float]) 
 
 
 def _limit3(cells: Cells, name: str, at: Pin, value: Callable[[str], float]) -> Step:
-    """What its speed and acceleration let through passes as it is; else it brakes and catches up."""
+    """Return the function of ``limit3``.
+
+    Values within the limits pass unchanged. Otherwise the output brakes and catches up.
+    """
     in_, load, out = (at(f"{name}.{pin}") for pin in ("in", "load", "out"))
     maxv, maxa = value(f"{name}.maxv"), value(f"{name}.maxa")
-    was = [0.0, 0.0]  # the input, and the speed of the output
+    was = [0.0, 0.0]  # The last input and the speed of the output.
 
     def step(period: float) -> None:
         wanted, place, speed = cells[in_], cells[out], was[1]
@@ -168,7 +171,10 @@ _STEPS = {"flipflop": _flipflop, "estop_latch": _latch, "timedelay": _timedelay,
 
 
 def streamer(cells: Cells, fifo: Fifo, enable: str, pins: list[str]) -> Step:
-    """One row a period while it is enabled; the last row stays."""
+    """Return a function that writes one row of ``fifo`` to the pins per period while ``enable`` is on.
+
+    Without a new row, the pins keep their values.
+    """
 
     def step(_period: float) -> None:
         if cells[enable] and fifo.readable:
@@ -179,7 +185,7 @@ def streamer(cells: Cells, fifo: Fifo, enable: str, pins: list[str]) -> Step:
 
 
 def sampler(cells: Cells, fifo: Fifo, pins: list[str]) -> Step:
-    """One row a period."""
+    """Return a function that appends the values of the pins to ``fifo`` in each period."""
 
     def step(_period: float) -> None:
         fifo.write(tuple([cells[pin] for pin in pins]))
@@ -188,8 +194,11 @@ def sampler(cells: Cells, fifo: Fifo, pins: list[str]) -> Step:
 
 
 def watchdog(cells: Cells, input_: str, enable: str, out: str, timeout: float) -> Step:
-    """Without a change of the input for so long it bites, until ``enable`` has been off and on again."""
-    was = [0.0, False, False]  # s since the last change, the input, enable
+    """Return a function that clears ``out`` when the input does not change for ``timeout`` seconds.
+
+    The output remains off until ``enable`` is switched off and on again.
+    """
+    was = [0.0, False, False]  # Seconds since the last change, the input, and enable.
 
     def step(period: float) -> None:
         since, last, enabled = was

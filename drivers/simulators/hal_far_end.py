@@ -1,7 +1,7 @@
-"""The other end of the HAL backend, played: our part of the HAL file as it stands, on a simulated machine.
+"""Simulator of the HAL backend: TurnDesk's part of the HAL file and the real bridge on a simulated machine.
 
-The bridge is the real one. HAL's servo thread is played component by component from the very description
-that becomes the HAL file, so what is wired wrong there is wrong here.
+HAL's servo thread is simulated component by component from the same description that becomes the HAL file. A
+wiring error in the file therefore appears in the simulator.
 """
 
 from __future__ import annotations
@@ -25,20 +25,20 @@ from drivers.simulators.plant_config import SimConfig
 from drivers.simulators.plant_hands import PlantHands
 from drivers.simulators.servo_axis import Servo
 
-_ROUND, _REPORT = 2, 4  # periods between two rounds of the bridge, between two reports
+_ROUND, _REPORT = 2, 4  # Periods between two rounds of the bridge and between two reports.
 _STATION = frozenset({"estop", "start", "hold", "spindle_auto"})
 _HAIR = 1e-9
-_PACKET_ERRORS = 5  # of hm2_eth: 10 / 2, its packet-error-limit and -increment
-_INDEX = 0.3  # turns, where the spindle's index is
+_PACKET_ERRORS = 5  # hm2_eth: packet-error-limit 10 divided by packet-error-increment 2.
+_INDEX = 0.3  # Position of the spindle's index in revolutions.
 
 
 class HalThread:
-    """Everything of ours in the servo thread, in its order; ``cells`` by signal, or pin."""
+    """TurnDesk's part of the servo thread in its order; ``cells`` are indexed by signal or pin."""
 
     def __init__(self, border: Border) -> None:
         self.cells: Cells = {}
         self._cell: dict[str, str] = {pin: signal for signal, pins in border.nets.items() for pin in pins}
-        self.theirs = {link.pin: link.ours[0] for link in border.links}  # cells of the machine's pins
+        self.theirs = {link.pin: link.ours[0] for link in border.links}  # Cells of the machine's pins.
         self.cells.update(dict.fromkeys([*border.nets, *self.theirs.values()], 0.0))
         self.streams = (Fifo(), Fifo())
         self.samples = Fifo()
@@ -47,10 +47,10 @@ class HalThread:
         program = Program(self.cells)
         for call in border.calls:
             self._add(program, call, component, values)
-        self.run = program.compiled()  # one period of the thread, whose length in s it is given
+        self.run = program.compiled()  # Runs one period of the thread; the argument is its length in s.
 
     def at(self, pin: str) -> str:
-        """The cell of a pin of ours."""
+        """Return the cell of one of TurnDesk's pins."""
         cell = self._cell.get(pin, pin)
         self.cells.setdefault(cell, 0.0)
         return cell
@@ -68,14 +68,14 @@ class HalThread:
             program.add_component(component[call], call, self.at, lambda pin: values.get(pin, 0.0))
 
     def _pins(self, call: str) -> list[str]:
-        """Cells of the numbered pins of a streamer or sampler."""
+        """Return the cells of the numbered pins of a streamer or sampler."""
         numbered = re.compile(rf"{re.escape(call)}\.pin\.(\d+)")
         found = {int(m[1]): cell for pin, cell in self._cell.items() if (m := numbered.fullmatch(pin))}
         return [found[n] for n in range(len(found))]
 
 
 class ThreadPins:
-    """The bridge's component: its pins on the thread's cells."""
+    """Pins of the bridge's HAL component, mapped to the cells of the thread."""
 
     def __init__(self, thread: HalThread) -> None:
         self._cells = thread.cells
@@ -89,7 +89,7 @@ class ThreadPins:
 
 
 class _AxisCells(NamedTuple):
-    """An axis and the cells of its pins; empty: it has no such pin."""
+    """Axis with the cells of its pins; an empty name means that the pin does not exist."""
 
     name: str
     servo: Servo
@@ -101,12 +101,12 @@ class _AxisCells(NamedTuple):
 
 
 class HalPlant(Plant):
-    """The simulated machine behind the thread's pins."""
+    """Simulated machine connected to the pins of the thread."""
 
     periods: Callable[[float], None]
 
     def advance(self) -> float:
-        """Bring everything up to the clock, period by period; returns the clock's time."""
+        """Advance the model to the present time of the clock in periods, and return this time in seconds."""
         now = self.clock.now()
         with self.lock:
             self._break(now)
@@ -119,13 +119,13 @@ class HalPlant(Plant):
     _at = 0.0
 
     def trip(self, fault: str) -> None:
-        """The drive named before the colon says so on its pin."""
+        """Set the fault pin of the drive that is named before the colon."""
         self.faulty.add(fault.partition(":")[0])
 
     faulty: set[str]
 
     def press_estop(self) -> None:
-        """The chain of relays: drives and spindle lose power, whatever any thread says."""
+        """Remove the power of the drives and the spindle, as the E-stop circuit does."""
         with self.touch:
             now = self.advance()
             self.panel.estop = True
@@ -133,7 +133,7 @@ class HalPlant(Plant):
 
 
 class HalFarEnd:
-    """Machine, servo thread and bridge on one clock, and the driver's ``BridgeLink`` to them."""
+    """Simulated machine, servo thread and bridge on one clock, which implements ``BridgeLink``."""
 
     warnings: tuple[str, ...] = ()
 
@@ -144,20 +144,20 @@ class HalFarEnd:
         self.plant.periods = self._period
         self.machine = PlantHands(self.plant)
         self.thread = HalThread(border_of(config))
-        self.killed = False  # the bridge's process is gone
-        self.stopped = False  # it stands, and comes back
-        self.stands = False  # the servo thread is gone
-        self.cable_out = False  # the board is not reached: its inputs keep their last value
-        self.errors = 0  # periods in a row without the board, as hm2_eth counts packet errors
-        self.garbled = False  # what is told is no packet
-        self.has_index = True  # phase Z of the spindle's encoder is wired
+        self.killed = False  # The process of the bridge has ended.
+        self.stopped = False  # The process of the bridge is suspended.
+        self.stands = False  # The servo thread is stopped.
+        self.cable_out = False  # The board is not reachable; its inputs retain their last values.
+        self.errors = 0  # Consecutive periods without the board, like the packet errors of hm2_eth.
+        self.garbled = False  # Sent data is not a valid packet.
+        self.has_index = True  # Phase Z of the spindle encoder is wired.
         self._orients = False
-        self._hands: object = None  # of the plant, as they were read last
-        self.late = 0  # reports that are held back
+        self._hands: object = None  # State of the controls when last read.
+        self.late = 0  # Number of delayed reports.
         self._outbox: deque[bytes] = deque()
         self._count = 0
         self._rpm = 0.0
-        self._turns = self._index_at = 0.0  # as its encoder counts, and where it has begun to count anew
+        self._turns = self._index_at = 0.0  # Encoder count, and count at the last index reset.
         self._axes = [self._wire(axis) for axis in config.driven]
         self._place = {axis.name: 0.0 for axis in config.driven}
         self.bridge = self._start()
@@ -180,7 +180,7 @@ class HalFarEnd:
     # --- the link -----------------------------------------------------------------------------------------
 
     def open(self) -> HalFarEnd:
-        """Anew after its bridge was lost."""
+        """Restart the bridge if it has ended. Raises DriverError while the cable is disconnected."""
         if self.cable_out:
             raise DriverError("HAL does not load: hm2_eth: the board does not respond", "hal-setup")
         self.errors = 0
@@ -192,13 +192,13 @@ class HalFarEnd:
         return self
 
     def send(self, data: bytes) -> None:
-        """Raises DriverError when nobody is there."""
+        """Send a packet to the bridge. Raises DriverError if its process has ended."""
         if self.killed:
             raise DriverError("the HAL bridge process has ended (broken pipe)", "hal-bridge")
         self.bridge.handle(*unpack(data))
 
     def receive(self) -> Iterator[tuple[Head, Sequence[float]]]:
-        """Whatever it has told."""
+        """Yield the packets that the bridge has sent. Raises DriverError if its process has ended."""
         self.plant.advance()
         if self.killed:
             raise DriverError("HAL bridge process has ended", "hal-bridge")
@@ -206,15 +206,15 @@ class HalFarEnd:
             data = self._outbox.popleft()
             yield unpack(data[3:] if self.garbled else data)
 
-    down = True  # it takes no time here
+    down = True  # Takes no time in the simulator.
 
     def hang_up(self) -> None:
-        """The driver hears nothing any more."""
+        """Stop the axes by their ramps and end the bridge."""
         self.bridge.handle({"do": "ramp-off"}, ())
         self.bridge.gone = True
 
     def close(self) -> None:
-        """The driver has gone."""
+        """End the bridge."""
         self.bridge.gone = True
 
     # --- one period ---------------------------------------------------------------------------------------
@@ -237,16 +237,19 @@ class HalFarEnd:
             self._outbox.append(self.bridge.report())
 
     def _read_board(self, t: float) -> None:
-        """Play hm2_read: without packets it returns early, and says so after a few of them."""
+        """Simulate hm2_read, which skips reading without packets and reports an error after a few periods."""
         if not self.cable_out:
             self._read(t)
             return
         self.errors += 1
-        if self.errors >= _PACKET_ERRORS:  # io_error: the driver reads nothing any more until it is reloaded
+        if self.errors >= _PACKET_ERRORS:  # io_error: the driver stops reading until it is reloaded.
             self._set(self.config.table.link_fault, True)
 
     def _coast(self, t: float, period: float) -> None:
-        """A board without its computer: its watchdog takes power, spindle and outputs."""
+        """Simulate the watchdog of the board.
+
+        The axes coast, the spindle stops, and the outputs change to their safe states.
+        """
         for axis in self._axes:
             axis.servo.roll(period)
         if self._rpm:
@@ -264,7 +267,7 @@ class HalFarEnd:
         return self.thread.cells[self.thread.theirs[pin]] if pin else 0.0
 
     def _read(self, t: float) -> None:
-        """What HAL reads of the machine."""
+        """Copy the state of the machine to the cells that HAL reads."""
         plant, config, cells = self.plant, self.config, self.thread.cells
         for axis in self._axes:
             servo = axis.servo
@@ -279,7 +282,7 @@ class HalFarEnd:
         self._read_hands(t)
 
     def _read_hands(self, t: float) -> None:
-        """Read inputs and pots, where they may have changed."""
+        """Read inputs and pots if they may have changed."""
         hands = self.plant.hands(t)
         if hands is self._hands:
             return
@@ -295,7 +298,7 @@ class HalFarEnd:
                 self._set(pot.pin, (getattr(state, name) - pot.low) / (pot.high - pot.low))
 
     def _encode(self, turns: float) -> None:
-        """The spindle's encoder: asked for its index it counts from there on anew."""
+        """Simulate the spindle encoder, whose count restarts at the index on request."""
         pins, last = self.config.spindle.pins, self._turns
         self._turns = turns
         if pins.index_enable and self._get(pins.index_enable):
@@ -306,7 +309,10 @@ class HalFarEnd:
         self._set(pins.position, turns - self._index_at)
 
     def _drive(self, t: float, period: float) -> None:
-        """What HAL drives; without power slides roll out. Boards of a thread that stands take the power."""
+        """Apply the cells that HAL writes to the machine; axes without power coast.
+
+        If the thread is stopped, the boards remove the power.
+        """
         plant, config, cells = self.plant, self.config, self.thread.cells
         powered = not self.stands and not plant.panel.estop
         for axis in self._axes:
@@ -329,7 +335,10 @@ class HalFarEnd:
                 plant.terminals.write(name, on, t)
 
     def _orient(self, t: float) -> None:
-        """The component ``orient`` with its drive: an angle is taken with the rising of its pin."""
+        """Simulate the component ``orient`` and its drive.
+
+        The angle is read at the rising edge of the pin.
+        """
         pins, spindle = self.config.spindle.pins, self.plant.spindle
         wanted = bool(self._get(pins.orient)) and not self.stands
         if wanted and not self._orients:

@@ -1,6 +1,6 @@
-"""The machine itself, simulated: advanced to the clock whenever somebody looks, so it needs no thread.
+"""Simulated lathe that catches up with the clock on each call, so that it needs no thread.
 
-The model steps on a grid of fixed times, so what happens does not depend on who looks when.
+The model advances on a grid of fixed times. Its behavior does not depend on the time of the calls.
 """
 
 from __future__ import annotations
@@ -24,22 +24,23 @@ from drivers.waiting import Touch, Wakeup
 
 _NEVER = float("inf")
 Motion = tuple[tuple[float, ...], tuple[float, ...], tuple[float, ...]]
-_PAST = 0.1  # s of setpoints that may still be asked for
+_PAST = 0.1  # Age in s of setpoints that are still available.
 _HALT = 0.2  # s
 _HOME_SETTLE = 0.2  # s between the end of a homing move and the reference
-_FREE = (0.0, 0.0, 0.0, 0.0)  # columns of a sample: of the spindle three, and of the queue
-_AT_REST = 0.1  # s between two samples of a machine on which nothing changes
+# Columns of a sample: speed, turns and load of the spindle, and the end of the queue.
+_FREE = (0.0, 0.0, 0.0, 0.0)
+_AT_REST = 0.1  # Seconds between two samples of a machine at rest.
 
 
 class Plant:
-    """Slides, spindle, terminals and station behind one lock, so that any thread may call."""
+    """Simulated axes, spindle, terminals and operator station with one lock, callable from any thread."""
 
     def __init__(self, config: SimConfig, clock: Clock) -> None:
         self.config = config
         self.clock = clock
         self.lock = threading.RLock()
         self.wakeup = Wakeup(self.settled)
-        self.touch = Touch(self.lock, self.wakeup.ring)  # for hands, and for whatever breaks
+        self.touch = Touch(self.lock, self.wakeup.ring)  # For operator actions and for faults.
         self.servos = tuple(Servo(axis, config.step) for axis in config.axes)
         self.names = tuple(axis.name for axis in config.axes)
         self.spindle = SpindleMotor(config.spindle)
@@ -51,28 +52,29 @@ class Plant:
         self.fault: str = ""
         self._off_at = _NEVER
         self._homing: tuple[Servo, float] | None = None
-        self.due: Callable[[float], None] | None = None  # what breaks by itself as time passes
-        self.log: SampleLog | None = None  # samples of every grid point, once somebody takes them
+        self.due: Callable[[float], None] | None = None  # Applies the scheduled faults that are due.
+        self.log: SampleLog | None = None  # Samples of all grid points from the first request on.
         self._turned: tuple[float, ...] = (
             0.0,
             0.0,
             0.0,
         )  # speed, turns and load of the spindle at the present grid point
-        self._changed = True  # something was sampled that is not at rest
+        self._changed = True  # The last sample was not at rest.
         self._k = int(clock.now() / config.step)
         self.spindle.t = clock.now()
         self._hands: tuple[StationState, Mapping[str, bool]] | None = None
-        self._hands_at: int | None = None  # count of changes at that reading; None: they change by themselves
-        self._looked_at = -_NEVER  # time of the last look, s
+        # Number of changes at the last reading. None: they can change at any time.
+        self._hands_at: int | None = None
+        self._looked_at = -_NEVER  # Time of the last call of `advance` in s.
         self._ahead: ForeseenMotion | None = None
 
     @property
     def t(self) -> float:
-        """Time of the model: the last point of the grid."""
+        """The time of the model in seconds, which is the last grid point that was calculated."""
         return self._k * self.config.step
 
     def advance(self) -> float:
-        """Bring everything up to the clock; returns the clock's time."""
+        """Advance the model to the present time of the clock and return this time in seconds."""
         now = self.clock.now()
         with self.lock:
             if now == self._looked_at:
@@ -88,7 +90,10 @@ class Plant:
         return now
 
     def hands(self, t: float) -> tuple[StationState, Mapping[str, bool]]:
-        """Return what station and inputs say at ``t`` (s); they are read again only where they may differ."""
+        """Return the state of the operator station and the inputs at time ``t`` in seconds.
+
+        They are read again only if they may have changed since the last call.
+        """
         changes = self.touch.count + self.terminals.writes
         if self._hands is None or changes != self._hands_at:
             still = self.terminals.setter is None and self.terminals.settled(t) and self.panel.settled(t)
@@ -97,7 +102,10 @@ class Plant:
         return self._hands
 
     def settled(self) -> bool:
-        """Whether nothing changes any more until somebody's hand is on it; what breaks by the clock may."""
+        """Return whether the machine changes no more until an operator or a test acts.
+
+        A machine with scheduled faults is never settled.
+        """
         with self.lock:
             now = self.advance()
             waits = self.due is not None or self._off_at < _NEVER or self._homing is not None
@@ -105,14 +113,14 @@ class Plant:
             return not moves and self.terminals.settled(now) and self.panel.settled(now)
 
     def _break(self, now: float) -> None:
-        """Faults that are due; breaking something looks at the plant too, and must not come back here."""
+        """Apply the faults that are due at ``now``. The callback is suspended to prevent recursion."""
         due, self.due = self.due, None
         if due is not None:
             due(now)
             self.due = due
 
     def splice(self, segments: Segments) -> None:
-        """Queue setpoints; raises DriverError when the drives cannot take them."""
+        """Splice setpoints into the queue. Raises DriverError if the drives cannot follow them."""
         with self.lock:
             now = self.advance()
             self._need_power()
@@ -120,7 +128,7 @@ class Plant:
             self.queue.splice(segments, now)
 
     def mesh(self, cam: Cam) -> None:
-        """Slides follow the spindle; raises DriverError when the drives cannot."""
+        """Make the axes follow the spindle along ``cam``. Raises DriverError if the drives cannot do so."""
         with self.lock:
             now = self.advance()
             self._need_power()
@@ -128,7 +136,10 @@ class Plant:
             self.queue.mesh(cam, Phase(now, self.spindle.counted, self.spindle.speed / 60.0), now)
 
     def power(self, on: bool) -> None:
-        """Drives on: they hold the slides where these are. Raises DriverError in E-stop or fault."""
+        """Switch the drives on at the present position, or off.
+
+        Raises DriverError when switching on in E-stop or with a fault.
+        """
         with self.lock:
             self.advance()
             if not on:
@@ -144,7 +155,7 @@ class Plant:
             self.enabled, self._off_at = True, _NEVER
 
     def stop(self, how: Stop) -> None:
-        """The drives' own stop, without the host's path."""
+        """Stop the axes by the ramps of the drives, independently of the host's path."""
         with self.lock:
             now = self.advance()
             self._homing = None
@@ -156,7 +167,10 @@ class Plant:
                     self._off_at = ends
 
     def home(self, name: str) -> None:
-        """Look for the home switch of one axis; an absolute axis has nothing to look for."""
+        """Start to home one axis; an absolute axis returns at once.
+
+        Raises DriverError without power, while homing or while an axis moves.
+        """
         with self.lock:
             now = self.advance()
             self._need_power()
@@ -183,7 +197,7 @@ class Plant:
             self._homing = (servo, self.queue.horizon(now) + _HOME_SETTLE)
 
     def press_estop(self) -> None:
-        """The hardware chain: slides brake and lose power, the spindle too, whatever any program wants."""
+        """Brake the axes, remove their power and let the spindle coast, as the E-stop circuit does."""
         with self.touch:
             now = self.advance()
             self.panel.estop = True
@@ -191,7 +205,10 @@ class Plant:
             self.spindle.cut(now)
 
     def halt(self) -> None:
-        """From any thread: all off, unless somebody is stuck inside the machine itself."""
+        """Stop the axes and the spindle and set the outputs to their safe states, from any thread.
+
+        Raises DriverError if the lock is not available within 0.2 s.
+        """
         if not self.lock.acquire(timeout=_HALT):
             raise DriverError("no response from the simulated machine")
         try:
@@ -202,12 +219,12 @@ class Plant:
             self.lock.release()
 
     def trip(self, fault: str) -> None:
-        """A drive gives up: no axis is kept alive without the others."""
+        """Record a drive fault, and brake and switch off all axes."""
         self.fault = self.fault or fault
         self.stop(Stop.RAMP_OFF)
 
     def clear_fault(self) -> None:
-        """The operator has seen it; the drives stay off until somebody switches them on."""
+        """Clear the fault; the drives remain off until they are enabled again."""
         self.advance()
         self.fault = ""
         for servo in self.servos:
@@ -227,7 +244,7 @@ class Plant:
             servo.power_lost()
 
     def _slides(self, last: int) -> None:
-        """Move the axes up to grid point ``last``; a machine at rest is left alone."""
+        """Move the axes to grid point ``last``. Axes at rest are not calculated step by step."""
         while self._k < last:
             if self.t >= self._off_at:
                 self._power_off()
@@ -238,7 +255,7 @@ class Plant:
             self._reference()
 
     def _rest(self, last: int) -> None:
-        """Let time pass up to grid point ``last``, or until the drives are switched off."""
+        """Advance the time to grid point ``last``, or to the time when the drives switch off."""
         self.spindle.cuts = False
         if self.spindle.slips:
             self.spindle.cut_load(self.t, cutting=False)
@@ -248,7 +265,7 @@ class Plant:
         self._k = until
 
     def _undisturbed(self) -> bool:
-        """Whether the axes follow setpoints in time alone, and no device needs every step."""
+        """Return whether the axes only follow setpoints in time and nothing requires single steps."""
         ordered = self.enabled and self._off_at == _NEVER and self._homing is None and not self.fault
         return (
             ordered
@@ -258,7 +275,10 @@ class Plant:
         )
 
     def _glide(self, last: int) -> bool:
-        """Move along the setpoint piece, at most to grid point ``last``; False where that needs steps."""
+        """Move along the present setpoint piece, at most to grid point ``last``.
+
+        Return False if the piece must be calculated step by step.
+        """
         ahead = self._ahead
         piece, until = self.queue.piece_at(self.t)
         if ahead is None or not ahead.holds(piece, until, self._k):
@@ -303,7 +323,7 @@ class Plant:
         self._turn()
 
     def _servos_follow(self, p: tuple[float, ...], v: tuple[float, ...], dt: float) -> bool:
-        """One step towards setpoint ``p`` ``v``; whether a drive has given up, now or before."""
+        """Advance all axes by one step toward setpoint ``p``, ``v``. Return whether a drive has a fault."""
         for servo, position, speed in zip(self.servos, p, v, strict=True):
             if servo.follow(position, speed, dt) and not self.fault:
                 self.fault = Fault("{axis}: following error", "following", axis=servo.axis.name)
@@ -312,12 +332,14 @@ class Plant:
         return bool(self.fault)
 
     def cuts(self) -> bool:
-        """Whether a slide feeds."""
+        """Return whether an axis moves at a cutting feed."""
         return any(servo.cuts for servo in self.servos)
 
     def _setpoint(self, t: float) -> Motion:
-        """What the drives get, its velocity, and what is queued; by the spindle's encoder the first makes up
-        for what they trail."""
+        """Return the position sent to the drives, the velocity and the queued position at ``t``.
+
+        With the gear, the position sent to the drives compensates for their following error.
+        """
         if not self.queue.meshed:
             p, v = self.queue.demand_at(t)
             return p, v, p
@@ -329,7 +351,7 @@ class Plant:
     # --- samples for the scope ----------------------------------------------------------------------------
 
     def _sample(self, t: float, demand: tuple[float, ...] | None) -> None:
-        """The present grid point; without power the demand is where the slides are."""
+        """Sample the present grid point; without power, the demand is the measured position."""
         if self.log is None:
             return
         actual = [servo.reading for servo in self.servos]
@@ -339,7 +361,7 @@ class Plant:
         self._changed = True
 
     def _sample_turning(self, demand: tuple[float, ...] | None, until: int) -> None:
-        """The spindle up to grid point ``until`` (without it), while the axes rest."""
+        """Sample the turning spindle up to grid point ``until``, exclusive, while the axes are at rest."""
         assert self.log is not None
         actual = self._readings()
         row = [0.0, *(demand or actual), *actual, *(servo.load for servo in self.servos), *_FREE]
@@ -350,7 +372,7 @@ class Plant:
         self._k, self._changed = until, True
 
     def _sample_ahead(self, ahead: ForeseenMotion, last: int) -> None:
-        """All grid points up to ``last`` (without it) of a motion that is known ahead."""
+        """Sample all grid points of a predicted motion up to ``last``, exclusive."""
         assert self.log is not None
         rows = ahead.rows(self._k, last)
         self._turn_ahead(rows, ahead.cuts(self._k + 1, last + 1))
@@ -359,8 +381,9 @@ class Plant:
         self._changed = True
 
     def _turn_ahead(self, rows: FloatArray, cuts: BoolArray) -> None:
-        """Fill the columns of the spindle, and turn it one grid point further than the last row; ``cuts``:
-        whether a tool cuts at each grid point behind the first.
+        """Fill the spindle columns of ``rows``, and turn the spindle to one grid point after the last row.
+
+        ``cuts`` states for each grid point after the first whether a tool cuts.
         """
         rows[:, -4:-1] = self._turned
         if self._turned[0] or not self.spindle.still:
@@ -369,7 +392,10 @@ class Plant:
             self._turned = tuple(following[-1].tolist())
 
     def _sample_rest(self, until: int) -> None:
-        """Up to grid point ``until`` the slides rest: only a spindle that turns has anything to tell."""
+        """Sample the resting axes up to grid point ``until``.
+
+        While the spindle is at rest too, the interval between samples is 0.1 s.
+        """
         assert self.log is not None
         demand = self.queue.demand_at(self.t)[0] if self.enabled else None
         while self._k < until:
@@ -386,7 +412,7 @@ class Plant:
             self._turn()
 
     def _turn(self) -> None:
-        """The spindle at the present grid point."""
+        """Advance the spindle to the present grid point for the samples."""
         if self.log is not None and (self._turned[0] or not self.spindle.still):
             if self.t > self.spindle.t:
                 self.spindle.advance(self.t)

@@ -1,4 +1,4 @@
-"""What the simulated machine is made of: filled by the app from the machine file, frozen."""
+"""Configuration of the simulated machine, which the app fills from the machine file."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ from drivers.simulated.simulated_table import PlannedFault
 
 @dataclass(frozen=True, slots=True)
 class SimAxis(AxisFigures):
-    """One servo axis."""
+    """Simulated servo axis."""
 
-    power_up: float = 0.0  # where the slide stands from home when power comes on
-    bandwidth: float = 40.0  # Hz, of the position loop
-    feed_forward: float = 0.9  # of the velocity: what is missing shows as following error
-    reserve: float = 1.3  # the servo can accelerate this much harder than amax
-    own_drive: bool = False  # of C: it can be positioned while the spindle turns
+    power_up: float = 0.0  # Position relative to home at power-up.
+    bandwidth: float = 40.0  # Bandwidth of the position loop in Hz.
+    feed_forward: float = 0.9  # Fraction of the velocity; the rest appears as following error.
+    reserve: float = 1.3  # Factor by which the servo can exceed amax.
+    own_drive: bool = False  # C only: the axis can be positioned while the spindle turns.
 
 
 @dataclass(frozen=True, slots=True)
 class SimSpindle:
-    """AC spindle behind a frequency inverter; rpm and rpm/s, seconds."""
+    """Simulated AC spindle with a frequency inverter: speeds in rpm, ramps in rpm/s, times in seconds."""
 
     rpm_max: float = 3500.0
     accel: float = 1500.0
@@ -30,13 +30,13 @@ class SimSpindle:
     coast: float = 600.0
     latency: float = 0.08
     ppr: int = 1024
-    orients: bool = False  # its drive stops it at an angle, to which it turns at
+    orients: bool = False  # The drive can stop the spindle at an angle; it turns there at orient_rpm.
     orient_rpm: float = 60.0
 
 
 @dataclass(frozen=True, slots=True)
 class SimOutput:
-    """One output: its state at power-up and what ``safe`` makes of it (None: keeps)."""
+    """Simulated output with its state at power-up and its safe state; None leaves the output unchanged."""
 
     safe: bool | None = False
     initial: bool = False
@@ -44,7 +44,10 @@ class SimOutput:
 
 @dataclass(frozen=True, slots=True)
 class SimCollet:
-    """Collet with its switch; ``output`` on is clamped. Times seconds, ``spread`` a fraction of them."""
+    """Simulated collet with its switch; the output is on while the collet is clamped.
+
+    Times are in seconds. ``spread`` is the random variation of the times as a fraction.
+    """
 
     output: str = "collet"
     closed_input: str = "collet_closed"
@@ -55,9 +58,9 @@ class SimCollet:
 
 @dataclass(frozen=True, slots=True)
 class SimSetter:
-    """A tool setter: the middle of its stylus from part zero, its size across, mm.
+    """Simulated tool setter: center of its stylus relative to part zero, and its width, in mm.
 
-    ``tips``: X and Z at which the slides stand when a tip is on part zero, of each tool on the plate.
+    ``tips`` has X and Z of the axes when the tip is at part zero, for each tool on the plate.
     """
 
     x: float
@@ -68,7 +71,7 @@ class SimSetter:
 
 @dataclass(frozen=True, slots=True)
 class SimConfig:
-    """The whole simulated machine."""
+    """Configuration of the complete simulated machine."""
 
     axes: tuple[SimAxis, ...]
     spindle: SimSpindle = field(default_factory=SimSpindle)
@@ -76,10 +79,10 @@ class SimConfig:
     outputs: Mapping[str, SimOutput] = field(default_factory=dict)
     inputs: tuple[str, ...] = ()
     commit: float = 0.03
-    step: float = 0.001  # of the servo model
+    step: float = 0.001  # Interval of the servo model in s.
     seed: int = 1
     faults: tuple[PlannedFault, ...] = ()
     setter: SimSetter | None = None
-    measures_load: bool = False  # an input tells the spindle's load
-    palms: float = 0.5  # seconds within which both palms must go down
-    start_pulse: float = 0.1  # how long the two-hand relay holds its output at least
+    measures_load: bool = False  # An input measures the spindle load.
+    palms: float = 0.5  # Seconds within which both palm buttons must be pressed.
+    start_pulse: float = 0.1  # Minimum pulse of the two-hand relay in s.

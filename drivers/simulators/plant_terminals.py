@@ -1,4 +1,4 @@
-"""Inputs and outputs of the simulated machine, and what hangs on them: the collet and the tool setter."""
+"""Inputs and outputs of the simulated machine, with the collet and the tool setter that are wired to them."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from drivers.simulators.plant_config import SimCollet, SimOutput, SimSetter
 
 
 class ToolSetter:
-    """``made`` is its input; where the slides were when that came on is kept, as a fast drive would."""
+    """Simulated tool setter that latches the axis positions when its input turns on."""
 
     def __init__(self, config: SimSetter) -> None:
         self._config = config
         self.made = False
-        self.deepest = 0.0  # mm that a tip has gone into the stylus at most
+        self.deepest = 0.0  # Largest penetration of a tip into the stylus in mm.
         self.kept: tuple[float, tuple[float, ...]] | None = None
 
     def look(self, t: float, x: float, z: float, readings: tuple[float, ...]) -> None:
-        """The slides stand at ``x z``; their encoders say ``readings``."""
+        """Update the input from the axis positions ``x``, ``z`` and the encoder readings at time ``t``."""
         config = self._config
         half = config.width / 2.0
         depths = [
@@ -37,23 +37,23 @@ _GUARD = "guard"
 
 
 class Terminals:
-    """The terminal board: outputs as last written, inputs as wired or as a test sets them."""
+    """Simulated terminals: outputs as last written, inputs as wired or as a test sets them."""
 
     def __init__(
         self, outputs: Mapping[str, SimOutput], inputs: tuple[str, ...], collet: SimCollet, seed: int
     ) -> None:
         self._models = dict(outputs)
         self.outputs = {name: model.initial for name, model in outputs.items()}
-        self.inputs = {name: name == _GUARD for name in inputs}  # it begins with the guard closed
+        self.inputs = {name: name == _GUARD for name in inputs}  # The guard is closed at the start.
         self.sensor_stuck = False
-        self.writes = 0  # how many outputs were written
+        self.writes = 0  # Number of calls of `write`.
         self.setter: ToolSetter | None = None
         self._collet = collet
         self._random = random.Random(seed)
         self._closed_at = 0.0 if self.outputs.get(collet.output, False) else float("inf")
 
     def write(self, name: str, on: bool, now: float) -> None:
-        """Switch an output; raises DriverError for a name that the machine has not."""
+        """Switch an output. Raises DriverError for a name that the machine does not have."""
         output_of(name, self.outputs)
         if name == self._collet.output and on != self.outputs[name]:
             self._closed_at = now + self._late(self._collet.close_time) if on else float("inf")
@@ -62,13 +62,13 @@ class Terminals:
         self.writes += 1
 
     def safe(self, now: float) -> None:
-        """Every output to its safe state; those without one keep what they do."""
+        """Set every output to its safe state; outputs without a safe state do not change."""
         for name, model in self._models.items():
             if model.safe is not None:
                 self.write(name, model.safe, now)
 
     def set_input(self, name: str, on: bool) -> None:
-        """Close or open a terminal by hand; raises DriverError for an unknown name."""
+        """Set an input. Raises DriverError for an unknown name."""
         if name not in self.inputs:
             raise DriverError(
                 "input {name} is not in the machine file; add it under [io.in]", name=f"{name!r}"
@@ -76,7 +76,7 @@ class Terminals:
         self.inputs[name] = on
 
     def read(self, now: float) -> dict[str, bool]:
-        """All inputs; the collet's switch follows the collet unless it is stuck."""
+        """Return all inputs by name; the collet switch follows the collet unless it is stuck."""
         name = self._collet.closed_input
         if name in self.inputs and not self.sensor_stuck:
             self.inputs[name] = self.closed(now)
@@ -85,11 +85,11 @@ class Terminals:
         return dict(self.inputs)
 
     def settled(self, now: float) -> bool:
-        """Whether the collet has arrived, open or closed."""
+        """Return whether the collet has finished opening or closing."""
         return self._opened_at <= now and (self._closed_at <= now or self._closed_at == float("inf"))
 
     def closed(self, now: float) -> bool:
-        """Whether the collet truly grips. Opening takes its time too before the switch lets go."""
+        """Return whether the collet clamps. Opening and closing take time."""
         if self.outputs.get(self._collet.output, True):
             return now >= self._closed_at
         return now < self._opened_at

@@ -1,8 +1,8 @@
-"""One servo axis: position loop with velocity feed-forward, its drive's limits, encoder, wear and faults.
+"""Simulated servo axis: position loop with feed-forward, drive limits, encoder, wear and faults.
 
-``Servo.follow`` steps a linear second-order difference equation. While no limit of the drive acts, its
-solution is known: a steady part that follows the setpoint, and two decaying modes. One evaluation
-(``ServoLoop``) therefore replaces any number of steps; both agree within rounding (1e-9 mm).
+``Servo.follow`` advances a linear second-order difference equation by one step. While no limit of the drive
+acts, the solution is known: a steady part that follows the setpoint, and two decaying modes. One evaluation
+of ``ServoLoop`` therefore replaces any number of steps. Both results agree within rounding (1e-9 mm).
 """
 
 from __future__ import annotations
@@ -15,34 +15,35 @@ from core.ports import Cam, DriverError, FloatArray, Segments
 from drivers.setpoint_queue import check_limits
 from drivers.simulators.plant_config import SimAxis
 
-_FEEDS, _CUTS = 0.05, 0.25  # mm/s, and the fraction of the rapid above which nothing is cut
-_SETTLED = 1e-4  # mm or degrees, and per second: below this the slide is put on its setpoint
+# Lowest speed in mm/s and fraction of the rapid between which an axis is assumed to cut.
+_FEEDS, _CUTS = 0.05, 0.25
+_SETTLED = 1e-4  # An axis closer than this (mm or degrees) is set to its setpoint.
 
 
 class Servo:
-    """A slide and its drive. Positions are as the control counts them: from home once homed."""
+    """Simulated axis with its drive. Positions are in the control's count, from home after homing."""
 
     def __init__(self, axis: SimAxis, step: float = 0.001) -> None:
-        """``step`` is the interval of the model's grid, s."""
+        """Create the axis; ``step`` is the grid interval of the model in seconds."""
         self.axis = axis
         self._step = step
         self.homed = axis.absolute
-        self.switch = 0.0 if axis.absolute else -axis.power_up  # where home is in the present count
+        self.switch = 0.0 if axis.absolute else -axis.power_up  # Home position in the present count.
         self.p = axis.power_up if axis.absolute else 0.0
         self.v = 0.0
         self.jammed = False
-        self.stuck: float | None = None  # reading of an encoder that no longer counts
-        self.runaway = 0.0  # speed at which a drive that has gone mad drives it while it has power
+        self.stuck: float | None = None  # Reading of a stuck encoder.
+        self.runaway = 0.0  # Speed of a runaway drive with power.
         self.worn = WornAxis()
-        self.over = 0.0  # seconds outside the following window
-        self.load = 0.0  # per cent of what the drive can, signed
-        self.feeds = (_FEEDS, _CUTS * axis.vmax)  # between these speeds it is taken to cut
+        self.over = 0.0  # Seconds outside the following error window.
+        self.load = 0.0  # Percent of the drive's capacity, signed.
+        self.feeds = (_FEEDS, _CUTS * axis.vmax)  # Speed range in which the axis is assumed to cut.
         self._wn = 2 * math.pi * axis.bandwidth
         self._loop = ServoLoop(self._wn * step, axis.feed_forward) if self._wn * step < 0.5 else None
 
     @property
     def reading(self) -> float:
-        """Where the slide is, as far as it is measured."""
+        """The measured position, in whole encoder counts."""
         if self.stuck is not None:
             return self.stuck
         worn = self.worn
@@ -51,7 +52,7 @@ class Servo:
 
     @property
     def sound(self) -> bool:
-        """Whether nothing is wrong with slide, drive or encoder."""
+        """Whether the axis, its drive and its encoder have no fault."""
         worn = self.worn
         return not (
             self.jammed or self.runaway or worn.gib or worn.ripple or worn.missed or self.stuck is not None
@@ -59,37 +60,40 @@ class Servo:
 
     @property
     def cuts(self) -> bool:
-        """Whether it feeds: much slower than its rapid, which is as near to a cut as this gets."""
+        """Whether the axis moves at a cutting feed, which is a speed well below its rapid."""
         least, most = self.feeds
         return least < abs(self.v) < most
 
     @property
     def where(self) -> float:
-        """Where the slide really is."""
+        """The true position of the axis."""
         return self.worn.slide if self.worn.gib else self.p
 
     def push(self, way: float) -> None:
-        """Somebody moves it."""
+        """Displace the axis by a distance."""
         self.p += way
         self.worn.slide += way
 
     def lead(self, p: float, v: float, a: float) -> float:
-        """The setpoint, told with velocity ``v``, that brings the slide to ``p`` although it trails.
+        """Return the setpoint that brings the axis to ``p`` despite its following error.
 
-        ``follow`` turned round: 2(1 - ff)v/wn for the velocity, a/wn² for the acceleration ``a``.
+        The result inverts ``follow``: 2(1 - ff)v/wn compensates for the velocity ``v``, and a/wn² for the
+        acceleration ``a``.
         """
         return p + (2.0 * (1.0 - self.axis.feed_forward) * v + a / self._wn) / self._wn
 
     def follow(self, p: float, v: float, dt: float) -> bool:
-        """One step of the powered drive towards setpoint ``p`` ``v``; True when the following error trips it.
+        """Advance the powered drive by ``dt`` toward setpoint ``p``, ``v``. Return True if it trips.
 
-        Second order, damping 1. Without the whole feed-forward the slide trails by 2(1 - ff)v/wn.
+        The drive trips when the following error is outside its window for too long. The model is of second
+        order with damping 1. Without full feed-forward, the axis lags by 2(1 - ff)v/wn.
         """
         wn, axis = self._wn, self.axis
         seen = self.p if self.stuck is None and not self.worn.deceives else self._seen()
         limit = axis.amax * axis.reserve
         force = wn * (wn * (p - seen) + 2 * (axis.feed_forward * v - self.v))
-        if not -limit <= force <= limit:  # quicker than min and max: this is done three times a millisecond
+        # Faster than min and max; this code runs three times per millisecond.
+        if not -limit <= force <= limit:
             force = math.copysign(limit, force)
         self.load = 100.0 * force / limit
         if self.jammed:
@@ -110,9 +114,10 @@ class Servo:
         return False
 
     def foresee(self, setpoints: Setpoints, steps: int) -> Response | None:
-        """Return how the slide follows ``steps`` setpoints, or None where a fault or a limit may act.
+        """Return the response to ``steps`` setpoints, or None where a fault or a limit may act.
 
-        The bounds are those of ``follow``: the first force exactly, everything else by the sum of its parts.
+        The limits are those of ``follow``. The first force is exact; the other bounds are sums of absolute
+        parts.
         """
         loop, axis, dt = self._loop, self.axis, self._step
         if not self.sound or loop is None:
@@ -140,20 +145,20 @@ class Servo:
     def states(
         self, setpoints: Setpoints, response: Response, steps: Number
     ) -> tuple[Number, Number, Number]:
-        """Return position, velocity and load after ``steps`` grid points, one number or many."""
+        """Return position, velocity and load after ``steps`` grid points, for one number or an array."""
         assert self._loop is not None
         dt = self._step
         place, moved, bent = self._loop.states(setpoints, response, steps)
         return place, moved / dt, 100.0 * bent / (dt * dt) / (self.axis.amax * self.axis.reserve)
 
     def _seen(self) -> float:
-        """What the drive takes for its place."""
+        """Return the position that the drive measures."""
         if self.stuck is not None:
             return self.stuck
         return self.worn.counted(self.p) if self.worn.deceives else self.p
 
     def roll(self, dt: float) -> None:
-        """One step without power: friction stops the slide."""
+        """Advance by one step without power, while friction stops the axis."""
         drop = 0.5 * self.axis.amax * dt
         self.v = 0.0 if self.jammed or abs(self.v) <= drop else self.v - math.copysign(drop, self.v)
         self.p += self.v * dt
@@ -162,7 +167,7 @@ class Servo:
         self.over = self.load = 0.0
 
     def settle(self, p: float) -> bool:
-        """At a resting setpoint: snap on it when as good as there; False while still moving."""
+        """Return whether the axis rests at setpoint ``p``; an axis that is close is set exactly to ``p``."""
         if self.jammed or self.stuck is not None or self.runaway:
             return False
         if abs(self._seen() - p) < _SETTLED and abs(self.v) < _SETTLED * self._wn:
@@ -172,27 +177,30 @@ class Servo:
         return False
 
     def reference(self) -> None:
-        """Home is here: count from it."""
+        """Make the home switch the zero of the count and mark the axis as homed."""
         self.push(-self.switch)
         self.switch = 0.0
         self.homed = True
 
     def power_lost(self) -> None:
-        """An encoder that only counts does not know where it is after power was off."""
+        """Clear the reference of an incremental encoder, as a loss of power does."""
         self.load = 0.0
         if not self.axis.absolute and self.homed:
             self.homed = False
 
 
-# --- The drives' own limits, the last after the control's: setpoints beyond them are refused.
+# --- Limits of the drives: setpoints beyond them are rejected.
 
 
-_STANDS = 10.0  # rpm; faster than this the spindle's drive turns, and cannot position
-_SLIPS = 1.1  # of an axis' speed: a spindle that asks for more is refused, one that asks for less slips
+_STANDS = 10.0  # Rpm above which the spindle drive cannot position.
+_SLIPS = 1.1  # Factor of an axis' speed: above it a cam is rejected, below it the gear slips.
 
 
 def check_drives(segments: Segments, servos: Sequence[Servo], rpm: float) -> None:
-    """Raises DriverError for setpoints too fast, out of the travel, or of C while the spindle turns."""
+    """Check setpoints against the limits of the drives.
+
+    Raises DriverError if a speed or position is out of range, or if C moves while the spindle turns.
+    """
     axes = [servo.axis for servo in servos]
     check_limits(segments, axes, [servo.homed for servo in servos], [servo.reading for servo in servos])
     for i, axis in enumerate(axes):
@@ -205,30 +213,33 @@ def check_drives(segments: Segments, servos: Sequence[Servo], rpm: float) -> Non
 
 
 def check_cam(cam: Cam, servos: Sequence[Servo], rpm: float) -> None:
-    """The same for motion over the turns of a spindle that turns at ``rpm``."""
+    """Check a cam against the limits of the drives at a spindle speed of ``rpm``.
+
+    Raises DriverError as ``check_drives`` does.
+    """
     by_time = cam.way.v * (abs(rpm) / 60.0 / _SLIPS)
     check_drives(cam.way._replace(v=by_time), servos, rpm)
     if cam.then is not None:
         check_drives(cam.then, servos, rpm)
 
 
-# --- Wear: a loose gib, and an encoder that counts wrongly once a turn of the screw.
+# --- Wear: a loose gib, and an encoder error once per revolution of the screw.
 
 
-_CREEP = 2.0  # mm/s; slower than this a loose slide sticks and slips
-_STICKS = 0.25  # of the play by which the screw winds up further before a slide that sticks breaks loose
-TURN = 5.0  # mm of slide for one turn of its screw
+_CREEP = 2.0  # Speed in mm/s below which a loose slide sticks and slips.
+_STICKS = 0.25  # Fraction of the play by which the screw winds up before a sticking slide moves.
+TURN = 5.0  # Travel in mm per revolution of the screw.
 
 
 class WornAxis:
-    """What is wrong between the motor and the place that is told.
+    """Mechanical wear and encoder errors between the motor and the measured position.
 
-    With a loose gib the drive still goes by its motor, but what is measured is the slide: it stays behind by
-    half of the play whichever way it goes, so a reversal loses all of it. Below 2 mm/s it sticks until the
-    screw has wound up a quarter of the play more, then slips to where it belongs.
+    With a loose gib, the drive controls the motor, but the slide is measured. The slide lags by half of the
+    play in the direction of motion, so that a reversal loses the full play. Below 2 mm/s, it sticks until the
+    screw has wound up another quarter of the play, and then slips.
 
-    A bad encoder deceives the drive as well. ``ripple`` is the amplitude of an error that comes once a turn,
-    as of a disc that is not centred; ``missed`` is what is not counted at one spot of each turn.
+    An encoder error also affects the drive. ``ripple`` is the amplitude of an error once per revolution, as
+    of an eccentric disc. ``missed`` is the distance that is not counted at one spot of each revolution.
     """
 
     def __init__(self) -> None:
@@ -236,24 +247,24 @@ class WornAxis:
         self.ripple = 0.0  # mm
         self.missed = 0.0  # mm
         self.turn = TURN
-        self.slide = 0.0  # where the slide is, while the gib is loose
+        self.slide = 0.0  # Position of the slide while the gib is loose.
 
     @property
     def deceives(self) -> bool:
-        """Whether the drive is told another place than its motor's."""
+        """Whether the drive measures a position other than that of its motor."""
         return self.ripple != 0.0 or self.missed != 0.0
 
     def loosen(self, play: float, p: float) -> None:
-        """The gib has ``play`` mm from now on, with the slide at ``p``; 0 sets it again."""
+        """Set the gib play in mm, with the slide at ``p``; 0 removes the play."""
         self.gib, self.slide = play, p
 
     def counted(self, p: float) -> float:
-        """What the encoder says of a motor at ``p``."""
+        """Return the position that the encoder measures for a motor position ``p``."""
         turns = p / self.turn
         return p + self.ripple * math.sin(2.0 * math.pi * turns) - self.missed * math.floor(turns)
 
     def carry(self, p: float, v: float) -> None:
-        """The motor is at ``p`` now, at the velocity ``v``, and takes the slide along."""
+        """Move the slide with the motor, which is at ``p`` with velocity ``v``."""
         play = 0.5 * self.gib
         behind = p - self.slide
         if abs(behind) > play * (1.0 + 2.0 * _STICKS if abs(v) < _CREEP else 1.0):
@@ -267,7 +278,7 @@ Number = TypeVar("Number", float, FloatArray)
 
 
 class Setpoints(NamedTuple):
-    """Setpoints of one axis on the model's grid: ``p + dp * k + ddp * k * k`` at grid point ``k``."""
+    """Setpoints of one axis on the grid of the model: ``p + dp * k + ddp * k * k`` at grid point ``k``."""
 
     p: float
     dp: float
@@ -289,8 +300,8 @@ AT_REST = Response(0.0, 0.0, 0.0, 0.0)
 class ServoLoop:
     """Difference equation of a position loop with damping 1.
 
-    ``stiffness`` is the natural frequency times the step; ``feed_forward`` is the fraction of the velocity
-    that the drive is given. Raises ValueError where the loop would oscillate (stiffness of 0.5 and more).
+    ``stiffness`` is the natural frequency times the step. ``feed_forward`` is the fraction of the velocity
+    that is sent to the drive. Raises ValueError if the loop would oscillate (stiffness of 0.5 or more).
     """
 
     def __init__(self, stiffness: float, feed_forward: float) -> None:
@@ -304,7 +315,7 @@ class ServoLoop:
         self.slow_bend, self.fast_bend = (self.slow_mode - 1.0) ** 2, (self.fast_mode - 1.0) ** 2
 
     def response(self, position: float, step: float, setpoints: Setpoints) -> Response:
-        """Return the response from ``position``, reached by a last move of ``step`` (mm, or degrees)."""
+        """Return the response from ``position``, reached by a last move of ``step`` (mm or degrees)."""
         w, missing, (p, dp, ddp) = self._w, self._missing, setpoints
         drift = -4.0 * ddp * missing / w
         lag = (2.0 * w * (ddp - missing * dp - drift) - 2.0 * ddp) / (w * w)
@@ -315,8 +326,9 @@ class ServoLoop:
         return Response(lag, drift, slow, now - slow)
 
     def states(self, setpoints: Setpoints, response: Response, k: Number) -> tuple[Number, Number, Number]:
-        """Return the position at grid point ``k``, the move that led there and its change, all in mm
-        (or degrees) and intervals of the grid.
+        """Return the position at grid point ``k``, the last move and the change of the move.
+
+        Units are mm (or degrees) and intervals of the grid.
         """
         (p, dp, ddp), (lag, drift, slow_part, fast_part) = setpoints, response
         slow, fast = slow_part * self.slow_mode ** (k - 1), fast_part * self.fast_mode ** (k - 1)

@@ -1,4 +1,4 @@
-"""Spindle motor behind a frequency inverter: late to obey, ramps, a counting encoder, faults."""
+"""Simulated spindle motor with a frequency inverter: latency, ramps, an encoder and faults."""
 
 from __future__ import annotations
 
@@ -12,32 +12,35 @@ import numpy as np
 from core.ports import BoolArray, FloatArray
 from drivers.simulators.plant_config import SimSpindle
 
-_BEARINGS, _SPEEDS_UP, _IN_CUT = 10.0, 70.0, 30.0  # per cent
+_BEARINGS, _SPEEDS_UP, _IN_CUT = 10.0, 70.0, 30.0  # Percent.
 _THERE = 1e-9  # turns
-_GRABS = 5.0  # a second: a belt that slips
+_GRABS = 5.0  # Frequency in Hz at which a slipping belt grips.
 
 
 @dataclass(slots=True)
 class SpindleFaults:
-    """What tests may break."""
+    """Faults of the spindle that tests can set."""
 
     bog: float = 1.0  # fraction of the commanded speed that the motor reaches
     ignores_stop: bool = False
-    wander: float = 0.0  # fraction by which the speed swings about what it ought to be
+    wander: float = 0.0  # Amplitude of the speed oscillation as a fraction.
     wander_period: float = 2.0  # s
     belt: float = 0.0  # fraction of the speed that a slipping belt loses in the cut
     fault: str = ""
-    never_oriented: bool = False  # it turns to its angle, and does not say that it is there
+    never_oriented: bool = False  # The drive does not report that the angle is reached.
 
 
 class OrientOrder(NamedTuple):
-    """To ``angle``, degrees from the index: by the short way, or in a sense."""
+    """Command to orient the spindle: ``angle`` in degrees from the index and the direction.
+
+    ``sense`` is 1 as M03, -1 as M04, and 0 for the shortest path.
+    """
 
     angle: float
     sense: int
 
     def way(self, turns: float) -> float:
-        """Turns from there on, signed."""
+        """Return the signed revolutions from ``turns`` to the angle."""
         left = (self.angle / 360.0 - turns) % 1.0
         if left > 1.0 - _THERE:
             left = 0.0
@@ -47,7 +50,7 @@ class OrientOrder(NamedTuple):
 
 
 class TurnedSpindle(Protocol):
-    """What a controller knows of the spindle that it turns: rpm and turns, both signed."""
+    """Spindle as its controller sees it: rpm and revolutions, both signed."""
 
     @property
     def speed(self) -> float: ...
@@ -61,25 +64,25 @@ class TurnedSpindle(Protocol):
 
 
 class SpindleMotor:
-    """Speed and angle, advanced in closed form: ramps are straight lines."""
+    """Simulated spindle motor, whose speed ramps and angle are calculated in closed form."""
 
     def __init__(self, config: SimSpindle) -> None:
         self.config = config
         self.faults = SpindleFaults()
         self._even = 0.0  # rpm, without wander
-        self.slips = 0.0  # fraction that the belt loses now
-        self.cuts = False  # a tool is in the metal
+        self.slips = 0.0  # Fraction of the speed that the belt loses now.
+        self.cuts = False  # A tool is cutting.
         self.turns = 0.0
         self.t = 0.0
         self._target = 0.0
         self._coasting = False
         self._orders: deque[tuple[float, float, bool]] = deque()
-        self._orient: OrientOrder | None = None  # it is held at this angle, or on its way there
-        self._begins = 0.0  # from when on
+        self._orient: OrientOrder | None = None  # The spindle is at this angle or turning to it.
+        self._begins = 0.0  # Start time of the orientation.
 
     @property
     def speed(self) -> float:
-        """rpm, signed."""
+        """The actual speed in rpm, signed."""
         faults = self.faults
         even = self._even * (1.0 - self.slips) + self._turning_there
         if not faults.wander:
@@ -89,9 +92,9 @@ class SpindleMotor:
 
     @property
     def load(self) -> float:
-        """Per cent of what the motor can: bearings by the speed, speeding up, and a tool in the metal.
+        """The load in percent: bearing friction, acceleration and cutting.
 
-        No more than a picture of a real one: how much metal is cut does not count.
+        The load is a rough estimate; the depth of cut has no effect.
         """
         if not self._even:
             return 0.0
@@ -101,24 +104,27 @@ class SpindleMotor:
 
     @property
     def still(self) -> bool:
-        """It stands, and nothing is ordered."""
+        """Whether the spindle is at rest and no command is pending."""
         return not self._even and not self._target and not self._orders and not self._turning_there
 
     @property
     def even(self) -> bool:
-        """Whether its speed stays the same until something is ordered or breaks."""
+        """Whether the speed stays constant until a command or a fault."""
         faults = self.faults
         target = 0.0 if faults.fault else self._target * faults.bog
         return self._even == target and not (self._orders or self._orient or faults.wander or self.slips)
 
     @property
     def counted(self) -> float:
-        """Turns as the encoder counts them, in steps of its four edges."""
+        """The revolutions counted by the encoder, in steps of a quarter pulse."""
         edges = 4 * self.config.ppr
         return round(self.turns * edges) / edges
 
     def order(self, now: float, rpm: float, coast: bool = False) -> None:
-        """Accept a command, obeyed after the inverter's latency; a stop cancels speeds that still wait."""
+        """Queue a speed command, which takes effect after the latency of the inverter.
+
+        A stop cancels pending speeds. ``coast`` stops without a ramp.
+        """
         if self.faults.ignores_stop and abs(rpm) < abs(self._target):
             return
         limit = self.config.rpm_max
@@ -128,31 +134,31 @@ class SpindleMotor:
         self._orders.append((now + self.config.latency, min(max(rpm, -limit), limit), coast))
 
     def cut(self, now: float) -> None:
-        """Power off by hardware: coasts, whatever was ordered."""
+        """Switch off the power by hardware, so that the spindle coasts."""
         self._orders.clear()
         self.release()
         self._orders.append((now, 0.0, True))
 
-    # --- held at an angle ---------------------------------------------------------------------------------
+    # --- orientation --------------------------------------------------------------------------------------
 
     def orient(self, now: float, angle: float, sense: int) -> None:
-        """From standstill to an angle, in which it is then held; obeyed after the same latency."""
+        """Turn from standstill to an angle in degrees and hold it, after the latency of the inverter."""
         self._orient, self._begins = OrientOrder(angle, sense), now + self.config.latency
 
     def release(self) -> None:
-        """Whatever is ordered else ends it; it stands where it has come to."""
+        """Cancel the orientation; the spindle stays at its present angle."""
         self._orient = None
 
     @property
     def oriented(self) -> bool:
-        """Whether it stands where it was sent, and says so."""
+        """Whether the spindle has reached the commanded angle and the drive reports it."""
         order = self._orient
         there = order is not None and self.t >= self._begins and not order.way(self.turns)
         return there and not self.faults.never_oriented and not self.faults.fault
 
     @property
     def _turning_there(self) -> float:
-        """rpm, signed, while it turns to its angle."""
+        """The speed in rpm, signed, during the move to the angle."""
         order = self._orient
         if order is None or self.t < self._begins or self._even or self.faults.fault:
             return 0.0
@@ -160,7 +166,7 @@ class SpindleMotor:
         return math.copysign(self.config.orient_rpm, way) if way else 0.0
 
     def _turn_there(self, now: float) -> None:
-        """On its way at an even speed: what little it accelerates at such a speed is left out."""
+        """Turn toward the angle at constant speed; acceleration is neglected."""
         order, begins = self._orient, max(self.t, self._begins)
         if order is None or self._even or self.faults.fault or now <= begins:
             return
@@ -172,7 +178,7 @@ class SpindleMotor:
             self.turns += math.copysign(done, way)
 
     def advance(self, now: float) -> None:
-        """Move on to ``now``, order by order."""
+        """Advance the spindle to time ``now`` and apply the commands that become due."""
         while self._orders and self._orders[0][0] <= now:
             at, rpm, coast = self._orders.popleft()
             self._ramp(max(at - self.t, 0.0))
@@ -184,9 +190,10 @@ class SpindleMotor:
         self.t = now
 
     def turn(self, times: FloatArray, cuts: BoolArray) -> FloatArray:
-        """Turn to the last of ``times`` (s); return speed, counted turns and load at each of them, (n, 3).
+        """Turn to the last of ``times`` and return speed, counted revolutions and load at each time.
 
-        ``cuts``: whether a tool cuts then.
+        The times are in seconds and the result has the shape (n, 3). ``cuts`` states at which times a tool
+        cuts.
         """
         if not self.even:
             return np.array(
@@ -206,14 +213,14 @@ class SpindleMotor:
         return self.speed, self.counted, self.load
 
     def cut_load(self, now: float, *, cutting: bool) -> None:
-        """A tool is in the metal or not: under it a belt that slips lets go and grabs again."""
+        """Set whether a tool cuts. While it cuts, a slipping belt loses and regains speed."""
         now = max(now, self.t)
         self.advance(now)
         swing = 0.5 - 0.5 * math.cos(2.0 * math.pi * _GRABS * now)
         self.slips = self.faults.belt * swing if cutting else 0.0
 
     def _ramp(self, dt: float) -> None:
-        """Towards the target for ``dt`` seconds, then on at its speed."""
+        """Ramp toward the target for ``dt`` seconds, then continue at the target speed."""
         faults, t, held = self.faults, self.t, 1.0 - self.slips
         target = 0.0 if faults.fault else self._target * faults.bog
         while dt > 0.0:
@@ -236,7 +243,10 @@ class SpindleMotor:
                 return
 
     def _swung(self, t: float, dt: float) -> float:
-        """What wander makes of ``dt`` seconds from ``t`` on, as seconds at an even speed."""
+        """Return the change of ``dt`` seconds from ``t`` on, as equivalent seconds at constant speed.
+
+        The change is caused by the fault ``wander``.
+        """
         faults = self.faults
         if not faults.wander:
             return 0.0

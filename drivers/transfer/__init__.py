@@ -1,1 +1,1 @@
-"""Programs over a serial line (RS-232)."""
+"""Transfer of programs over a serial line (RS-232)."""

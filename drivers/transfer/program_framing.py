@@ -1,7 +1,4 @@
-"""Programs as characters of a line: framed by %, whole, every parity right, or not at all.
-
-``TransferSettings`` say how a program goes over the line, beside the line's own settings.
-"""
+"""Framing of programs as characters on a serial line, with checks for completeness and parity."""
 
 from __future__ import annotations
 
@@ -19,10 +16,11 @@ DC1, DC2, DC3, DC4 = b"\x11", b"\x12", b"\x13", b"\x14"
 
 @dataclass(frozen=True, slots=True)
 class TransferSettings:
-    """``wrap`` is the line before and behind a program; empty: none, and only silence tells the end.
+    """Settings for the transfer of a program, in addition to the line settings.
 
-    ``dc_codes``: DC2 before and DC4 behind what is sent, DC1 and DC3 around what is received. ``wait``: send
-    only when the other side has said DC1. ``leader``: so many NULs before and behind.
+    ``wrap`` is the line before and after a program; if it is empty, only silence marks the end. ``dc_codes``:
+    DC2 before and DC4 after a sent program, DC1 and DC3 around reception. ``wait``: send only after DC1 from
+    the other side. ``leader``: number of NULs before and after a program.
     """
 
     line: LineSettings
@@ -34,25 +32,28 @@ class TransferSettings:
 
     @property
     def own_parity(self) -> bool:
-        """Seven bits and a parity bit look like eight bits on the line: every parity is checked here."""
+        """Whether TurnDesk checks the parity itself.
+
+        The line then has eight bits and carries seven bits with parity.
+        """
         return self.line.bits == 7 and self.line.parity in PARITIES
 
     @property
     def sending(self) -> LineSettings:
-        """The line as it is opened to send: a DC1 that is waited for must not be taken for flow control."""
+        """The line settings for sending, without flow control in the port while a DC1 is awaited."""
         held = self.line.flow == "xonxoff" and self.wait
         return replace(self.line, flow="none") if held else self.line
 
     @property
     def receiving(self) -> LineSettings:
-        """The line as it is opened to receive. Nothing is held up: what comes is read at once."""
+        """The line settings for receiving, without XON/XOFF because the input is read at once."""
         flow = "rtscts" if self.line.flow == "rtscts" else "none"
         if self.own_parity:
             return replace(self.line, bits=8, parity="N", flow=flow)
         return replace(self.line, flow=flow)
 
 
-# --- Lines and name of what has come, as tapes and controls write them.
+# --- Lines and name of a received program, as tapes and controls write them.
 
 
 _LINE_ENDS = re.compile(rb"[\r\n]+")
@@ -60,7 +61,7 @@ _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,39}")
 
 
 def lines_of(text: bytes) -> list[bytes]:
-    """Lines ended by LF, CR LF, CR or, as on tapes, LF CR CR; empty ones between stay."""
+    """Split text at LF, CR LF, CR or the LF CR CR of tapes; empty lines in between remain."""
     lines: list[bytes] = []
     at = 0
     for ends in _LINE_ENDS.finditer(text):
@@ -71,7 +72,7 @@ def lines_of(text: bytes) -> list[bytes]:
 
 
 def name_of(head: bytes, lines: list[bytes]) -> str:
-    """As written behind the first %, else the O number of the first line that has words."""
+    """Return the name after the first %, or the O number of the first line that is not blank."""
     said = head.decode("ascii", "replace").strip().strip("()").strip()
     header = re.fullmatch(r"_N_(.+)_(MPF|SPF)", said, re.IGNORECASE)
     if header is not None:
@@ -83,64 +84,68 @@ def name_of(head: bytes, lines: list[bytes]) -> str:
     return f"O{number[1]}" if number else ""
 
 
-LARGEST = 50_000_000  # bytes: no program is larger
-HEARD = 32  # characters before the first % that are shown
+LARGEST = 50_000_000  # Maximum size of a program in bytes.
+HEARD = 32  # Number of characters before the first % that are shown.
 _SEVEN = 0x7F
 _CR, _LF, _TAB, _DC3 = 0x0D, 0x0A, 0x09, 0x13
-_ENDS = frozenset((0x04, 0x13, 0x14, 0x1A))  # EOT, DC3, DC4, ^Z: the sender has no more
-_SKIPPED = bytes((0x00, 0x11, 0x12, 0x13, 0x14, 0x1A, 0x04, 0x7F))  # leader, tape, flow; rubbed out
+_ENDS = frozenset((0x04, 0x13, 0x14, 0x1A))  # EOT, DC3, DC4, ^Z: end of the sender's data.
+# Leader, tape and flow control characters, and DEL.
+_SKIPPED = bytes((0x00, 0x11, 0x12, 0x13, 0x14, 0x1A, 0x04, 0x7F))
 
 
 class Phase(StrEnum):
-    """Where a reception is."""
+    """Phases of a reception."""
 
-    WAITING = "waiting"  # for the first %
+    WAITING = "waiting"  # Waiting for the first %.
     STORING = "storing"
     WHOLE = "whole"
 
 
 class IncompleteError(DriverError):
-    """What has come is no whole program; nothing of it is kept."""
+    """Reception of an incomplete or invalid program, of which nothing is saved."""
 
 
 @dataclass(frozen=True, slots=True)
 class Program:
-    """A program that has come in whole. ``name`` as it calls itself, empty: it does not."""
+    """Received complete program; ``name`` is empty if the program does not contain one."""
 
     text: bytes
     name: str
     lines: int
     digest: str  # SHA-256
-    seven: bool  # it came with even parity through a line of eight bits
-    skipped: int  # characters before the first %
+    seven: bool  # Received with even parity through a line of eight bits.
+    skipped: int  # Number of characters before the first %.
 
 
 class Incoming:
-    """``feed`` what comes; ``WHOLE``: take ``program()``. ``silence`` says that nothing comes any more.
+    """Parser of received characters.
 
-    Of a line of eight bits the first % tells what it carries: 25, eight bits; A5, seven and even parity.
+    ``feed`` adds characters, and ``program`` returns the result when complete.
+
+    ``silence`` reports the end of the input. On a line of eight bits, the first % shows the encoding: 25 is
+    eight bits, A5 is seven bits with even parity.
     """
 
     def __init__(self, settings: TransferSettings) -> None:
         self._settings = settings
         self._wrap = settings.wrap.encode("ascii")
         self._parity = PARITIES[settings.line.parity] if settings.own_parity else None
-        self._raw = bytearray()  # with parity bits; from behind the first % on
+        self._raw = bytearray()  # Characters with parity bits, after the first %.
         self._skipped = 0
-        self._before = bytearray()  # the last characters before the first %, leaders left out
-        self._begins = 0  # where the line begins that is coming in
+        self._before = bytearray()  # Last characters before the first %, without leaders.
+        self._begins = 0  # Start of the present line.
         self._feeds = self._returns = 0
         self.phase = Phase.WAITING
-        self.count = 0  # characters that have come
+        self.count = 0  # Number of received characters.
 
     @property
     def heard(self) -> str:
-        """The last characters before the first %, those that are no text as their codes."""
+        """The last characters before the first %, with codes for those that are not text."""
         return "".join(self._told())
 
     @property
     def noise(self) -> bool:
-        """Whether most of what came before the first % is no text in seven bits or in eight."""
+        """Whether most characters before the first % are not text in seven or eight bits."""
         return sum(len(one) > 1 for one in self._told()) * 2 > len(self._before)
 
     def _told(self) -> list[str]:
@@ -149,11 +154,11 @@ class Incoming:
 
     @property
     def lines(self) -> int:
-        """Lines that have come, that of the first % included."""
+        """The number of received lines, including that of the first %."""
         return self._feeds or self._returns
 
     def feed(self, come: bytes) -> None:
-        """Raises IncompleteError at the first character that cannot be right."""
+        """Add received characters. Raises IncompleteError at the first invalid one."""
         self.count += len(come)
         if self.count > LARGEST:
             raise IncompleteError(
@@ -167,7 +172,10 @@ class Incoming:
                 self._store(character)
 
     def silence(self) -> None:
-        """Nothing comes any more: a last % needs no line end. Raises IncompleteError when it is not there."""
+        """Finish at the end of the input; a final % needs no line end.
+
+        Raises IncompleteError if the final % is missing.
+        """
         if self.phase is Phase.WHOLE:
             return
         if self.phase is Phase.WAITING or (self._wrap and not self._at_end()):
@@ -175,7 +183,7 @@ class Incoming:
         self.phase = Phase.WHOLE
 
     def program(self) -> Program:
-        """The whole program. Raises IncompleteError for what no program holds."""
+        """Return the complete program. Raises IncompleteError if its text is invalid or empty."""
         raw = bytes(self._raw)
         seven = self._parity is not None or (not self._wrap and _even(raw))
         text = bytes(character & _SEVEN for character in raw) if seven else raw
@@ -190,7 +198,7 @@ class Incoming:
         return Program(whole, name_of(head, lines), len(lines), digest, detected, self._skipped)
 
     def _parted(self, text: bytes) -> tuple[bytes, list[bytes]]:
-        """What stands behind the first %, and the lines."""
+        """Return the text after the first %, and the lines."""
         lines = lines_of(text)
         if not self._wrap:
             return b"", lines
@@ -233,7 +241,7 @@ class Incoming:
             self._parity = PARITIES["E"]
 
     def _store(self, character: int) -> None:
-        # A leader is not punched with parity.
+        # A leader has no parity.
         if character and self._parity is not None and parity_of(character) != self._parity:
             self._bad_parity(character)
             return
@@ -254,11 +262,15 @@ class Incoming:
     def _sender_ends(self, plain: int) -> None:
         if not self._wrap:
             self.phase = Phase.WHOLE
-        elif plain != _DC3:  # which is also the XOFF of a line that is not held by us
+        elif plain != _DC3:  # DC3 may also be the XOFF of flow control that is not active here.
             raise self._lacking()
 
     def _bad_parity(self, character: int) -> None:
-        """What looked like a % with parity in noise before an eight-bit program is none."""
+        """Handle a parity error.
+
+        In noise before an eight-bit program, a character may look like a % with parity; reception then starts
+        again. Raises IncompleteError otherwise.
+        """
         if not self._settings.own_parity and not self.lines:
             self._skipped += len(self._raw) + 1
             self._raw.clear()
@@ -275,7 +287,7 @@ class Incoming:
         )
 
     def _at_end(self) -> bool:
-        """Whether the line that is coming in is the last %."""
+        """Return whether the present line is the final %."""
         line = bytes(character & _SEVEN for character in self._raw[self._begins :])
         return bool(self._begins) and line.translate(None, _SKIPPED).strip() == self._wrap
 
@@ -306,7 +318,7 @@ class Incoming:
 
 
 def _shown(character: int, parity: int) -> str:
-    """Text of eight bits, or of seven with this parity; a code where it is neither."""
+    """Return a character as text in eight bits, or in seven with this parity; otherwise its code."""
     plain = character & _SEVEN if parity_of(character) == parity else character
     if plain in {_CR, _LF, _TAB}:
         return " "
@@ -314,11 +326,11 @@ def _shown(character: int, parity: int) -> str:
 
 
 def _even(raw: bytes) -> bool:
-    """Whether every character is a seven-bit one with even parity: at least one must have its top bit set."""
+    """Return whether all characters have seven bits with even parity, at least one with the top bit set."""
     return any(character > _SEVEN for character in raw) and not any(parity_of(c) for c in raw if c)
 
 
-# --- What goes out for a program: leader, DC2, %, lines, %, DC4, trailer.
+# --- Sent bytes: leader, DC2, %, lines, %, DC4, trailer.
 
 
 _LINE_END = re.compile(rb"\r\n|\r|\n")
@@ -326,7 +338,10 @@ _TOP = 0x80
 
 
 def outgoing(text: bytes, settings: TransferSettings) -> bytes:
-    """The bytes for the line. Raises DriverError for what would not arrive as it is."""
+    """Return the bytes to send for a program.
+
+    Raises DriverError if the program is empty or contains characters that cannot be transferred.
+    """
     eol, wrap = settings.eol.encode("ascii"), settings.wrap.encode("ascii")
     lines = _LINE_END.split(text.rstrip(b"\x1a\r\n"))
     if wrap:
@@ -342,7 +357,7 @@ def outgoing(text: bytes, settings: TransferSettings) -> bytes:
 
 
 def _bare(lines: list[bytes], wrap: bytes) -> list[bytes]:
-    """Without a frame of its own: it would be there twice."""
+    """Return the lines without their own frame, which would otherwise be sent twice."""
     if lines and lines[0].strip() == wrap:
         lines = lines[1:]
     return lines[:-1] if lines and lines[-1].strip() == wrap else lines

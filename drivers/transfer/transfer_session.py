@@ -1,4 +1,4 @@
-"""One transfer under way: a thread of the desk or the command line runs it, any other may look and cancel."""
+"""Transfer of one program, which runs in one thread; other threads may read its progress and cancel it."""
 
 from __future__ import annotations
 
@@ -18,26 +18,26 @@ from drivers.transfer.program_framing import (
     TransferSettings,
 )
 
-CHUNK = 64  # bytes: what a USB adapter may still send after the other side has said stop
+CHUNK = 64  # Bytes that a USB adapter may still send after a stop by the other side.
 TICK = 0.05  # s
-HELD = 1.0  # s without a byte going out after which the line counts as held
-PATIENCE = 120.0  # s that the other side may hold the line
-AGAIN = 5.0  # s after which DC1 is said again while nothing comes
-LAST = 0.5  # s of silence behind a last % without a line end
-# What a transfer waits for: the screen has the words.
+HELD = 1.0  # Seconds without a transmitted byte after which the line counts as stopped by the other side.
+PATIENCE = 120.0  # Seconds for which the other side may stop the line.
+AGAIN = 5.0  # Seconds after which DC1 is repeated without input.
+LAST = 0.5  # Seconds of silence after a final % without a line end.
+# Reasons for waiting; the screen has the texts.
 HELD_BACK, FOR_DC1, FOR_SENDER, FOR_FRAME, NO_TEXT = "held", "dc1", "sender", "frame", "noise"
-QUIET = 10.0  # s of silence within a program after which it will not go on
+QUIET = 10.0  # Seconds of silence within a program after which it counts as ended.
 
 
 class CancelledError(DriverError):
-    """The operator has given it up; nothing is kept."""
+    """Cancellation of the transfer by the operator; nothing is saved."""
 
 
 @dataclass(frozen=True, slots=True)
 class Reach:
-    """How far it has come. ``total`` 0: nobody knows; ``what`` it waits for: one of the words above.
+    """Progress of a transfer: bytes, lines and the reason for waiting, which is one of the words above.
 
-    ``heard``: what came and is no program, where a first % is waited for.
+    ``total`` 0 means unknown. The last field is the received text before the first %, which is not a program.
     """
 
     done: int = 0
@@ -48,7 +48,7 @@ class Reach:
 
 
 class _Transfer:
-    """What both directions share. ``reach`` is replaced whole and may be read by any thread."""
+    """Base class of both transfer directions; any thread may read ``reach``, which is replaced as a whole."""
 
     def __init__(self, wire: FlowWire, clock: Clock, settings: TransferSettings) -> None:
         self._wire, self._clock, self._settings = wire, clock, settings
@@ -56,7 +56,7 @@ class _Transfer:
         self.reach = Reach()
 
     def cancel(self) -> None:
-        """Give it up; takes effect within a tenth of a second."""
+        """Cancel the transfer, which takes effect within 0.1 s."""
         self._cancelled.set()
 
     def _go_on(self) -> None:
@@ -65,19 +65,22 @@ class _Transfer:
 
 
 class Sending(_Transfer):
-    """Bytes out, 64 at a time, as fast as the other side lets them."""
+    """Transfer that sends bytes in chunks of 64, as fast as the other side permits."""
 
     def __init__(self, wire: FlowWire, clock: Clock, settings: TransferSettings, data: bytes) -> None:
         super().__init__(wire, clock, settings)
         self._data = data
-        self._needed = len(data.rstrip(b"\r\n\x00" + DC4))  # what comes behind need not be taken
+        self._needed = len(data.rstrip(b"\r\n\x00" + DC4))  # Later bytes need not be accepted.
         self._moved = clock.now()
         self._lines = 0
-        self._held = False  # by a DC3 that the kernel did not obey
+        self._held = False  # Stopped by a DC3 that the kernel does not obey.
         self.reach = Reach(0, len(data))
 
     def run(self) -> int:
-        """Send all of it; how many bytes went out. Raises CancelledError, WireError, DriverError."""
+        """Send the program and return the number of bytes.
+
+        Raises CancelledError, WireError or DriverError.
+        """
         try:
             if self._settings.wait:
                 self._wait_for_start()
@@ -116,7 +119,7 @@ class Sending(_Transfer):
             before, out = out, taken - self._wire.waiting()
             self._watch(out, moved=out > before)
             if out >= self._needed and (self._held or self.reach.what == HELD_BACK):
-                return  # DC3 behind the last %: that was enough
+                return  # DC3 after the final %: the program is complete.
             if out < len(self._data):
                 self._pause(taken - out)
 
@@ -135,11 +138,11 @@ class Sending(_Transfer):
         self._tell(out, HELD_BACK if still > HELD else "")
 
     def _pause(self, waiting: int) -> None:
-        """As long as what waits takes to go out, or until something comes back."""
+        """Wait until the pending bytes are transmitted, or until the other side sends something."""
         self._heed(self._wire.receive(min(max(waiting, 1) * self._settings.line.character, TICK)))
 
     def _heed(self, come: bytes) -> None:
-        """DC3 and DC1 come here where the kernel does not obey them. Nothing else was asked for."""
+        """Obey DC3 and DC1 if the kernel does not; other received characters are ignored."""
         if self._settings.line.flow != "xonxoff":
             return
         for character in come:
@@ -154,10 +157,10 @@ class Sending(_Transfer):
 
 
 class Receiving(_Transfer):
-    """A program in, complete or not at all."""
+    """Transfer that receives one complete program."""
 
     def run(self) -> Program:
-        """Raises CancelledError, IncompleteError, WireError; then nothing is kept."""
+        """Receive a program. Raises CancelledError, IncompleteError or WireError; then nothing is saved."""
         try:
             return self._receive()
         finally:
@@ -200,7 +203,7 @@ class Receiving(_Transfer):
         self.reach = Reach(incoming.count, 0, incoming.lines, what, incoming.heard)
 
     def _ended(self, incoming: Incoming, *, gone: bool) -> None:
-        """A last % may have no line end; without one, the sender may only have been slow."""
+        """Finish after a silence; without a complete frame, wait longer because the sender may be slow."""
         if not self._settings.wrap and not gone:
             return
         try:

@@ -1,1 +1,1 @@
-"""HAL files for LinuxCNC's HAL, written from the machine file: one module a board."""
+"""Generators of HAL files for LinuxCNC from the machine file, with one module per board."""

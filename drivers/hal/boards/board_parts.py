@@ -1,10 +1,8 @@
-"""Parts of HAL files that several boards share: C on the spindle's own drive, and Mesa's Ethernet cards.
+"""Parts of HAL files that several boards use: C on the spindle drive, and Mesa's Ethernet cards.
 
-For C a pid acts around the spindle's encoder. A drive that takes speeds (±10 V, EtherCAT) keeps taking them:
-of the spindle's command or, as C, of the pid. One that takes steps beside its speed input is changed over by
-a terminal, and the pid speaks to its steps.
-
-Mesa's cards share hm2_eth, its watchdog, encoders and pid.
+For C, a pid closes a loop with the spindle encoder. A drive with a speed input (±10 V, EtherCAT) receives the
+spindle command or, as C, the output of the pid. A drive that also has a step input is switched by a terminal,
+and the pid then controls its steps. Mesa's cards have hm2_eth, its watchdog, encoders and pid in common.
 """
 
 from __future__ import annotations
@@ -13,22 +11,22 @@ from core.message import Message
 from core.table_schema import Finding
 from drivers.hal.boards.hal_lines import HalFile, LatheAxis
 
-TURNS = "c-degrees.in"  # what the turns of the spindle's encoder go to, too
-STAYS_BELOW = 1.5  # of C's own speed: a loop of the wrong sense must not run away at the spindle's
+TURNS = "c-degrees.in"  # Additional pin for the spindle revolutions.
+STAYS_BELOW = 1.5  # Factor of C's speed, so that a loop with the wrong sign cannot run away at spindle speed.
 _CHOICE, _POWER, _PID = "c-or-speed", "spindle-power", "pid.c"
 _PATH = "hal.spindle.position_mode"
-_SIMULATED = 100.0  # 1/s, of a spindle that does what it is told
+_SIMULATED = 100.0  # 1/s, for a simulated spindle.
 
 
 def c_turn_pins(file: HalFile) -> tuple[str, ...]:
-    """Further pins on the signal of the spindle's turns."""
+    """Return the additional pins for the signal of the spindle revolutions."""
     return (TURNS,) if file.lathe.c is not None else ()
 
 
 def load_c(file: HalFile, *, chosen: bool) -> None:
-    """Components, and where they are called: behind the encoder, and before what drives the spindle.
+    """Load the components for C and call them after the encoder and before the spindle drive.
 
-    ``chosen``: the spindle's speed and C go to the drive by one way.
+    With ``chosen``, the spindle speed and C use the same drive input.
     """
     file.instance("scale", "c-degrees")
     file.instance("pid", _PID)
@@ -42,7 +40,7 @@ def load_c(file: HalFile, *, chosen: bool) -> None:
 
 
 def close_c_loop(file: HalFile, axis: LatheAxis, *drives: str) -> None:
-    """The pid with what it reads, and the pins that take its speed, degrees/s."""
+    """Configure the pid with its feedback, and connect its output in degrees/s to ``drives``."""
     board = file.lathe.board.axes.get(axis.name)
     file.setp("c-degrees.gain", 360, "degrees per revolution of the spindle encoder")
     gains = {"Pgain": _SIMULATED} if board is None else {
@@ -62,7 +60,10 @@ def close_c_loop(file: HalFile, axis: LatheAxis, *drives: str) -> None:
 
 
 def c_speed_pins(file: HalFile, speed: str, on: str) -> tuple[str, str]:
-    """The pins that take the spindle's speed, rpm, and enable: the drive's own, or where C is chosen."""
+    """Return the pins for spindle speed in rpm and enable.
+
+    They are the pins of the drive, or those of the selector if the drive is also C.
+    """
     axis = file.lathe.c
     if axis is None:
         return speed, on
@@ -76,7 +77,7 @@ def c_speed_pins(file: HalFile, speed: str, on: str) -> tuple[str, str]:
 
 
 def simulated_c_speed(file: HalFile) -> str:
-    """The simulated spindle turns as it is told or as C; the pin of the speed that it gets, turns/s."""
+    """Return the pin of the simulated spindle's speed in rev/s, which is that of the spindle or of C."""
     axis = file.lathe.c
     if axis is None:
         return "spindle-rps.out"
@@ -89,7 +90,7 @@ def simulated_c_speed(file: HalFile) -> str:
 
 
 def load_simulated_c(file: HalFile) -> None:
-    """The components of that."""
+    """Load the components for C on the simulated spindle."""
     load_c(file, chosen=False)
     file.instance("scale", "c-rps")
     file.instance("mux2", _CHOICE)
@@ -97,7 +98,7 @@ def load_simulated_c(file: HalFile) -> None:
 
 
 def change_over_to_c(file: HalFile) -> None:
-    """The terminal that makes the drive listen to steps instead of its speed input."""
+    """Connect the terminal that switches the drive from its speed input to steps."""
     name = file.lathe.names.get(_PATH, "")
     if "." not in name:
         why = Message(
@@ -112,7 +113,7 @@ def change_over_to_c(file: HalFile) -> None:
 # --- Mesa's Ethernet cards.
 
 
-_WATCHDOG = 5_000_000  # ns without a word of this computer until the card lets everything fall
+_WATCHDOG = 5_000_000  # Ns without a packet after which the card switches everything off.
 NOTES = (
     (
         "use a real-time kernel and a separate network port for the card; test halrun on its "
@@ -127,7 +128,7 @@ NOTES = (
 
 
 def load_card(file: HalFile, card: str, config: str, *further: str) -> None:
-    """Load hostmot2 on Ethernet: read first in the thread, written last.
+    """Load hostmot2 on Ethernet, which the thread reads first and writes last.
 
     ``further`` pins report that inputs of the card are not current.
     """
@@ -143,7 +144,7 @@ def load_card(file: HalFile, card: str, config: str, *further: str) -> None:
 
 
 def _link(file: HalFile, card: str, further: tuple[str, ...]) -> None:
-    """Report a lost card: hm2_eth keeps every input as it was, and no longer reads the watchdog.
+    """Report a lost card, because hm2_eth then retains every input and no longer reads the watchdog.
 
     hm2_eth sets the parameter ``io_error`` together with the pin ``packet-error-exceeded``, which stays on
     until the driver is loaded again.
@@ -155,12 +156,12 @@ def _link(file: HalFile, card: str, further: tuple[str, ...]) -> None:
 
 
 def _drive_faults(file: HalFile) -> list[str]:
-    """Wire hal.axes.X.fault where it is a signal: a drive fault or the lost card. Return its gates."""
+    """Wire hal.axes.X.fault if it is a signal, to a drive fault or the lost card, and return its gates."""
     gates = []
     for axis in file.lathe.axes:
         path = f"hal.axes.{axis.name}.fault"
         if "." in file.lathe.names.get(path, "."):
-            continue  # not configured, or a terminal
+            continue  # Not configured, or a terminal.
         gate, wired = f"{axis.name.lower()}-fault-or", file.lathe.board.axes[axis.name].fault_input
         gates.append(gate)
         if wired:
@@ -173,7 +174,7 @@ def _drive_faults(file: HalFile) -> list[str]:
 
 
 def load_pid(file: HalFile, axes: tuple[LatheAxis, ...]) -> None:
-    """One ``pid`` an axis; it is called behind the setpoints."""
+    """Load one ``pid`` per axis, called after the setpoints."""
     names = [f"pid.{axis.name.lower()}" for axis in axes]
     if names:
         file.load(f"loadrt pid names={','.join(names)}")
@@ -181,7 +182,7 @@ def load_pid(file: HalFile, axes: tuple[LatheAxis, ...]) -> None:
 
 
 def encoder(file: HalFile, pin: str, counts: float, what: str) -> None:
-    """A quadrature encoder with its filter on."""
+    """Configure a quadrature encoder with its filter on."""
     file.setp(f"{pin}.scale", counts, what)
     for key in ("counter-mode", "index-invert", "index-mask"):
         file.setp(f"{pin}.{key}", 0)
@@ -189,7 +190,7 @@ def encoder(file: HalFile, pin: str, counts: float, what: str) -> None:
 
 
 def spindle_encoder(file: HalFile, card: str, place: str) -> None:
-    """Turns, speed and index of the spindle."""
+    """Connect revolutions, speed and index of the spindle encoder."""
     board = file.lathe.board.spindle
     pin = f"{card}.encoder.{board.encoder:02d}"
     file.section(f"Spindle: encoder {board.encoder}")

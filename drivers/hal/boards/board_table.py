@@ -1,7 +1,7 @@
-"""[board] of the machine file: what ``turndesk machine hal`` writes the HAL file of LinuxCNC for.
+"""Table [board] of the machine file, from which ``turndesk machine hal`` writes LinuxCNC's HAL file.
 
-[hal] says at which pins or signals this control begins; [board] says what lies behind them. Scales follow
-from ``axis.….count`` and ``spindle.encoder_ppr``, which the machine file has to say anyway.
+[hal] names the pins or signals that TurnDesk uses, and [board] the hardware connected to them. Scales follow
+from ``axis.….count`` and ``spindle.encoder_ppr``, which the machine file contains anyway.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ def _channel(*, meaning: str) -> Any:
 
 
 def _pulse(default: int, *, meaning: str) -> Any:
-    """Declare a time of a step pulse, nanoseconds."""
+    """Declare a time of a step pulse in nanoseconds."""
     return file_key(Range(100, 1_000_000), default=default, meaning=meaning)
 
 
@@ -49,11 +49,12 @@ _PRODUCT: Any = file_key(default="", meaning="EtherCAT: product code of the driv
 
 @key_table
 class BoardAxis:
-    """One axis behind a board. Speeds in mm/s, pulse times in nanoseconds; gains by LinuxCNC's ``pid``.
+    """Connection of one axis to a board.
 
-    ``channel`` is the step generator, the encoder and analog output, or the drive's place on EtherCAT; -1:
-    not said. ``full_speed`` is what the drive makes of 10 V, ``full_rpm`` the same of C's own;
-    ``step`` and ``direction`` are pins of a parallel port.
+    Speeds are in mm/s, pulse times in nanoseconds, and gains are those of LinuxCNC's ``pid``. ``channel`` is
+    the step generator, the encoder and analog output, or the position of the drive on EtherCAT; -1 means not
+    specified. ``full_speed`` is the speed at 10 V, and ``full_rpm`` that of a separate C drive. ``step`` and
+    ``direction`` are pins of a parallel port.
     """
 
     channel: int = _channel(
@@ -99,9 +100,9 @@ class BoardAxis:
 
 @key_table
 class BoardSpindle:
-    """The spindle behind a board. ``full_speed`` rpm is what its drive makes of 10 V.
+    """Connection of the spindle to a board; ``full_speed`` is its speed in rpm at 10 V.
 
-    ``velocity_per_rpm`` is what object 60FF of a drive on EtherCAT counts for one rpm; ``pwm`` and the phases
+    ``velocity_per_rpm`` is the value of object 60FF of an EtherCAT drive for 1 rpm. ``pwm`` and the phases
     are pins of a parallel port.
     """
 
@@ -135,7 +136,7 @@ class BoardSpindle:
 
 @key_table
 class BoardTable:
-    """What the HAL file is written for. ``address``: of an Ethernet card or a parallel port."""
+    """Settings of the board; ``address`` is that of an Ethernet card or a parallel port."""
 
     kind: str = file_key(choices=KINDS, meaning="Board for which `turndesk machine hal` writes the HAL file.")
     address: str = file_key(
@@ -157,12 +158,12 @@ def _read(file: FileReading) -> Iterator[Finding]:
 
 
 def _parts(file: FileReading) -> dict[str, object]:
-    """The tables inside."""
+    """Return the nested tables of the axes and the spindle."""
     axes = {name: file.values.model(BoardAxis, f"{_AXES}.{name}") for name in file.names(_AXES)}
     return {"axes": axes, "spindle": file.values.model(BoardSpindle, _SPINDLE)}
 
 
-# --- What each kind of board has to be told.
+# --- Required settings of each kind of board.
 
 
 _ADDRESS = {
@@ -241,14 +242,14 @@ def _channel_rules(file: FileReading, kind: str, path: str) -> Iterator[Finding]
 
 
 def _spindle_is_c(file: FileReading) -> bool:
-    """Whether C is the spindle's own drive, which HAL turns."""
+    """Return whether C is the spindle drive, driven by HAL."""
     values = file.values
     own = values.has("axis.C.own_drive") and values.flag("axis.C.own_drive")
     return not own and values.says("spindle.driver", "hal")
 
 
 def _spindle_as_c(file: FileReading, kind: str, path: str) -> Iterator[Finding]:
-    """It has the gain of its loop; what of the board turns it is the spindle's, but for steps of its own."""
+    """Yield findings about C on the spindle drive: its gain, its own steps, and keys that must be removed."""
     values = file.values
     yield from _stated(file, kind, path, _AS_C)
     if kind in (PARPORT, MESA_STEP):
@@ -272,7 +273,7 @@ def _missing(place: str, expected: str) -> Finding:
 
 
 def _number_expected(place: str, number: int, expected: str) -> Finding:
-    """Return the finding of a number that is missing (less than 0) or not possible."""
+    """Return the finding for a number that is missing (negative) or out of range."""
     if number < 0:
         return _missing(place, expected)
     return Finding(place, str(number), Message("expected {expected}", expected=expected))
@@ -291,7 +292,7 @@ _AS_C: _Stated = {PARPORT: (*_STEPS, _GAIN), **dict.fromkeys((MESA_STEP, MESA_SE
 
 
 def _stated(file: FileReading, kind: str, path: str, stated: _Stated = _STATED) -> Iterator[Finding]:
-    """What this kind of board cannot do without."""
+    """Yield findings about missing keys that this kind of board requires."""
     for key, what in stated.get(kind, ()):
         place = f"{path}.{key}"
         if not file.values.has(place):
@@ -308,7 +309,7 @@ def _stated(file: FileReading, kind: str, path: str, stated: _Stated = _STATED) 
 
 
 def _step_rate(file: FileReading, kind: str, axis: str) -> Iterator[Finding]:
-    """Steps that the board cannot make are lost without a word."""
+    """Yield a finding if an axis needs more steps per second than the board can generate."""
     values, path = file.values, f"{_AXES}.{axis}"
     needed = (
         f"axis.{axis}.vmax",
@@ -332,7 +333,7 @@ def _step_rate(file: FileReading, kind: str, axis: str) -> Iterator[Finding]:
             "this speed requires {rate} steps/s, but the maximum for the specified step_ns and space_ns "
             "is {maximum} steps/s"
         )
-    if rate * 1.2 > most:  # the limit of what drives it stands a fifth above vmax
+    if rate * 1.2 > most:  # The limit of the drive is 20 % above vmax.
         yield Finding(
             f"axis.{axis}.vmax",
             "",
@@ -361,7 +362,7 @@ def _fast_enough(file: FileReading, axis: str) -> Iterator[Finding]:
 
 
 def _channels_apart(file: FileReading, kind: str) -> Iterator[Finding]:
-    """Two things on one channel."""
+    """Yield findings about channels that are used twice."""
     values = file.values
     paths = [f"{_AXES}.{axis}.channel" for axis in file.names(_AXES)]
     if kind in (MESA_SERVO, ETHERCAT):
@@ -378,7 +379,7 @@ def _channels_apart(file: FileReading, kind: str) -> Iterator[Finding]:
 
 
 def _spindle_rules(file: FileReading, kind: str) -> Iterator[Finding]:
-    """A speed that is told needs its scale, and an analog output something that tells it."""
+    """Yield findings about a spindle speed without a scale, or a scale without a speed."""
     values = file.values
     speeds = ("hal.spindle.speed", "hal.spindle.speed_abs")
     if not values.has(
@@ -413,7 +414,7 @@ def _spindle_rules(file: FileReading, kind: str) -> Iterator[Finding]:
 
 
 def _encoder_rules(file: FileReading, kind: str) -> Iterator[Finding]:
-    """The scale of an encoder is said with it, and its channel too."""
+    """Yield findings about the lines and the channel of the spindle encoder."""
     values = file.values
     if not values.has("spindle.encoder_ppr", "hal.spindle.position", f"{_SPINDLE}.encoder"):
         return

@@ -17,7 +17,7 @@ _IN = (("6041", 16, "cia-statusword", "u32"), ("6061", 8, "opmode-display", "s32
 
 
 def ethercat_lathe(lathe: Lathe) -> HalFile:
-    """Drives in CSP, a spindle in CSV, one EL1008 and one EL2008 behind them."""
+    """Build the HAL file for drives in CSP, a spindle in CSV, one EL1008 and one EL2008."""
     hint = "a bus terminal: lcec.0.DI.din-0 … din-7 (EL1008), lcec.0.DO.dout-0 … dout-7 (EL2008)"
     file = HalFile(lathe, "EtherCAT drives in cyclic synchronous position mode", _terminal, hint)
     file.notes += [
@@ -62,7 +62,7 @@ def _turned(lathe: Lathe) -> bool:
 def _healthy(lathe: Lathe, drives: list[str]) -> tuple[str, ...]:
     """Return the pins that are on while the bus and each of its slaves exchange data.
 
-    ``all-op`` only counts slaves that respond, so each slave's ``slave-oper`` is watched too.
+    ``all-op`` counts only slaves that respond, so ``slave-oper`` of each slave is also monitored.
     """
     slaves = [*drives, *(("DI", "DO") if _has_terminals(lathe) else ())]
     return "lcec.0.link-up", "lcec.0.all-op", *(f"lcec.0.{name}.slave-oper" for name in slaves)
@@ -97,7 +97,7 @@ def _terminal(name: str) -> Terminal | None:
 
 
 def _drive(file: HalFile, name: str) -> None:
-    """The objects of one drive on its component."""
+    """Connect the objects of one drive to its component."""
     file.net(f"{name}-statusword", f"lcec.0.{name}.cia-statusword", f"cia402.{name}.statusword")
     file.net(f"{name}-opmode-display", f"lcec.0.{name}.opmode-display", f"cia402.{name}.opmode-display")
     file.net(f"{name}-drv-pos", f"lcec.0.{name}.actual-position", f"cia402.{name}.drv-actual-position")
@@ -153,7 +153,7 @@ def _spindle(file: HalFile) -> None:
 
 
 def bus_xml(lathe: Lathe) -> str:
-    """What lcec_conf is given: the drives by their places on the bus, then the terminals behind a coupler."""
+    """Return the input of lcec_conf: the drives by their positions on the bus, then the terminals."""
     lines = [
         "<masters>",
         f'  <master idx="0" appTimePeriod="{lathe.period * 1e9:.0f}" refClockSyncCycles="1">',
@@ -176,7 +176,7 @@ def bus_xml(lathe: Lathe) -> str:
 
 
 def _slave(place: int, vendor: str, product: str, name: str) -> Iterator[str]:
-    """One drive; halPin are the pins that the HAL file wires."""
+    """Yield the lines of one drive; halPin names the pins that the HAL file connects."""
     ids = f'vid="{int(vendor, 16):08X}" pid="{int(product, 16):08X}"'
     yield f'    <slave idx="{place}" type="generic" {ids} name="{name}" configPdos="true">'
     yield '      <dcConf assignActivate="300" sync0Cycle="*1" sync0Shift="0"/>'

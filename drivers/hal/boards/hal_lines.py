@@ -1,4 +1,4 @@
-"""A HAL file as it is put together: what is loaded, called, set and wired, with what each is for."""
+"""Builder of a HAL file: loaded components, calls, parameters, nets and the wiring table."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _WIDTH = 110
 
 @dataclass(frozen=True, slots=True)
 class LatheAxis:
-    """One axis that HAL moves: mm or degrees, and seconds. ``count`` is the way of one count or step."""
+    """One axis that HAL moves, in mm or degrees, and seconds; ``count`` is the travel per count or step."""
 
     name: str
     count: float
@@ -29,16 +29,16 @@ class LatheAxis:
 
     @property
     def unit(self) -> str:
-        """What its places count in, as a person reads it."""
+        """The unit of the positions as text."""
         return "degree" if self.name == C else "mm"
 
 
 @dataclass(frozen=True, slots=True)
 class Lathe:
-    """What of a machine its HAL file depends on.
+    """Data of a machine that its HAL file depends on.
 
-    ``names`` are the pins and signals that the machine file names, by their keys, in its order. ``period`` is
-    that of the servo thread, s.
+    ``names`` are the pins and signals of the machine file by their keys, in its order. ``period`` is that of
+    the servo thread in seconds.
     """
 
     name: str
@@ -51,28 +51,28 @@ class Lathe:
     rpm_accel: float
     encoder_lines: int
     names: Mapping[str, str]
-    spindle_is_c: bool = False  # C is the spindle's own drive
+    spindle_is_c: bool = False  # C is the spindle drive.
 
     @property
     def c(self) -> LatheAxis | None:
-        """C where the spindle's drive is it."""
+        """The C axis if it is the spindle drive, otherwise None."""
         return next((axis for axis in self.axes if axis.name == C and self.spindle_is_c), None)
 
     @property
     def driven(self) -> tuple[LatheAxis, ...]:
-        """The axes that have a drive of their own."""
+        """The axes that have their own drive."""
         return tuple(axis for axis in self.axes if axis is not self.c)
 
 
 class Terminal(NamedTuple):
-    """A terminal of a board: ``drives`` where this control switches it, ``place`` what is printed at it."""
+    """Terminal of a board: ``drives`` is True for an output, ``place`` is the printed label."""
 
     drives: bool
     place: str
 
 
 class Wire(NamedTuple):
-    """One row of the wiring table. ``names`` are keys of the machine file."""
+    """Row of the wiring table; ``names`` are keys of the machine file."""
 
     place: str
     pin: str
@@ -81,7 +81,7 @@ class Wire(NamedTuple):
 
 
 class Section(NamedTuple):
-    """Lines that belong together, under a title."""
+    """Group of lines with a title."""
 
     title: str
     lines: list[str]
@@ -95,30 +95,30 @@ _READS = re.compile(
 
 @dataclass(slots=True)
 class HalFile:
-    """One HAL file. ``terminal`` says what a pin of the board is, None for what is none of its terminals."""
+    """HAL file that is being built; ``terminal`` returns the terminal of a board pin, or None."""
 
     lathe: Lathe
     title: str
     terminal: Callable[[str], Terminal | None]
-    hint: str = ""  # what the board's terminals are called
-    notes: list[str] = field(default_factory=list)  # what has to be measured or known before anything moves
+    hint: str = ""  # Names of the board's terminals.
+    notes: list[str] = field(default_factory=list)  # Checks before the first motion.
     loads: list[str] = field(default_factory=list)
-    base: list[str] = field(default_factory=list)  # called in the thread of the steps
-    first: list[str] = field(default_factory=list)  # called before the setpoints come in
+    base: list[str] = field(default_factory=list)  # Called in the base thread.
+    first: list[str] = field(default_factory=list)  # Called before the setpoints are read.
     last: list[str] = field(default_factory=list)
     sections: list[Section] = field(default_factory=list)
     wires: list[Wire] = field(default_factory=list)
     findings: list[Finding] = field(default_factory=list)
-    beside: dict[str, str] = field(default_factory=dict)  # further files by their names
+    beside: dict[str, str] = field(default_factory=dict)  # Additional files by name.
     _done: set[str] = field(default_factory=set)
     _claimed: dict[str, str] = field(default_factory=dict)
 
     def load(self, line: str, why: str = "") -> None:
-        """A component."""
+        """Add a line that loads a component."""
         self.loads += [f"# {why}", line] if why else [line]
 
     def instance(self, component: str, name: str) -> None:
-        """One more of a component: each is loaded once, with all of its instances."""
+        """Add an instance of a component, which is loaded once with all its instances."""
         for index, line in enumerate(self.loads):
             if line.startswith(f"loadrt {component} names="):
                 self.loads[index] = f"{line},{name}"
@@ -126,26 +126,27 @@ class HalFile:
         self.load(f"loadrt {component} names={name}")
 
     def section(self, title: str) -> None:
-        """What follows belongs under this title."""
+        """Start a section with this title."""
         self.sections.append(Section(title, []))
 
     def say(self, why: str) -> None:
-        """A comment where it stands."""
+        """Add a comment to the present section."""
         self.sections[-1].lines.append(f"# {why}")
 
     def setp(self, pin: str, value: float, why: str = "") -> None:
-        """A pin or parameter set to a number."""
+        """Set a pin or parameter to a number."""
         line = f"setp {pin} {value:.10g}"
         self.sections[-1].lines.append(f"{line:<58} # {why}" if why else line)
 
     def net(self, signal: str, *pins: str) -> None:
-        """Pins on a signal, the one that drives it first."""
+        """Connect pins to a signal, with the source first."""
         self.sections[-1].lines.append(f"net {signal} {' '.join(pins)}")
 
     def role(self, path: str, signal: str, *pins: str, place: str = "", needed: bool = False) -> str:
-        """What the machine file calls ``path`` is on these pins; answers the signal.
+        """Connect the pins of the key ``path`` and return their signal.
 
-        It may name the signal, one of the pins, or a terminal of the board, which is then wired to them.
+        The machine file may name the signal, one of the pins, or a terminal of the board. A terminal is
+        connected to the pins.
         """
         self._done.add(path)
         name = self.lathe.names.get(path, "")
@@ -171,13 +172,13 @@ class HalFile:
         return signal
 
     def positions(self, axis: str, command: Iterable[str], feedback: Iterable[str], place: str = "") -> None:
-        """Pins of the commanded and of the measured position of an axis."""
+        """Connect the pins of commanded and measured position of an axis."""
         path, name = f"hal.axes.{axis}", axis.lower()
         self.role(f"{path}.command", f"{name}-pos-cmd", *command, place=place, needed=True)
         self.role(f"{path}.feedback", f"{name}-pos-fb", *feedback, place=place, needed=True)
 
     def at_terminal(self, path: str, signal: str, name: str, pin: str, *, drives: bool = True) -> None:
-        """A terminal that [board] names, wired to one pin."""
+        """Connect a terminal that [board] names to one pin."""
         found = self.terminal(name)
         if found is None or found.drives is not drives:
             self.findings.append(Finding(path, written(name), self._expected((), found)))
@@ -188,15 +189,15 @@ class HalFile:
         self.wires.append(Wire(found.place, name, signal, (path,)))
 
     def signal(self, path: str, name: str) -> None:
-        """A signal without a pin, to be set by hand."""
+        """Create a signal without a pin, which is set by hand."""
         self._done.add(path)
         self.sections[-1].lines.append(f"newsig {name} bit")
         self.wires.append(Wire("", "-", name, (path,)))
 
     def enable(self, *pins: str) -> None:
-        """What lets the drives have power: pins of the board, and of what the machine file names for it.
+        """Connect the pins of the board and of the machine file that enable the drives.
 
-        One signal for all of them: they are driven alike.
+        All of them use one signal, because they are driven alike.
         """
         paths = {f"hal.axes.{axis.name}.enable": axis.name for axis in self.lathe.axes}
         named = [path for path in paths if path in self.lathe.names]
@@ -238,14 +239,14 @@ class HalFile:
         self.role("hal.link_fault", "link-fault", f"board-link.{gate}", *further, needed=True)
 
     def claim(self, pin: str, path: str) -> None:
-        """A terminal that is driven is driven by one thing."""
+        """Reserve a driven terminal; a second use adds a finding."""
         first = self._claimed.setdefault(pin, path)
         if first != path:
             why = Message("expected an unused pin; {first} already uses this pin", first=first)
             self.findings.append(Finding(path, written(pin), why))
 
     def rest(self) -> None:
-        """Every name of the machine file that no part of the board has taken, on its terminal."""
+        """Connect every name of the machine file that is not yet connected to its terminal."""
         self.section("Inputs and outputs")
         for path in self.lathe.names:
             if path not in self._done:
@@ -260,7 +261,7 @@ class HalFile:
         return name
 
     def _wire(self, path: str, signal: str, pins: tuple[str, ...], place: str, pin: str) -> None:
-        """One net; a signal that is there already, such as a switch for home and limit, gets what is new."""
+        """Add one net; for a signal that exists already, such as a combined switch, only extend the table."""
         for index, wire in enumerate(self.wires):
             if wire.pin == pin:
                 self.wires[index] = wire._replace(names=(*wire.names, path))
@@ -283,16 +284,16 @@ class HalFile:
 
 
 def signal_of(path: str) -> str:
-    """The signal of a key of the machine file: io.in.guard is in-guard, hal.axes.X.limit_low x-limit-low."""
+    """Return the signal name for a key: io.in.guard is in-guard, hal.axes.X.limit_low is x-limit-low."""
     word = path.removeprefix("io.").removeprefix("hal.axes.").removeprefix("hal.").removesuffix(".at")
     return re.sub(r"[^a-z0-9]+", "-", word.lower())
 
 
-# --- As text.
+# --- Output as text.
 
 
 def text_of(file: HalFile) -> str:
-    """The whole file: the same for the same machine file."""
+    """Return the complete file; the same machine file always gives the same text."""
     return "\n".join((*_head(file), *_body(file), ""))
 
 
@@ -339,7 +340,7 @@ def _body(file: HalFile) -> Iterator[str]:
 
 
 def table_lines(wires: Iterable[Wire]) -> Iterator[str]:
-    """The wiring table for a person: terminal, pin, signal, what the machine file calls it."""
+    """Yield the lines of the wiring table: terminal, pin, signal, and keys of the machine file."""
     rows = [("terminal", "HAL pin", "signal", "machine file")]
     rows += [(wire.place or "-", wire.pin, wire.signal, ", ".join(wire.names)) for wire in wires]
     widths = [max(len(row[column]) for row in rows) for column in range(3)]

@@ -18,16 +18,16 @@ from drivers.hal.boards.hal_lines import C, HalFile, Lathe, LatheAxis, Terminal
 _CARD = "hm2_7i97.0"
 _IN = re.compile(re.escape(_CARD) + r"\.inmux\.00\.input-(\d\d)(-not)?")
 _OUT = re.compile(re.escape(_CARD) + r"\.ssr\.00\.out-(\d\d)")
-# Terminals as hm2_eth names them: the analog outputs, the A inputs of the encoders, the solid-state relays.
+# Terminals by their hm2_eth names: analog outputs, A inputs of the encoders, and solid-state relays.
 _ANALOG = ("TB3-04", "TB3-08", "TB3-12", "TB3-16", "TB3-20", "TB3-24")
 _ENCODERS = ("TB1-01", "TB1-09", "TB1-17", "TB2-01", "TB2-09", "TB2-17")
 _RELAYS = ("TB5-13/14", "TB5-15/16", "TB5-17/18", "TB5-19/20", "TB5-21/22", "TB5-23/24")
-_DEGREES_RPM = 6.0  # degrees/s of one rpm
-_PWM_HZ = 48_000  # of the analog outputs, as the card's own samples have it
+_DEGREES_RPM = 6.0  # Degrees/s per rpm.
+_PWM_HZ = 48_000  # Frequency of the analog outputs, as in Mesa's samples.
 
 
 def mesa_servo_lathe(lathe: Lathe) -> HalFile:
-    """Velocity drives at ±10 V: the place is closed here, by encoder and pid."""
+    """Build the HAL file for velocity drives at ±10 V, with position loops by encoder and pid."""
     hint = f"an input or relay of the card: {_CARD}.inmux.00.input-00 … -15, {_CARD}.ssr.00.out-00 … -05"
     file = HalFile(lathe, "±10 V servo drives on a Mesa 7I97", _terminal, hint)
     file.notes += [
@@ -79,7 +79,8 @@ def _terminal(name: str) -> Terminal | None:
 
 def _enables(lathe: Lathe) -> list[str]:
     pids = [f"pid.{axis.name.lower()}.enable" for axis in lathe.driven]
-    channels = sorted({0, *(lathe.board.axes[axis.name].channel for axis in lathe.driven)})  # 0 enables 0…3
+    # Channel 0 enables channels 0…3.
+    channels = sorted({0, *(lathe.board.axes[axis.name].channel for axis in lathe.driven)})
     return pids + [f"{_CARD}.pwmgen.{channel:02d}.enable" for channel in channels]
 
 

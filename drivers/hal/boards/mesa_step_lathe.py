@@ -16,15 +16,18 @@ from drivers.hal.boards.board_parts import (
 from drivers.hal.boards.hal_lines import HalFile, Lathe, LatheAxis, Terminal
 
 _CARD = "hm2_7i76e.0"
-_FIELD = f"{_CARD}.7i76.0.0"  # the card's own field I/O, first port of its smart serial
+_FIELD = f"{_CARD}.7i76.0.0"  # Field I/O of the card, at the first smart serial port.
 _PIN = re.compile(re.escape(_FIELD) + r"\.(input|output)-(\d\d)(-not)?")
-_FIELD_ERRORS = 50  # five failed transfers in a row
-_LATCHED_US = -50  # as pncconf of LinuxCNC writes it
-_FF1, _MOST_ERROR = 1.0, 0.0127  # mm by which a period may be off: half a thou
+_FIELD_ERRORS = 50  # Five failed transfers in a row.
+_LATCHED_US = -50  # As in files of LinuxCNC's pncconf.
+_FF1, _MOST_ERROR = 1.0, 0.0127  # Maximum error per period in mm (.0005 in).
 
 
 def mesa_step_lathe(lathe: Lathe) -> HalFile:
-    """Steps from the card; ``mode = "velocity"`` closes the place here by a pid, as Mesa's own samples do."""
+    """Build the HAL file for step generators of the card.
+
+    ``mode = "velocity"`` closes the position loop by a pid, as Mesa's samples do.
+    """
     hint = f"an input or output of the card: {_FIELD}.input-00 … -31, {_FIELD}.output-00 … -15"
     file = HalFile(lathe, "step drives on a Mesa 7I76E", _terminal, hint)
     file.notes += [
@@ -65,7 +68,7 @@ def mesa_step_lathe(lathe: Lathe) -> HalFile:
 
 
 def _field(file: HalFile) -> None:
-    """Watch the serial link to the field I/O: its inputs freeze as well when transfers fail."""
+    """Monitor the serial link to the field I/O, whose inputs also freeze if transfers fail."""
     file.load("loadrt conv_u32_float names=field-errors")
     file.load("loadrt wcomp names=field-lost")
     file.first[1:1] = ["field-errors", "field-lost"]
@@ -81,7 +84,7 @@ def _field(file: HalFile) -> None:
 
 
 def _timing(file: HalFile) -> None:
-    """Latch the step counts at a fixed time before the read, whatever the delay on Ethernet is."""
+    """Latch the step counts at a fixed time before the read, independent of the Ethernet delay."""
     file.section(
         "Step counts: latched by the card's timer, so that Ethernet jitter does not appear as axis movement"
     )
@@ -106,7 +109,7 @@ def _terminal(name: str) -> Terminal | None:
 
 
 def _block(kind: str, number: int) -> str:
-    """The terminal block of a field input or output, as Mesa's manual of the 7I76 has them."""
+    """Return the terminal block of a field input or output, according to Mesa's manual of the 7I76."""
     return "TB6" if number < (16 if kind == "input" else 8) else "TB5"
 
 
@@ -121,7 +124,7 @@ def _enables(lathe: Lathe) -> list[str]:
 
 
 def _steps(file: HalFile, axis: LatheAxis) -> str:
-    """The step generator of an axis, set up for its drive; its pin."""
+    """Configure the step generator of an axis and return its pin."""
     board = file.lathe.board.axes[axis.name]
     pin = f"{_CARD}.stepgen.{board.channel:02d}"
     sign = -1.0 if board.reversed else 1.0
@@ -144,7 +147,7 @@ def _steps(file: HalFile, axis: LatheAxis) -> str:
 
 
 def _spindle_c(file: HalFile, axis: LatheAxis) -> None:
-    """The same drive takes steps once it is changed over; its place is the spindle's encoder."""
+    """Configure C on the spindle drive: step commands, with the spindle encoder as feedback."""
     load_c(file, chosen=False)
     file.section(
         f"C: step generator {file.lathe.board.axes[axis.name].channel} for the spindle drive, "
@@ -188,7 +191,7 @@ def _axis(file: HalFile, axis: LatheAxis) -> None:
 
 
 def _speed(file: HalFile) -> None:
-    """The isolated analog output with its enable and direction."""
+    """Connect the isolated analog output with its enable and direction."""
     full = file.lathe.board.spindle.full_speed
     if not full:
         return

@@ -13,7 +13,7 @@ _IN = frozenset(("10", "11", "12", "13", "15"))
 
 
 def parallel_port(lathe: Lathe) -> HalFile:
-    """Steps by ``stepgen``, turns of the spindle by ``encoder``, its speed by ``pwmgen`` and a converter."""
+    """Build the HAL file with software step generators and encoder, and a PWM signal for the speed."""
     hint = (
         "a parallel port pin: parport.0.pin-02-out … -09-out, -01-out, -14-out, -16-out or "
         "-17-out; parport.0.pin-10-in … -13-in or -15-in"

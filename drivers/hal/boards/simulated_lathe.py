@@ -1,16 +1,16 @@
-"""HAL file of a lathe without hardware: slides and spindle of LinuxCNC's stock simulation components."""
+"""HAL file of a lathe without hardware, with axes and spindle simulated by standard LinuxCNC components."""
 
 from __future__ import annotations
 
 from drivers.hal.boards.board_parts import c_turn_pins, load_simulated_c, simulated_c_speed
 from drivers.hal.boards.hal_lines import HalFile, Lathe, Terminal, signal_of
 
-_TRAILS = 0.67  # of the way to its setpoint that a slide makes in one period
-_SWITCHES = 0.3  # s for the collet to close, and to open
+_TRAILS = 0.67  # Fraction of the distance to its setpoint that an axis moves in one period.
+_SWITCHES = 0.3  # Seconds for the collet to close and to open.
 
 
 def simulated_lathe(lathe: Lathe) -> HalFile:
-    """Slides that trail their setpoints, a spindle that ramps, inputs that are set by hand."""
+    """Build the HAL file with axes that lag their setpoints, a ramped spindle, and inputs set by hand."""
     file = HalFile(
         lathe,
         "lathe simulated with standard LinuxCNC components, without hardware",
@@ -67,7 +67,7 @@ def _spindle(file: HalFile) -> None:
 
 
 def _hands(file: HalFile) -> None:
-    """Inputs and outputs as signals: ``halcmd sets in-guard 1`` is a hand at the switch."""
+    """Create inputs and outputs as signals; ``halcmd sets in-guard 1`` operates a switch."""
     file.section("Inputs and outputs are signals; to set a signal by hand: halcmd sets NAME 1")
     for path, name in file.lathe.names.items():
         if path.startswith(("io.", "hal.link_fault")) and "." not in name:

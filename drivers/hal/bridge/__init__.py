@@ -1,1 +1,1 @@
-"""What runs under the system's Python, where LinuxCNC's ``hal`` is: it needs that Python and nothing more."""
+"""Code that runs under the system's Python with LinuxCNC's ``hal`` module and has no other requirements."""

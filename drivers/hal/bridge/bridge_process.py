@@ -1,7 +1,7 @@
-"""The bridge's process: ``/usr/bin/python3 bridge_process.py FILE``, started by halrun; FILE says the rest.
+"""Process of the bridge, started by halrun as ``/usr/bin/python3 bridge_process.py FILE``.
 
-It looks whether HAL has every pin that the machine file names, hangs itself on them, and plays until its
-driver has gone.
+FILE is the configuration. The process checks that HAL has every pin of the machine file, connects its own
+pins, and plays setpoints until the driver ends.
 """
 
 from __future__ import annotations
@@ -25,24 +25,24 @@ from drivers.hal.bridge import hal_pins
 from drivers.hal.bridge.hal_bridge import Bridge
 from drivers.hal.bridge.packets import BridgeAxis, BridgeConfig, Head, pack, unpack
 
-_PERIOD = 0.002  # s between two rounds
-_REPORTS = 2  # rounds between two reports
-_PRIORITY = 45  # below the driver host's
+_PERIOD = 0.002  # Seconds between two cycles.
+_REPORTS = 2  # Cycles between two reports.
+_PRIORITY = 45  # Below the priority of the driver host.
 _LARGEST = 1 << 17
 _KINDS = {"float": "HAL_FLOAT", "bit": "HAL_BIT", "s32": "HAL_S32"}
 _WAYS = {"in": "HAL_IN", "out": "HAL_OUT", "io": "HAL_IO"}
 
 
 def main(arguments: list[str]) -> int:
-    """Until the driver has gone, or HAL is not as the machine file says.
+    """Run the bridge until the driver ends or a pin does not match the machine file; return the exit code.
 
-    Ctrl+C is for the control: it brakes the slides and then lets this go, whoever else it was sent to.
+    SIGINT is ignored, because the control brakes the axes and then ends this process.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     said = json.loads(Path(arguments[0]).read_text(encoding="utf-8"))
     sock = socket.socket(fileno=said["fd"])
     try:
-        hal = importlib.import_module("hal")  # the system's Python has it, this product's does not
+        hal = importlib.import_module("hal")  # Only the system's Python has this module.
     except ImportError as error:
         sock.send(
             pack(
@@ -68,12 +68,15 @@ def main(arguments: list[str]) -> int:
         fcntl.flock(alive, fcntl.LOCK_EX)
         component.ready()
         _serve(sock, bridge, lambda: time.monotonic() - said["zero"])
-        Path(said["ended"]).touch()  # HAL need not go on behind it, as it does behind one that has died
+        Path(said["ended"]).touch()  # HAL need not continue, as it does after a crash of the bridge.
     return 0
 
 
 def _component(hal: Any, said: Mapping[str, Any]) -> Any | None:
-    """Our component on the machine's pins; None where they are not as they must be, or nobody wants more."""
+    """Create the HAL component and connect its pins.
+
+    Return None if pins do not match or only a check was requested.
+    """
     sock = socket.socket(fileno=os.dup(said["fd"]))
     wanted = [hal_pins.Wanted(*each) for each in said["wanted"]]
     pins = hal_pins.pins_of(hal_pins.halcmd("-s", "show", "pin"))
@@ -88,7 +91,7 @@ def _component(hal: Any, said: Mapping[str, Any]) -> Any | None:
     script = Path(said["nets"])
     script.write_text("\n".join(hal_pins.nets(wanted, said["own"], pins, signals)) + "\n", encoding="utf-8")
     hal_pins.halcmd("-f", str(script))
-    for each in wanted:  # what E-stop leaves as it is, the begin of a session does too
+    for each in wanted:  # The start of a session, like an E-stop, does not change these outputs.
         output = each.path.removeprefix("io.out.")
         if output in said["bridge"]["outputs"] and said["bridge"]["outputs"][output] is None:
             component[f"out.{output}"] = hal_pins.is_on(each.pin, pins, signals)
@@ -107,7 +110,7 @@ def _bridge(hal: Any, component: Any, said: Mapping[str, Any]) -> Bridge:
 
 
 def _real_time() -> list[str]:
-    """Ask for SCHED_FIFO; what was refused, in words for the operator."""
+    """Request SCHED_FIFO and return a message for the operator if it was refused."""
     try:
         os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(_PRIORITY))
     except OSError as error:
@@ -132,13 +135,13 @@ def _serve(sock: socket.socket, bridge: Bridge, now: Callable[[], float]) -> Non
         left = max(due - now(), 0.0)
         if bridge.gone:
             time.sleep(left)
-        elif select.select([sock], [], [], left)[0]:  # what has come is carried out at once
+        elif select.select([sock], [], [], left)[0]:  # Received packets are executed at once.
             for head, numbers in _heard(sock, bridge):
                 bridge.handle(head, numbers)
 
 
 def _tell(sock: socket.socket, bridge: Bridge) -> None:
-    """A driver that does not read has time for the next report."""
+    """Send a report; if the driver does not read, skip it until the next report."""
     try:
         sock.send(bridge.report())
     except BlockingIOError:

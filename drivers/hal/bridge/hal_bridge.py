@@ -1,8 +1,8 @@
-"""The bridge: setpoints into HAL, samples back, and no motion without a control.
+"""Bridge that writes setpoints into HAL and reports samples, and stops motion without a control.
 
-``handle`` a packet of the driver, ``round`` every few milliseconds, ``report`` what is seen. A driver that is
-silent is played to the end of its queue, which is at rest; then spindle and outputs go off. One that is gone
-loses the drives' power too.
+``handle`` queues a packet of the driver, ``round`` must be called every few milliseconds, and ``report``
+returns the state. If the driver is silent, its queue is played to the end, which is at rest; then spindle and
+outputs are switched off. If the driver has ended, the drives are also switched off.
 """
 
 from __future__ import annotations
@@ -15,26 +15,26 @@ from drivers.hal.bridge.row_streams import Pins, RowStreams, Sampler, Stream
 from drivers.hal.bridge.setpoint_player import Player, rows_of
 from drivers.setpoint_pieces import INF, Piece
 
-AWAY = 0.25  # s without a word of the driver
-_QUIET = 0.25  # s without a sample: the servo thread stands
-_AT_ONCE = 0.05  # s of it that one round counts at most: who stood still himself blames nobody
-_GRANT = 0.1  # s in which the chain must close
-_REARM = 0.006  # s for which the watchdog is off, so that it begins anew
-_PULSE = 0.05  # s of the reset
-_FALLS = 0.005  # s for which HAL sees that no angle is asked for
-_SLEW = 1e-3  # by which rows may be dealt faster or slower than by this computer's clock, while slides move
+AWAY = 0.25  # Seconds without a packet of the driver.
+_QUIET = 0.25  # Seconds without a sample after which the servo thread counts as stopped.
+_AT_ONCE = 0.05  # Maximum in s that one cycle counts, so that a delay of this process is not counted.
+_GRANT = 0.1  # Seconds in which the chain must close.
+_REARM = 0.006  # Seconds for which the watchdog is off to restart it.
+_PULSE = 0.05  # Duration of the reset pulse in s.
+_FALLS = 0.005  # Seconds for which the orient pin is off before a new angle.
+_SLEW = 1e-3  # Maximum rate difference between rows and this computer's clock in motion.
 _SLEW_AT_REST = 0.05
-_SETTLES = 0.5  # s in which such a difference is made up
-_PAST = 0.5  # s of setpoints that may still be asked for
-_RUNS_DOWN = 8.0  # s for a spindle to brake
+_SETTLES = 0.5  # Seconds in which a difference is corrected.
+_PAST = 0.5  # Age in s of setpoints that are still available.
+_RUNS_DOWN = 8.0  # Seconds for a spindle to brake.
 _STANDS = 0.1  # turns/s
-_SURE = 0.9  # of the time until the spindle is somewhere, as it turns now
-_ROWS = 300  # samples in one report
+_SURE = 0.9  # Fraction of the time until the spindle reaches a position at its present speed.
+_ROWS = 300  # Samples in one report.
 _STILL = 1e-3  # mm/s
 
 
 class Bridge:
-    """Everything between one driver and one HAL; one thread."""
+    """Bridge between one driver and one HAL, used by one thread."""
 
     def __init__(
         self,
@@ -53,33 +53,33 @@ class Bridge:
         self._orders: deque[tuple[Head, Sequence[float]]] = deque()
         self._parts: list[Piece] = []
         self._samples: list[float] = []
-        self._place: tuple[float, ...] = (0.0,) * len(config.axes)  # as fed back
-        self._over = [0.0] * len(config.axes)  # s outside the window
-        self._off_by = 0.0  # s between rows and this computer's clock
-        self._sampled = False  # a sample has been read
-        self._quiet = 0.0  # s without one
+        self._place: tuple[float, ...] = (0.0,) * len(config.axes)  # Measured positions.
+        self._over = [0.0] * len(config.axes)  # Seconds outside the window.
+        self._off_by = 0.0  # Difference between rows and this computer's clock in s.
+        self._sampled = False  # A sample has been read.
+        self._quiet = 0.0  # Seconds without a sample.
         self._heard = self._round_at = now()
         self._parted, self._left_at = False, 0.0
-        self.gone = False  # the driver will never speak again
+        self.gone = False  # The driver has ended.
         self.done = False
         self.fault, self.code = "", ""
-        self._on = False  # power is asked for
-        self._grant_at = INF  # when it is given
+        self._on = False  # Power is requested.
+        self._grant_at = INF  # Time when power is switched on.
         self._granted = -INF
         self._off_at = INF
         self._reset_until = self._watch_from = -INF
         self._handled = 0.0
-        self._braked: list[float] = []  # pieces of a braking of our own
+        self._braked: list[float] = []  # Pieces of a deceleration by the bridge.
         self._brakings = 0
-        self._missed: list[float] = []  # rows that came too late
-        self._least = INF  # rows in HAL, at the least since the last report
+        self._missed: list[float] = []  # Rows that were too late.
+        self._least = INF  # Fewest rows in HAL since the last report.
         self._latest = 0.0  # s
         self._dry = 0
         self._homing: set[str] = set()
-        self._c_at: float | None = None  # where C was when it began to be held, as HAL counts
-        self._c_from = INF  # when the drive is to change over
-        self._orient_from = INF  # when it is to go to its angle
-        self._close_chain()  # nothing is asked for yet: it lets through what the control will ask
+        self._c_at: float | None = None  # Position of C in HAL's count when it was engaged.
+        self._c_from = INF  # Time when the drive changes to position mode.
+        self._orient_from = INF  # Time when the orientation starts.
+        self._close_chain()  # The chain is closed in advance for later commands of the control.
         self._acts: Mapping[str, Callable[[Head, Sequence[float]], None]] = {
             "beat": lambda _head, _numbers: None,
             "splice": self._splice,
@@ -99,15 +99,18 @@ class Bridge:
             "end": self._end,
         }
 
-    # --- the rounds ---------------------------------------------------------------------------------------
+    # --- cycles -------------------------------------------------------------------------------------------
 
     def handle(self, head: Head, numbers: Sequence[float]) -> None:
-        """One packet; it is carried out with the next round."""
+        """Queue one packet, which the next cycle executes."""
         self._heard = self._now()
         self._orders.append((head, numbers))
 
     def round(self, late: float = 0.0) -> None:
-        """Take in what HAL has sampled, watch over it, carry out orders, and see that HAL has enough rows."""
+        """Run one cycle: read samples, supervise, execute commands, and write rows for HAL.
+
+        ``late`` is the delay of the cycle in seconds.
+        """
         now = self._now()
         self._latest = max(self._latest, late)
         self.pins["heartbeat"] = not self.pins["heartbeat"]
@@ -127,7 +130,7 @@ class Bridge:
         self.player.queue.trim(now - _PAST)
 
     def report(self) -> bytes:
-        """Everything that is seen, and the samples since the last report."""
+        """Return a packet with the complete state and the samples since the last report."""
         rows, self._samples = self._samples[: _ROWS * self._width], self._samples[_ROWS * self._width :]
         pins = self.pins
         head = {
@@ -156,12 +159,13 @@ class Bridge:
             "stands": self._stands,
             "stale": self._is_stale,
             "orients": "orient" in self.config.spindle and bool(self.pins["spindle.orient"]),
-            "c_at": self._c_at if self._c_from == INF else None,  # once the drive is changed over
+            # After the drive has changed to position mode.
+            "c_at": self._c_at if self._c_from == INF else None,
         }
         self._latest, self._least = 0.0, INF
         return pack(head, rows)
 
-    # --- what comes back ----------------------------------------------------------------------------------
+    # --- feedback -----------------------------------------------------------------------------------------
 
     @property
     def _width(self) -> int:
@@ -186,11 +190,11 @@ class Bridge:
             self._sampled, self._quiet = True, 0.0
         if self.rows.played != before:
             self._off_by += 0.05 * (self.rows.played_t - now - self._off_by)
-        if len(self._samples) > 40 * _ROWS * self._width:  # nobody takes them
+        if len(self._samples) > 40 * _ROWS * self._width:  # The samples are not read.
             del self._samples[: -_ROWS * self._width]
 
     def _follow(self, command: Sequence[float], actual: Sequence[float]) -> None:
-        """The following error of one sample."""
+        """Check the following error of one sample."""
         if not self._powered:
             return
         for index, axis in enumerate(self.config.axes):
@@ -234,7 +238,7 @@ class Bridge:
             self._open_chain()
 
     def _ran_dry(self) -> None:
-        """At rest nothing has happened; in motion the limit in HAL has braked."""
+        """Handle missing rows: ignore them at rest; in motion, trip, because HAL's limit has braked."""
         if any(abs(v) > _STILL for v in self.player.state(self.rows.played_t)[1]):
             self.player.rest_at(self._target())
             self._trip(
@@ -242,7 +246,7 @@ class Bridge:
             )
 
     def _target(self) -> tuple[float, ...]:
-        """Where the last row that was played leads to."""
+        """Return the position of the last written row."""
         return self.player.state(self.rows.last_t)[0]
 
     def _lost_power(self) -> None:
@@ -252,23 +256,23 @@ class Bridge:
 
     @property
     def _stands(self) -> bool:
-        """HAL's servo thread plays nothing any more: what its pins say is of before."""
+        """Whether HAL's servo thread has stopped, so that its pins are old."""
         return self._sampled and self._quiet > _QUIET
 
     @property
     def _is_stale(self) -> bool:
-        """Return whether the board's inputs are not current, as hal.link_fault reports it."""
+        """Whether the board's inputs are old, as hal.link_fault reports."""
         return "link-fault" in self.config.bits and bool(self.pins["link-fault"])
 
     def _open_chain(self) -> None:
-        """What is off in HAL does not come back by itself when the chain is closed again."""
+        """Switch spindle and outputs off, so that they stay off when the chain is closed again."""
         self._spindle_off()
         for name, safe in self.config.outputs.items():
             if safe is not None and name not in self.config.lamps:
                 self.pins[f"out.{name}"] = safe
 
     def _trip(self, fault: str, code: str) -> None:
-        """All axes brake on their path, then lose power."""
+        """Set the fault, and brake all axes on their path before the power is switched off."""
         if not self.fault:
             self.fault, self.code = fault, code
         if self._on and self._off_at == INF:
@@ -296,7 +300,7 @@ class Bridge:
     def _recall(self, t: float, same_until: float = -INF) -> bool:
         return self.rows.recall(t, self.player.row, same_until)
 
-    # --- orders -------------------------------------------------------------------------------------------
+    # --- commands -----------------------------------------------------------------------------------------
 
     def _splice(self, head: Head, numbers: Sequence[float]) -> None:
         self._parts += pieces_of(numbers, len(self.config.axes))
@@ -326,15 +330,15 @@ class Bridge:
         if left < 0.0:
             if self.player.rests:
                 self._trip("the threading setpoints arrived too late to be executed", "late")
-            return  # what was handed over before is a whole pass too
+            return  # The earlier setpoints are a complete pass too.
         count = int(number(head, "way"))
         self.player.mesh(zero, sign, pieces[:count], pieces[count:])
-        # Until the spindle is there the way is what it was: the servo thread need not be met at once.
+        # The path is unchanged until the spindle is there, so the change need not be immediate.
         until = t + _SURE * left / max(sign * self.player.turns.speed, _STANDS)
         self._recall(0.5 * (t + until), until)
 
     def _brake(self) -> float:
-        """On the path to rest, as soon as rows can be recalled; when that is over."""
+        """Brake on the path to rest as soon as rows can be recalled, and return the end time."""
         t = self.rows.soonest()
         pieces = self.player.brake(t, [axis.amax for axis in self.config.axes])
         self._braked = list(flat(pieces or [Piece(t, 0.0, *self.player.state(t), self._still)]))
@@ -368,7 +372,7 @@ class Bridge:
             self._reset_until = now + _PULSE
 
     def _power(self, now: float) -> None:
-        """The chain's reset is a pulse; power comes once HAL plays where the slides are."""
+        """End the reset pulse of the chain, and switch power on when HAL plays the present axis positions."""
         self.pins["watch"] = now >= self._watch_from
         self.pins["reset"] = now < self._reset_until and bool(self.pins["alive"])
         if self._grant_at <= now:
@@ -415,7 +419,7 @@ class Bridge:
                 self.pins[f"spindle.{name}"] = value
 
     def _hold_c(self, head: Head, _numbers: Sequence[float]) -> None:
-        """C's setpoint goes where the spindle stands; once HAL plays that, the drive is changed over."""
+        """Set C's setpoint to the position of the spindle, and change the drive when HAL plays it."""
         if head.get("on") is not True:
             self._release_c()
         elif self._on:
@@ -433,7 +437,7 @@ class Bridge:
             self.pins["spindle.position_mode"] = 0
 
     def _orient(self, head: Head, _numbers: Sequence[float]) -> None:
-        """An angle is taken with the rising of ``orient``, which therefore falls first."""
+        """Orient the spindle; ``orient`` falls first, because its rising edge latches the angle."""
         self._release_angle()
         if head.get("on") is not True or not self.pins["chain-ok"]:
             return
@@ -463,12 +467,12 @@ class Bridge:
                 self.pins[f"out.{name}"] = safe
 
     def _home(self, head: Head, _numbers: Sequence[float]) -> None:
-        """The limit switch of an axis that looks for it stops nothing."""
+        """Ignore the limit switch of an axis during its homing."""
         name = text(head, "axis")
         (self._homing.add if head.get("on") is True else self._homing.discard)(name)
 
     def _index(self, head: Head, _numbers: Sequence[float]) -> None:
-        """Ask an encoder for its index: the pin falls when it comes by."""
+        """Request the index of an encoder, whose pin falls when the index passes."""
         self.pins[text(head, "pin")] = head.get("on") is True
 
     def _end(self, _head: Head, _numbers: Sequence[float]) -> None:

@@ -1,4 +1,4 @@
-"""The machine's pins and signals as HAL has them, and whether each is what the machine file takes it for."""
+"""Pins and signals of HAL, and their comparison with the machine file."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _IN, _OUT, _BOTH = "IN", "OUT", "I/O"
 
 @dataclass(frozen=True, slots=True)
 class Wanted:
-    """A pin or signal that the machine file names: ``path`` is its key, ``ours`` the signal of ours."""
+    """Pin or signal that the machine file names, with its key ``path`` and TurnDesk's signal ``ours``."""
 
     path: str
     pin: str
@@ -23,7 +23,7 @@ class Wanted:
 
 @dataclass(frozen=True, slots=True)
 class Pin:
-    """One pin of HAL: its signal is empty where it hangs on none; its value as halcmd writes it."""
+    """Pin of HAL with the value that halcmd shows; ``signal`` is empty if it is not connected."""
 
     kind: str
     way: str
@@ -33,7 +33,7 @@ class Pin:
 
 @dataclass(frozen=True, slots=True)
 class Signal:
-    """One signal of HAL: whether a pin drives it, and its value as halcmd writes it."""
+    """Signal of HAL with the value that halcmd shows, and whether a pin drives it."""
 
     kind: str
     driven: bool
@@ -41,7 +41,7 @@ class Signal:
 
 
 def halcmd(*words: str) -> str:
-    """What halcmd answers. Raises RuntimeError with its own words."""
+    """Run halcmd and return its output. Raises RuntimeError with its error text."""
     done = subprocess.run(["halcmd", *words], capture_output=True, text=True, timeout=20, check=False)
     if done.returncode:
         raise RuntimeError((done.stderr or done.stdout).strip() or "halcmd has failed")
@@ -49,7 +49,7 @@ def halcmd(*words: str) -> str:
 
 
 def pins_of(shown: str) -> dict[str, Pin]:
-    """``halcmd -s show pin``: owner, type, way, value, name, and the arrow to a signal."""
+    """Parse ``halcmd -s show pin``: owner, type, direction, value, name, and the arrow to a signal."""
     found = {}
     for line in shown.splitlines():
         words = line.split()
@@ -59,7 +59,7 @@ def pins_of(shown: str) -> dict[str, Pin]:
 
 
 def signals_of(pins: Mapping[str, Pin], shown: str) -> dict[str, Signal]:
-    """``halcmd -s show sig``: type, value, name, and the pins on it."""
+    """Parse ``halcmd -s show sig``: type, value, name, and the connected pins."""
     driven = {pin.signal for pin in pins.values() if pin.way == _OUT}
     found = {}
     for line in shown.splitlines():
@@ -70,7 +70,7 @@ def signals_of(pins: Mapping[str, Pin], shown: str) -> dict[str, Signal]:
 
 
 def trouble(wanted: Wanted, pins: Mapping[str, Pin], signals: Mapping[str, Signal]) -> str:
-    """What is wrong with it; empty when it is as it has to be."""
+    """Return the error of a named pin or signal, or an empty text if it is correct."""
     pin, signal = pins.get(wanted.pin), signals.get(wanted.pin)
     if pin is None and signal is None:
         return (
@@ -95,13 +95,13 @@ def trouble(wanted: Wanted, pins: Mapping[str, Pin], signals: Mapping[str, Signa
 
 
 def is_on(name: str, pins: Mapping[str, Pin], signals: Mapping[str, Signal]) -> bool:
-    """Whether a pin or signal is on."""
+    """Return whether a pin or signal is on."""
     found = signals[name] if name in signals else pins[name]
     return found.value == "TRUE"
 
 
 def _wrong_way(wanted: Wanted, pin: Pin, signals: Mapping[str, Signal]) -> bool:
-    """An input on a signal that something drives may be read all the same: what it hears is heard."""
+    """Return whether the direction of a pin is wrong; a driven input may also be read."""
     if wanted.drives:
         return pin.way == _OUT
     return pin.way == _IN and not signals.get(pin.signal, Signal("", False)).driven
@@ -113,10 +113,10 @@ def nets(
     pins: Mapping[str, Pin],
     signals: Mapping[str, Signal],
 ) -> list[str]:
-    """Lines of halcmd that hang the machine on our signals, and the bridge's own pins (by our signal).
+    """Return the halcmd lines that connect the machine and the bridge's own pins to TurnDesk's signals.
 
-    What hangs on a signal of the machine's already keeps it, and what of ours is on the other one goes there.
-    Raises RuntimeError where ours would have to be on two of theirs.
+    A pin that is already on a signal of the machine stays there, and TurnDesk's pins are moved to that
+    signal. Raises RuntimeError if TurnDesk's signal would have to be on two signals of the machine.
     """
     theirs, loose, kept = dict[str, str](), [], list[str]()
     for each in wanted:
@@ -128,7 +128,8 @@ def nets(
                 f"{each.path}: {signal} and {theirs[each.ours]} are driven alike; make them one"
             )
         if not each.drives and signal in signals and not signals[signal].driven:
-            kept.append(f"sets {signal} {signals[signal].value}")  # the first pin would bring its own value
+            # The first pin would otherwise set its own value.
+            kept.append(f"sets {signal} {signals[signal].value}")
     lines = []
     for name, pin in pins.items():
         if pin.signal in theirs:

@@ -1,6 +1,6 @@
-"""Packets between the driver and its bridge, and what the bridge has to know of the machine.
+"""Packets between the driver and its bridge, and the configuration of the bridge.
 
-A packet is the length of a JSON head, the head, and doubles.
+A packet consists of the length of a JSON head, the head, and doubles.
 """
 
 from __future__ import annotations
@@ -14,19 +14,19 @@ from dataclasses import dataclass, field
 from drivers.setpoint_pieces import Piece
 
 _LENGTH = struct.Struct("<I")
-MOST = 8000  # doubles that one packet carries: a socket of packets takes no longer ones
+MOST = 8000  # Maximum number of doubles in a packet, limited by the packet socket.
 
 Head = dict[str, object]
 
 
 def pack(head: Mapping[str, object], numbers: Iterable[float] = ()) -> bytes:
-    """The bytes of one packet."""
+    """Return the bytes of one packet."""
     text = json.dumps(head, separators=(",", ":")).encode()
     return _LENGTH.pack(len(text)) + text + array("d", numbers).tobytes()
 
 
 def unpack(data: bytes) -> tuple[Head, Sequence[float]]:
-    """Head and numbers. Raises ValueError or struct.error for what is none."""
+    """Return head and numbers of a packet. Raises ValueError or struct.error for invalid data."""
     (length,) = _LENGTH.unpack_from(data)
     head: Head = json.loads(data[_LENGTH.size : _LENGTH.size + length])
     numbers = array("d")
@@ -35,13 +35,13 @@ def unpack(data: bytes) -> tuple[Head, Sequence[float]]:
 
 
 def flat(pieces: Iterable[Piece]) -> Iterable[float]:
-    """Pieces one behind the other."""
+    """Yield the numbers of all pieces in sequence."""
     for piece in pieces:
         yield from (piece.t, piece.dt, *piece.p, *piece.v, *piece.a)
 
 
 def pieces_of(numbers: Sequence[float], axes: int) -> list[Piece]:
-    """The pieces of such a row."""
+    """Return the pieces from a sequence of numbers."""
     width = 2 + 3 * axes
     made = []
     for at in range(0, len(numbers), width):
@@ -52,7 +52,7 @@ def pieces_of(numbers: Sequence[float], axes: int) -> list[Piece]:
 
 
 def packets_of(head: Mapping[str, object], pieces: Sequence[Piece], axes: int) -> Iterable[bytes]:
-    """Pieces in as many packets as they need; the last has no ``more``."""
+    """Yield packets for any number of pieces; all but the last have ``more`` in their head."""
     most = MOST // (2 + 3 * axes)
     for first in range(0, len(pieces), most):
         part = pieces[first : first + most]
@@ -61,45 +61,46 @@ def packets_of(head: Mapping[str, object], pieces: Sequence[Piece], axes: int) -
 
 
 def number(head: Mapping[str, object], key: str, otherwise: float = 0.0) -> float:
-    """A number of a head."""
+    """Return a number of a head, or ``otherwise`` if it is missing."""
     value = head.get(key)
     return float(value) if isinstance(value, int | float) else otherwise
 
 
 def text(head: Mapping[str, object], key: str) -> str:
-    """A text of a head."""
+    """Return a text of a head, or an empty text if it is missing."""
     value = head.get(key)
     return value if isinstance(value, str) else ""
 
 
 @dataclass(frozen=True, slots=True)
 class BridgeAxis:
-    """One axis: what it brakes with, and how far it may be off its setpoint for how long."""
+    """Axis of the bridge: its deceleration, and the window and time for its following error."""
 
     name: str
     amax: float
     window: float
     time: float
-    is_spindle: bool = False  # it follows only while the spindle's drive is C
+    is_spindle: bool = False  # Follows setpoints only while the spindle drive is C.
 
 
 @dataclass(frozen=True, slots=True)
 class BridgeConfig:
-    """What the bridge has to know of the machine. ``outputs``: their safe states, None keeps.
+    """Configuration of the bridge; ``outputs`` are the safe states, where None leaves an output unchanged.
 
-    ``turns`` and ``speed``: the samples have them, behind the axes. ``bits``: pins that are told as they are.
+    ``turns`` and ``speed`` state whether the samples contain them after the axes. ``bits`` are pins that are
+    reported unchanged.
     """
 
     axes: tuple[BridgeAxis, ...]
     period: float
     ahead: float
     outputs: Mapping[str, bool | None] = field(default_factory=dict)
-    lamps: tuple[str, ...] = ()  # of the outputs: they tell of an open chain
+    lamps: tuple[str, ...] = ()  # Outputs that indicate an open chain.
     inputs: tuple[str, ...] = ()
     analog: tuple[str, ...] = ()
     bits: tuple[str, ...] = ()
-    spindle: tuple[str, ...] = ()  # pins that are written
+    spindle: tuple[str, ...] = ()  # Written pins.
     turns: bool = False
     speed: bool = False
-    marks: int = 0  # bits at the end of each sample: switches for homing, the probe
-    figures: tuple[str, ...] = ()  # pins with numbers
+    marks: int = 0  # Bits at the end of each sample: home switches and the probe.
+    figures: tuple[str, ...] = ()  # Pins with numbers.

@@ -1,8 +1,8 @@
-"""Rows of setpoints into HAL: one stream plays, the other takes what shall be played instead.
+"""Rows of setpoints in HAL: one stream plays, and the other receives replacement rows.
 
-The change-over is asked for some rows ahead of the servo thread. On a computer without real-time priority
-that may be past it when it is heard. Nothing is lost then as long as both streams have the same in their
-rows, as a path that goes on has far beyond where it is handed over: the change is asked for further on.
+The change between the streams is requested some rows ahead of the servo thread. Without real-time priority,
+the thread may have passed this row before it reads the request. The change is then requested at a later row.
+This is possible while both streams contain the same rows, as they do at the start of a continued path.
 """
 
 from __future__ import annotations
@@ -12,14 +12,14 @@ from collections import deque
 from collections.abc import Callable, Sequence
 from typing import NamedTuple, Protocol
 
-_NEVER = -1.0  # a row that does not come
-_PAST = 400  # rows that were played and are still known
-_SAME = 1e-6  # mm, mm a turn
-_MARGIN = 4  # rows between the change being asked for and its row: the servo thread must not have passed it
+_NEVER = -1.0  # Row number that never occurs.
+_PAST = 400  # Number of played rows that are stored.
+_SAME = 1e-6  # Mm, and mm per revolution.
+_MARGIN = 4  # Minimum rows between the request of a change and its row.
 
 
 class Stream(Protocol):
-    """``hal.stream`` as far as it is used."""
+    """Methods of ``hal.stream`` that the bridge uses."""
 
     @property
     def depth(self) -> int: ...
@@ -32,7 +32,7 @@ class Stream(Protocol):
 
 
 class Pins(Protocol):
-    """Pins of a HAL component by their names; bits are 0 and 1."""
+    """Pins of a HAL component by name; bits are 0 and 1."""
 
     def __getitem__(self, name: str, /) -> float: ...
     def __setitem__(self, name: str, value: float, /) -> None: ...
@@ -43,7 +43,7 @@ MakeRow = Callable[[float], Row]
 
 
 class _Due(NamedTuple):
-    """A row that was written: when it is due, and what is in it."""
+    """Written row with its due time and its values."""
 
     row: int
     t: float
@@ -51,32 +51,32 @@ class _Due(NamedTuple):
 
 
 class RowStreams:
-    """Numbers rows, knows when each is due, and recalls those that are not yet played."""
+    """Pair of streams that numbers the rows and recalls those that are not yet played."""
 
     def __init__(self, streams: tuple[Stream, Stream], pins: Pins) -> None:
         self._streams = streams
         self._pins = pins
         self._active = 0
-        self._change: int | None = None  # the row at which the other stream takes over
-        self.last = 0  # number of the row written last
-        self.last_t = 0.0  # s, when it is due
-        self.played = 0  # number of the row that is played now, and when it was due
+        self._change: int | None = None  # Row at which the other stream takes over.
+        self.last = 0  # Number of the last written row.
+        self.last_t = 0.0  # Due time of the last written row in s.
+        self.played = 0  # Number of the row that is played now.
         self.played_t = 0.0
         self._due: deque[_Due] = deque()
         self._past: deque[_Due] = deque(maxlen=_PAST)
-        self._old: dict[int, Row] = {}  # of the stream that plays, from the change on
-        self._parts = 0  # the first row from there on that is another in the other stream
-        self._same_until = 0.0  # s; before that both are the same path
+        self._old: dict[int, Row] = {}  # Rows of the playing stream, from the change on.
+        self._parts = 0  # First row from the change on that differs in the other stream.
+        self._same_until = 0.0  # Seconds; until then both are the same path.
         pins["switch-at"] = _NEVER
         pins["play-b"] = 0
 
     @property
     def ahead(self) -> int:
-        """Rows written and not yet played."""
+        """The number of rows that are written but not yet played."""
         return self.last - self.played
 
     def write(self, t: float, values: tuple[float, ...]) -> bool:
-        """One more row, due at ``t``; False where the stream is full."""
+        """Write one row that is due at ``t``; return False if the stream is full."""
         stream = self._streams[self._active if self._change is None else 1 - self._active]
         if not stream.writable:
             return False
@@ -87,14 +87,14 @@ class RowStreams:
         return True
 
     def seen(self, row: int) -> float:
-        """The servo thread plays this row; when it was due."""
+        """Note that the servo thread plays this row, and return its due time."""
         while self._due and self._due[0].row <= row:
             self._past.append(self._due.popleft())
             self.played, self.played_t = self._past[-1].row, self._past[-1].t
         return self.played_t
 
     def first_from(self, t: float) -> int | None:
-        """The first row due at ``t`` or later that can still be recalled; None where it is too late."""
+        """Return the first row due at ``t`` or later that can be recalled, or None if it is too late."""
         soonest = self.played + _MARGIN
         for each in self._due:
             if each.t >= t - 1e-9:
@@ -102,7 +102,7 @@ class RowStreams:
         return self.last + 1
 
     def plays_anyway(self, t: float, make: MakeRow) -> bool:
-        """Whether what can no longer be recalled of ``t`` and later is what ``make`` has there."""
+        """Return whether the rows that can no longer be recalled equal those of ``make`` from ``t`` on."""
         until = self.played + _MARGIN
         rows = [each for each in (*self._past, *self._due) if each.row <= until]
         return (
@@ -110,7 +110,7 @@ class RowStreams:
         )
 
     def soonest(self) -> float:
-        """From when on rows can still be recalled, s."""
+        """Return the due time in seconds from which rows can be recalled."""
         for each in self._due:
             if each.row >= self.played + _MARGIN + 1:
                 return each.t
@@ -118,18 +118,18 @@ class RowStreams:
 
     @property
     def busy(self) -> bool:
-        """Whether a change is too near to be made another one: wait for it."""
+        """Whether a pending change is too close to be modified."""
         return self._change is not None and self.played + _MARGIN >= self._change
 
     def recall(self, t: float, make: MakeRow, same_until: float = -math.inf) -> bool:
-        """Make every row from ``t`` on anew; False where that comes too late, and nothing has changed.
+        """Replace all rows from ``t`` on; return False without a change if it is too late.
 
-        ``same_until``: what it replaces is the same path until then, s.
+        Until ``same_until`` seconds, the replacement is the same path.
         """
         first = self.first_from(t)
         if first is None or self.busy:
             return False
-        if self._change is not None:  # what it was to change is changed with this
+        if self._change is not None:  # The pending change is included in this one.
             first, same_until = min(first, self._change), min(same_until, self._same_until)
             self._pins["switch-at"] = _NEVER
             self._drain(1 - self._active)
@@ -158,7 +158,7 @@ class RowStreams:
         self._ask(first)
 
     def _ask(self, first: int) -> None:
-        """The other stream takes over from this row on."""
+        """Request that the other stream takes over at this row."""
         idle = self._streams[1 - self._active]
         for each in self._due:
             if each.row >= first:
@@ -168,7 +168,7 @@ class RowStreams:
         self._pins["switch-at"] = float(first - 1)
 
     def settle(self, plays_b: bool) -> bool:
-        """After a look at what is played: False where it is not what was asked for."""
+        """Complete a change by the stream that plays; return False if this is not the requested stream."""
         plays = int(plays_b)
         if self._change is None or self.played < self._change:
             unasked = self._change is None and plays != self._active
@@ -197,7 +197,7 @@ def _same(one: Row, other: Row) -> bool:
 
 
 class Sampler(Protocol):
-    """``hal.stream`` of the sampler."""
+    """Stream of samples from HAL, as ``hal.stream`` provides it."""
 
     @property
     def readable(self) -> bool: ...

@@ -1,4 +1,4 @@
-"""What is played when: a queue that ends at rest, and over the turns of the spindle a cam."""
+"""Setpoint player with a queue that ends at rest, and a cam over the revolutions of the spindle."""
 
 from __future__ import annotations
 
@@ -8,32 +8,32 @@ from typing import NamedTuple
 
 from drivers.setpoint_pieces import INF, Piece, PieceQueue
 
-_WINDOW = 0.06  # s of turns from which the speed is taken
+_WINDOW = 0.06  # Seconds of readings from which the speed is calculated.
 Row = tuple[float, ...]
 State = tuple[tuple[float, ...], tuple[float, ...]]
 
 
 def rows_of(pieces: list[Piece]) -> Callable[[float], Row]:
-    """Rows of setpoints by time alone."""
+    """Return a function that returns the row of setpoints at a time, without the spindle."""
     queue = PieceQueue(pieces[0].p)
     queue.replace(pieces[0].t, pieces)
     return lambda t: _still_row(queue, t)
 
 
 def _still_row(queue: PieceQueue, t: float) -> Row:
-    """Each axis' place, and no way a turn."""
+    """Return the row with the position of each axis and zero travel per revolution."""
     return tuple([each for p in queue.demand_at(t)[0] for each in (p, 0.0)])
 
 
 class TurnsAhead:
-    """Where the spindle will be, by what it has turned of late."""
+    """Prediction of the spindle position from its recent readings."""
 
     def __init__(self) -> None:
         self._seen: deque[tuple[float, float]] = deque()
         self.speed = 0.0  # turns/s
 
     def note(self, t: float, turns: float) -> None:
-        """A reading."""
+        """Add a reading."""
         seen = self._seen
         if seen and t <= seen[-1][0]:
             return
@@ -44,7 +44,7 @@ class TurnsAhead:
         self.speed = (turns - seen[0][1]) / since if since > 0.0 else 0.0
 
     def at(self, t: float) -> float:
-        """Turns at ``t``."""
+        """Return the predicted revolutions at ``t``."""
         if not self._seen:
             return 0.0
         then, turns = self._seen[-1]
@@ -52,7 +52,7 @@ class TurnsAhead:
 
 
 class Cam(NamedTuple):
-    """Motion over turns from ``zero`` on, as ``core.ports.Cam``; ``then`` goes on by time."""
+    """Motion over revolutions from ``zero`` on, as ``core.ports.Cam``; ``then`` continues by time."""
 
     zero: float
     sign: float
@@ -61,28 +61,31 @@ class Cam(NamedTuple):
 
 
 class Player:
-    """One row for any time: for each axis its place without the spindle, and its way a turn."""
+    """Player that returns a row of setpoints for any time.
+
+    A row has the position without the spindle and the travel per revolution of each axis.
+    """
 
     def __init__(self, axes: int) -> None:
         self.queue = PieceQueue((0.0,) * axes)
         self.turns = TurnsAhead()
         self.cam: Cam | None = None
-        self.left: float | None = None  # when the way of the cam was over, s
+        self.left: float | None = None  # End time of the cam in s.
 
     def rest_at(self, place: Sequence[float]) -> None:
-        """Nothing is queued any more."""
+        """Discard all setpoints and rest at this position."""
         self.cam = self.left = None
         self.queue.rest_at(place)
 
     def splice(self, pieces: list[Piece]) -> None:
-        """By time from here on."""
+        """Play these pieces by time from their start on, and end the cam."""
         if self.cam is not None:
             self.queue.rest_at(pieces[0].p)
         self.cam = self.left = None
         self.queue.replace(pieces[0].t, pieces)
 
     def mesh(self, zero: float, sign: float, pieces: list[Piece], then: Sequence[Piece]) -> None:
-        """By the spindle from here on; what lies before the first piece stays, where it goes on from one."""
+        """Follow the spindle with these pieces; earlier pieces of the same cam remain."""
         way = PieceQueue(pieces[0].p)
         if self.cam is not None and (self.cam.zero, self.cam.sign) == (zero, sign):
             way = self.cam.way
@@ -90,7 +93,7 @@ class Player:
         self.cam, self.left = Cam(zero, sign, way, then), None
 
     def brake(self, t: float, decel: Sequence[float]) -> list[Piece]:
-        """From ``t`` on straight to rest; the pieces of that, none where it rests."""
+        """Brake straight to rest from ``t`` on and return the pieces, which are empty at rest."""
         state = self.state(t)
         if self.cam is not None:
             self.rest_at(state[0])
@@ -104,15 +107,15 @@ class Player:
 
     @property
     def rests(self) -> bool:
-        """Whether the spindle moves nothing."""
+        """Whether no axis follows the spindle."""
         return self.cam is None or self.left is not None
 
     def horizon(self, t: float) -> float:
-        """Until when anything moves; endless while the slides follow the spindle."""
+        """Return the end time of the motion, or inf while an axis follows the spindle."""
         return self.queue.horizon(t) if self.rests else INF
 
     def state(self, t: float) -> State:
-        """Place and velocity at ``t``, as far as it is foreseen."""
+        """Return position and velocity at ``t``, predicted for a cam."""
         if self.cam is None or (self.left is not None and t >= self.left):
             return self.queue.demand_at(t)
         p, per_turn = self.cam.way.demand_at(self._cam_turns(self.cam, t))
@@ -120,7 +123,7 @@ class Player:
         return p, tuple([v * speed for v in per_turn])
 
     def row(self, t: float) -> Row:
-        """What HAL is given for ``t``: place and way a turn of each axis, one behind the other."""
+        """Return the row for HAL at ``t``: position and travel per revolution of each axis in sequence."""
         cam = self.cam
         if cam is not None and (self.left is None or t < self.left):
             u = self._cam_turns(cam, t)
@@ -131,7 +134,7 @@ class Player:
         return _still_row(self.queue, t)
 
     def geared(self) -> tuple[float, float] | None:
-        """Turns from zero at which the newest reading is, and turns/s; None where nothing follows."""
+        """Return the direction and speed of the spindle on the cam, or None without an active cam."""
         if self.cam is None or self.left is not None:
             return None
         return self.cam.sign, self.cam.sign * self.turns.speed
@@ -140,7 +143,7 @@ class Player:
         return cam.sign * (self.turns.at(t) - cam.zero)
 
     def _geared(self, cam: Cam, u: float) -> Row:
-        """The tangent where the spindle is foreseen: where it really is then, HAL computes with it."""
+        """Return the tangent of the cam at the predicted revolutions, as HAL needs it for the position."""
         place, per_turn = cam.way.demand_at(u)
         start = cam.zero + cam.sign * u
         return tuple(
@@ -152,7 +155,7 @@ class Player:
         )
 
     def _leave(self, cam: Cam, t: float) -> None:
-        """Behind the end of the way: rest, or what goes on by time."""
+        """End the cam: rest, or continue by time if the cam has a tail."""
         rest, _ = cam.way.demand_at(INF)
         self.left = t
         self.queue.rest_at(rest)
