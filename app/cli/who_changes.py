@@ -27,7 +27,7 @@ COMMAND_LINE = "command line"  # name in the history if there are no access leve
 
 
 def add_as_option(parser: argparse.ArgumentParser) -> None:
-    """Add the option ``--as NAME``."""
+    """Add the option ``--as NAME``, which names the user to whom the change is attributed."""
     parser.add_argument(
         "--as",
         dest="as_name",

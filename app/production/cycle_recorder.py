@@ -145,7 +145,7 @@ class CycleRecorder:
         cycles.record_stop(row)
 
     def _name(self, reason: str) -> None:
-        """Set the reason of the present stop or of the next stop."""
+        """Set the reason for the present stop, or for the next stop if the machine runs."""
         stop = self._stop
         if stop is None:
             self._reason = reason

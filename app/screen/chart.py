@@ -155,7 +155,7 @@ class Chart(pg.GraphicsLayoutWidget):  # type: ignore[misc]
     def ready(self, count: int) -> bool:
         """Return whether ``count`` plots exist.
 
-        Each call creates one missing plot, so that no call takes a frame.
+        Each call creates at most one missing plot, so that no call takes longer than a frame.
         """
         if len(self.plots) + len(self._spare) < count:
             self._spare.append(Plot())

@@ -60,7 +60,10 @@ class SpindleAngle:
 
     @property
     def known(self) -> bool:
-        """True if there are enough recent readings for a prediction."""
+        """True if there are enough recent readings for a prediction.
+
+        It is False immediately after an interruption of the control, and always without an encoder.
+        """
         return len(self._reads) >= _LEAST_READINGS
 
     def at(self, t: float) -> tuple[float, float] | None:

@@ -211,7 +211,7 @@ def _apart(part: Element, contour: Boxed, least: float, within: Sequence[Winding
 
 
 def _single(parts: Sequence[Element]) -> list[Element]:
-    """Return the parts without duplicates that cover each other in the same direction."""
+    """Return the parts, each only once where parts of the same direction coincide."""
     found: dict[tuple[int, ...], Element] = {}
     for part in parts:
         if part.length < SAME_POINT:

@@ -243,7 +243,10 @@ def _brakes(reading: Reading, _place: str) -> Derived:
 
 
 def _closes(reading: Reading, _place: str) -> Derived:
-    """Return 0.5 s if a switch confirms a closed collet; otherwise the file must specify the time."""
+    """Return the closing time of the collet.
+
+    It is 0.5 s if a switch confirms a closed collet. Otherwise, the file must specify it.
+    """
     return _CLOSES if "collet_closed" in reading.inputs or reading.kind != "lathe" else None
 
 
@@ -273,7 +276,9 @@ def _arrived(reading: Reading, place: str) -> Derived:
 
 
 def _stands(reading: Reading, place: str) -> Derived:
-    """Return the value of another axis, or 0.2 mm (1 degree), which cutting forces do not exceed.
+    """Return the standstill tolerance of another axis, or 0.2 mm (1 degree).
+
+    Cutting forces do not move an axis that far.
 
     The result is at least four in-position windows and at most the following error window.
     """

@@ -167,7 +167,7 @@ def step_caps(turns: FloatArray, along: FloatArray, limits: MotionLimits) -> Flo
 
     A corner turns the velocity by v·|Δu|, and ``along`` (n-1,) mm/s² may brake before the corner and
     accelerate after it: (v + along·interval/2)·|Δu| ≤ amax·interval. A full reversal is a stop. Setpoints
-    half an interval before the corner show at most an eighth more. The result is infinite without a turn.
+    half an interval off the corner show at most an eighth more. The result is infinite without a turn.
     """
     sharp = least_ratio(limits.accelerations * limits.interval, turns)
     caps: FloatArray = np.maximum(sharp - 0.5 * limits.interval * along, 0.0) ** 2
@@ -179,8 +179,8 @@ def curve_caps(pieces: Pieces, turns: FloatArray, limits: MotionLimits) -> Float
 
     Short chords: v²·|Δu|/ℓ ≤ share·amax, where ℓ is the mean length of the neighbors. For chords of a circle,
     this is its centripetal limit for any chord length. A second corner within the interval: v²·|Δu|/ℓ ≤ amax,
-    where ℓ is the shorter neighbor. Two such corners together use (2 - ℓ/vT)·ℓ/vT of amax, which is never
-    more than 1.
+    where ℓ is the shorter neighbor. Two such corners together use the fraction (2 - ℓ/vT)·ℓ/vT of amax, which
+    is never more than 1.
     """
     mean = 0.5 * (pieces.length[:-1] + pieces.length[1:])
     shorter = np.minimum(pieces.length[:-1], pieces.length[1:])
@@ -246,7 +246,8 @@ def spare_for_chords(
 def constant_rates(table: BlockTable) -> FloatArray:
     """Return the speed (m,) of each block in mm/s. Surface-speed blocks use the middle of their radii.
 
-    Raises MotionError for a feed that is not positive, and for a feed per revolution with a stopped spindle.
+    Raises MotionError for a feed that is not positive, for a feed per revolution with a stopped spindle, and
+    for a surface speed at the spindle centerline without an upper limit of the spindle speed.
     """
     _refuse(table, ~(table.feed > 0.0), "the feed must be greater than 0; program an F word", "no-feed")
     surface = by_radius(table)

@@ -139,7 +139,7 @@ class RecordError(CodedError):
 
 
 class AnalysisError(CodedError):
-    """A record lacks data for an analysis. The text has the missing data and a remedy."""
+    """A record lacks data that an analysis needs. The text names the missing data and a remedy."""
 
 
 def damage(path: Path, error: Exception) -> RecordError:

@@ -116,7 +116,10 @@ class Bus(canopen.Network):
         self.send_message(_SYNC, b"")
 
     def wait(self, ready: Callable[[], bool], timeout: float) -> bool:
-        """Process frames until ``ready`` returns True; return False after ``timeout`` seconds."""
+        """Process frames until ``ready`` returns True; return False after ``timeout`` seconds of real time.
+
+        Returns False at once if the bus has failed.
+        """
         if self._idle is not None:
             return self._wait_in_steps(ready)
         end = time.monotonic() + timeout

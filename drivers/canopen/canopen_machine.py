@@ -234,7 +234,7 @@ class CanopenMachine:
             self.bus.lost(str(error))
 
     def _meanwhile(self) -> float:
-        """Continue SYNC and setpoints during a wait for a node; return the seconds to the next SYNC."""
+        """Keep sending SYNC and setpoints while waiting for a node; return the seconds to the next SYNC."""
         left = self.axes.schedule.due - self.clock.now()
         if left <= 0.0 and not self.bus.trouble:
             self._cycle()
@@ -280,9 +280,10 @@ class CanopenMachine:
             self.bus.lost(str(error))
 
     def idle(self, asleep: bool) -> float:
-        """Return the seconds until the next SYNC, heartbeat or reply is due, or 0 while a drive moves.
+        """Return the seconds until the next SYNC, heartbeat or reply is due while the control sleeps.
 
-        While the control sleeps, replies are needed only ten times per second.
+        The result is 0 if the control is not ``asleep``, while a drive moves, or after a bus failure. While
+        the control sleeps, replies are needed only ten times per second.
         """
         bus = self.config.bus
         apart = max(bus.sync, _RESTING / bus.seldom if asleep else 0.0)

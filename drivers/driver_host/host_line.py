@@ -195,7 +195,7 @@ class Line:
         return frozenset(map(Unknown, texts(self.look().get("unknown"))))
 
     def hang_up(self) -> None:
-        """Disconnect from any thread; the driver host detects the loss and stops the machine."""
+        """Disconnect from any thread; the driver host detects the loss and stops the machine for good."""
         self._link.hang_up()
 
     def close(self) -> None:

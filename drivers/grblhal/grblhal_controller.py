@@ -147,8 +147,8 @@ class Controller(ReportedState):
     def halt(self) -> None:
         """Stop the motion from any thread if ``pump`` has stopped being called.
 
-        The first call sends a jog cancel and a feed hold. The next call resets the controller, which also
-        stops spindle and coolant. The bytes bypass all buffers.
+        The first call sends a jog cancel and a feed hold. The next call, for axes that are then at rest,
+        resets the controller, which also stops spindle and coolant. The bytes bypass all buffers.
         """
         self._wire.write(
             bytes([grblhal_codes.RESET] if self._halted else [grblhal_codes.JOG_CANCEL, grblhal_codes.HOLD])

@@ -31,7 +31,8 @@ class GrblEncoder:
 
     def __init__(self, controller: Controller) -> None:
         self._c = controller
-        self.way: Callable[[], float] = lambda: 0.0  # Commanded speed in rpm, signed.
+        # Signed rpm reported by the device that turns the spindle.
+        self.way: Callable[[], float] = lambda: 0.0
         self._sign = 1.0
 
     @property
@@ -40,9 +41,10 @@ class GrblEncoder:
         return self._c.report is not None and self._c.report.measured is not None
 
     def speed(self) -> float:
-        """Return the measured speed in rpm with the sign of the last command.
+        """Return the measured speed in rpm, with the sign of the speed that the spindle's drive reports.
 
-        While the controller is silent, return the commanded speed.
+        At a reported speed of 0, the previous sign remains, for example while the spindle runs down. While
+        the controller is silent, return the speed that the drive reports.
         """
         way, report = self.way(), self._c.report
         if self._c.mute:

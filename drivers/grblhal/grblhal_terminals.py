@@ -139,7 +139,11 @@ class GrblIO:
         return shown
 
     def write(self, name: str, on: bool) -> None:
-        """Switch an output. Raises DriverError if the machine or the controller does not have the output."""
+        """Switch an output.
+
+        Raises DriverError if the machine does not have the output, or if it is switched on and the controller
+        does not have it.
+        """
         output_of(name, self._wanted)
         why = self.lacking(name)
         if on and why:

@@ -44,8 +44,8 @@ class HalSpindle:
 class HalOutput:
     """Output with its pin and safe state; None leaves the output unchanged.
 
-    ``lamp`` marks a lamp of the signal tower. It indicates an open E-stop chain, so it is safe only while the
-    bridge is silent.
+    ``lamp`` marks a lamp of the signal tower. It indicates an open E-stop chain, so an open chain does not
+    switch it to its safe state. Only a silent bridge does.
     """
 
     pin: str

@@ -312,7 +312,7 @@ class HalSession:
         raise DriverError(words, "hal-setup")
 
     def _said(self) -> str:
-        """Return the relevant last output of halrun."""
+        """Return the last lines of the output of halrun that explain a failure."""
         try:
             lines = (self._folder / "halrun.log").read_text(encoding="utf-8", errors="replace").splitlines()
         except OSError:

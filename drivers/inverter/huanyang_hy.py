@@ -85,7 +85,10 @@ class HuanyangHy:
         )
 
     def reset(self) -> None:
-        """Send a stop, because a trip can be reset only at the keypad."""
+        """Send a stop, because a trip can be reset only at the keypad.
+
+        Without a trip, the stop makes the inverter ready again.
+        """
         self.stop()
 
     def close(self) -> None:

@@ -62,7 +62,8 @@ class InverterSpindle:
     def run(self, rpm: float) -> None:
         """Turn the spindle at ``rpm``, signed; 0 stops it.
 
-        Raises DriverError with a fault or in E-stop if the speed is not 0.
+        Raises DriverError if the speed is not 0 in E-stop, with a fault, or before a stopped inverter has
+        sent enough valid responses.
         """
         if rpm:
             demand_estop_released(self._estop())

@@ -82,7 +82,10 @@ class SimAxes(_OnPlant):
             )
 
     def enable(self, on: bool) -> None:
-        """Switch the drives on or off. Raises DriverError in E-stop or with a fault."""
+        """Switch the drives on or off.
+
+        Raises DriverError when switching on in E-stop or with a fault; switching off is always possible.
+        """
         self._plant.power(on)
 
     def stop(self, how: Stop) -> None:

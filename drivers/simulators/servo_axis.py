@@ -17,7 +17,7 @@ from drivers.simulators.plant_config import SimAxis
 
 # Lowest speed in mm/s and fraction of the rapid between which an axis is assumed to cut.
 _FEEDS, _CUTS = 0.05, 0.25
-_SETTLED = 1e-4  # An axis closer than this (mm or degrees) is set to its setpoint.
+_SETTLED = 1e-4  # Mm or degrees; an axis closer than this and almost at rest is set to its setpoint.
 
 
 class Servo:

@@ -308,8 +308,9 @@ def find_control(machine: Machine, folder: Path, path: Path) -> ControlClient | 
     """Return a control that is still running because its screen was killed, or None.
 
     The control listens at the socket ``path``. The result is None if no control is running or another screen
-    is connected to it. Raises DriverError if the control executes another machine file, has another version,
-    or does not respond.
+    is connected to it. A control at rest that has another machine file is closed, and the result is None too.
+    Raises DriverError if a control with another machine file is running a program, or if the control has
+    another version or does not respond.
     """
     connection = _connected(path)
     if connection is None:

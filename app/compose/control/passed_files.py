@@ -46,9 +46,9 @@ class SharedMemory:
 
 
 def obey_line(line: int, stop: Callable[[Stop], None]) -> None:
-    """Call ``stop`` in a new thread for each stop key received from the socket ``line``, until it closes.
+    """Call ``stop`` for each stop key received from the socket ``line``, until the socket closes.
 
-    The thread works independently of the screen's state.
+    One separate thread receives the keys and calls ``stop``, independently of the screen's state.
     """
     sock = socket(AF_UNIX, SOCK_SEQPACKET, fileno=line)
     threading.Thread(target=_obey, args=(sock, stop), name="stop-keys", daemon=True).start()

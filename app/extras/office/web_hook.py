@@ -46,7 +46,7 @@ class WebHook:
         self._there.set()
 
     def close(self) -> None:
-        """Finish the present post without waiting for it."""
+        """Tell the thread to end after the current post, and return at once."""
         self._closing.set()
         self._there.set()
 

@@ -315,7 +315,10 @@ class Frame(QWidget):
                 panel.update()
 
     def _is_dead(self, key: str) -> bool:
-        """Return whether the key of a lamp has no function on this page. A touch works on every page."""
+        """Return whether the key of a lamp has no function on this page.
+
+        A touch on the lamp works on every page.
+        """
         elsewhere = key in OF_AUTOMATIC and self.page is not self.automatic
         return elsewhere or self.has_field() or self.is_text(key)
 

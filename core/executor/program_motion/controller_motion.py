@@ -306,7 +306,10 @@ class ControllerMotion:
         self.brake()
 
     def retracted(self) -> None:
-        """Retract X at rest, and raise AlarmError("thread-lost") when the tool is out."""
+        """Retract X at rest, and raise AlarmError("thread-lost") when the tool is out.
+
+        The alarm is also raised, without a retract, if the controller cannot start a block.
+        """
         assert self._lost is not None
         block, out = self._lost
         x, z = self._context.sample.actual[:2]

@@ -54,7 +54,7 @@ class SetpointMotion:
 
     @property
     def moving(self) -> bool:
-        """True if anything is moving."""
+        """True if a path section or a thread pass is active and the axes are not at rest."""
         return self.active and not self._rests()
 
     @property

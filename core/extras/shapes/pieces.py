@@ -87,7 +87,7 @@ def begins_subroutine(line: str) -> bool:
 
 
 def begun(lines: Sequence[str], dialect: Dialect) -> bool:
-    """Return whether a program already specifies its units, in a head or in other lines."""
+    """Return whether a program already specifies its units, in its header or in other lines."""
     if dialect is Dialect.OMNITURN:
         return any(line.upper().startswith(("G90", "G91")) for line in lines[:1])
     codes = [code for line in lines if (code := code_of(line, dialect))]

@@ -129,7 +129,7 @@ class SharedFolder:
         draft.replace(path)
 
     def _clear(self, home: str) -> None:
-        """Remove unfinished files of this machine that a power failure has left."""
+        """Remove unfinished files of this machine that a power failure left."""
         for folder in (VERSIONS, DESKS):
             for path in (self._folder / folder).glob(f"{_WRITING}{home}-*"):
                 path.unlink(missing_ok=True)

@@ -121,7 +121,7 @@ _TOLERATED_BRACKET = frozenset({Steering.GROUP_BEGIN, Steering.GROUP_END, Steeri
 
 
 def steering_word(text: str, at: int) -> Steering | None:
-    """Return the keyword at this index of a line in capitals, or None."""
+    """Return the keyword at index ``at`` of ``text``, a line in capitals, or None."""
     match = _WORDS.match(text, at)
     return None if match is None else Steering(match.group(1))
 

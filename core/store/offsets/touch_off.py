@@ -36,9 +36,9 @@ def touch_off(
 ) -> tuple[Change, ...]:
     """Store a touched-off position and set the wear of that axis to zero.
 
-    Touching off the master tool moves all other tools by the same distance, as one step of the history.
-    Raises StoreError if a value is out of range, or if only one axis of a new tool was touched off. The store
-    is then unchanged.
+    The new geometry already contains the wear. Touching off the master tool moves all other tools by the same
+    distance, as one step of the history. Raises StoreError if a value is out of range, or if only one axis of
+    a new tool was touched off. The store is then unchanged.
     """
     offset_tables.check_number(Kind.TOOL, number)
     rows = offset_tables.tools(connection)

@@ -138,7 +138,10 @@ def add_reading(connection: sqlite3.Connection, row: ReadingRow) -> int:
 
 
 def void_reading(connection: sqlite3.Connection, reading: int) -> None:
-    """Mark a reading as deleted; its row remains. Raises StoreError if the reading does not exist."""
+    """Mark a reading as deleted; its row remains.
+
+    Raises StoreError if the reading does not exist or is already deleted.
+    """
     done = connection.execute("UPDATE part_readings SET void = 1 WHERE id = ? AND void = 0", (reading,))
     if not done.rowcount:
         raise StoreError("that reading has already been deleted", "already-removed")

@@ -87,7 +87,7 @@ class RowStreams:
         return True
 
     def seen(self, row: int) -> float:
-        """Note that the servo thread plays this row, and return its due time."""
+        """Record that the servo thread plays this row, and return its due time in seconds."""
         while self._due and self._due[0].row <= row:
             self._past.append(self._due.popleft())
             self.played, self.played_t = self._past[-1].row, self._past[-1].t

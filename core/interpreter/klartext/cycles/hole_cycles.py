@@ -33,10 +33,10 @@ def reaming(tool: CycleTool) -> Iterator[Block]:
 
 
 def boring(tool: CycleTool) -> Iterator[Block]:
-    """Yield the blocks of cycle 202: bore, orient the spindle (Q336), move off the wall (Q214), retract.
+    """Yield the blocks of cycle 202: bore, stop at the angle Q336, move off the wall (Q214), retract.
 
-    If the spindle cannot be oriented, it stops at any angle, and the program stops so that the operator can
-    turn the edge away from the wall.
+    The spindle turns again after the retract. If the spindle cannot be oriented, it stops at any angle. With
+    a move off the wall, the program then stops so that the operator can turn the edge away from the wall.
     """
     surface, clear, bottom = heights(tool)
     rpm, way = tool.rpm, aside(tool, (0, 1, 2, 3, 4))

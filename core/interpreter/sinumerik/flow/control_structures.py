@@ -141,9 +141,10 @@ def follow(line: Line, jump: Jump, state: State, program: Routine, at: int) -> i
 
 
 def _structure(line: Line, jump: Jump, state: State, program: Routine, places: tuple[int, ...]) -> int | None:
-    """Return the index of the next line at a line of IF, WHILE, FOR, LOOP or REPEAT.
+    """Return the index of the line that follows a line of IF, WHILE, FOR, LOOP or REPEAT in execution.
 
-    ``places`` are the lines of the structure. Returns None for the following line. Raises ProgramError.
+    The result is None if execution continues with the next line. ``places`` are the lines of the structure.
+    Raises ProgramError.
     """
     first, last, steering = places[0], places[-1], jump.steering
     if steering is Steering.END_FOR:
