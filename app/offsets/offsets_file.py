@@ -89,7 +89,6 @@ def read_rows(path: Path) -> tuple[dict[int, ToolRow], dict[int, SecondaryRow], 
                 "two-masters",
             )
         )
-    refuse(path, mistakes)
     zero = {code: with_fields(ZeroRow(), values) for code, values in _table(data, Kind.ZERO, mistakes)}
     refuse(path, mistakes)
     return tools, secondary, zero
@@ -240,7 +239,8 @@ def _values(entry: dict[str, object], kind: Kind, name: str, mistakes: list[Code
     values: dict[str, Value] = {}
     for key, value in entry.items():
         where = f"{kind}.{name}.{key}"
-        field = known.get(ALIASES.get(key, key) if kind is Kind.TOOL else key)
+        full_key = ALIASES.get(key, key) if kind is Kind.TOOL else key
+        field = known.get(full_key)
         if field is None:
             mistakes.append(unknown_key(key, known, f"{kind}.{name}"))
         elif field.name in values:
@@ -249,7 +249,9 @@ def _values(entry: dict[str, object], kind: Kind, name: str, mistakes: list[Code
                     Message(
                         "{place} is specified under two names, {value}; use only one name",
                         place=where,
-                        value=" and ".join(*ALIASES.items()),
+                        value=" and ".join(
+                            [*(a for a, full in ALIASES.items() if full == full_key), full_key]
+                        ),
                     ),
                     "key-twice",
                 )

@@ -120,6 +120,14 @@ def test_wear_of_an_offsets_file_is_in_what_the_interpreter_gets(tmp_path: Path)
     assert tools[2].z == pytest.approx(-1.998 * 25.4)
 
 
+def test_all_mistakes_of_offsets_and_zeros_are_reported_together(tmp_path: Path) -> None:
+    path = written(tmp_path, '[tool.1]\nwear_x = 0.2\n[zero.54]\nx = "1"\n')
+    with pytest.raises(CommandError) as raised:
+        read_offsets(path)
+    assert "tool.1.wear_x" in str(raised.value)
+    assert "zero.54.x" in str(raised.value)
+
+
 @pytest.mark.parametrize(
     ("text", "code", "value"),
     [
