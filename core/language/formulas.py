@@ -152,7 +152,7 @@ class FormulaReader(LineReader):
         self._depth += 1
         if self._depth > _DEEPEST:
             raise FormulaError(
-                self.at, "The formula is nested too deeply", "Split the contour into smaller parts."
+                self.at, "The formula is nested too deeply", "Split the formula into several assignments."
             )
         made = self._operand()
         while (sign := self._operator()) is not None:

@@ -26475,6 +26475,11 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
+      <source>The maximum is {most_m} M codes in a block.</source>
+      <translation>El máximo es de {most_m} códigos M por bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
       <source>Use only one G code from each group in a block.</source>
       <translation>Use sólo un código G de cada grupo en un bloque.</translation>
     </message>
@@ -26552,6 +26557,11 @@
       <location filename="core/language/formulas.py" />
       <source>Complete the formula.</source>
       <translation>Complete la fórmula.</translation>
+    </message>
+    <message>
+      <location filename="core/language/formulas.py" />
+      <source>Split the formula into several assignments.</source>
+      <translation>Divida la fórmula en varias asignaciones.</translation>
     </message>
     <message>
       <location filename="core/language/formulas.py" />

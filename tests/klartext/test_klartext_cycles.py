@@ -119,6 +119,33 @@ def test_deep_drilling_stops_before_the_chips() -> None:
     ]  # fmt: skip
 
 
+@pytest.mark.parametrize(("number", "more"), [(203, {"q213": 1}), (205, {})])
+def test_default_distances_of_pecks_are_0_2_mm_in_an_inch_program(
+    number: int, more: dict[str, float]
+) -> None:
+    """Surface 1 in, infeed 5 in: the tool is at -4 in = -101.6 mm; Q256, Q258 and Q259 are 0.2 mm."""
+    ran = run(HERE + cycle(number, q201=-8, q208=0, **more), tool=TOOL, unit="INCH")
+    assert ran.codes == []
+    rapids = [_height(block) for block in ran.blocks if block.kind is Kind.RAPID]
+    assert pytest.approx(-101.4) in rapids
+    assert min(rapids) == pytest.approx(-101.4)
+
+
+def _height(block: Block) -> float:
+    assert block.swivel is not None
+    return block.swivel.end[2]
+
+
+def test_a_rejected_cycle_of_a_pattern_does_not_change_the_surface() -> None:
+    """Cycle 200 without Q201 is rejected at the first point, which is 5 mm below the surface Q203=1."""
+    ran = ran_of(
+        f"{COMMON}CYCL DEF 200 NAME ~\n  Q200=+2 ;WHAT\n"
+        "PATTERN DEF POS1 (X+0 Y+0 Z-5) POS2 (X+9 Y+0 Z+0)\nCYCL CALL PAT FMAX"
+    )
+    assert ran.codes == ["Cycle incomplete"]
+    assert ran.state.q[203] == 1.0
+
+
 def test_tapping_turns_the_spindle_round() -> None:
     assert told(cycle(206, q201=-8)) == ["turn 1000", "R 3", "F -7", "turn -1000", "F 3", "turn 1000", "R 31"]
     ran = ran_of(cycle(207, q201=-8, q239=1.25))

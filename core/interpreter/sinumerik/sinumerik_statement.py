@@ -180,7 +180,7 @@ def _check_m(statement: Statement) -> None:
             list(statement.m.values())[-1],
             "m-too-many",
             text,
-            Message("The maximum is {most_points} points.", most_points=known.MOST_M),
+            Message("The maximum is {most_m} M codes in a block.", most_m=known.MOST_M),
         )
     for group in ({3, 4, 5, 19, 70}, {0, 1, 2, 17, 30}, {7, 9}, {8, 9}, {40, 41, 42, 43, 44, 45}):
         found = sorted(group & statement.m.keys())

@@ -324,15 +324,18 @@ class Cycles:
         state.check(self._number in _MACHINING, node.column, CYCLE_MISSING, text, hint)
         speed = None if node.feed is None else word_values.feed_word(state, node.feed, node.column)
         surface = state.q.get(_SURFACE, 0.0)
-        for x, y, above in self._points:
-            state.q[_SURFACE] = surface + above / state.scale
-            tool = self._tool(self._number, node.column)
-            safe = tool.length(_SURFACE) + max(tool.length(200), tool.length(204, 0.0))
-            if tool.height < safe:
-                yield tool.to(safe)
-            yield tool.across((x, y), None, speed)
-            yield from self.call(node.column)
-        state.q[_SURFACE] = surface
+        try:
+            for x, y, above in self._points:
+                state.q[_SURFACE] = surface + above / state.scale
+                tool = self._tool(self._number, node.column)
+                safe = tool.length(_SURFACE) + max(tool.length(200), tool.length(204, 0.0))
+                if tool.height < safe:
+                    yield tool.to(safe)
+                yield tool.across((x, y), None, speed)
+                yield from self.call(node.column)
+        finally:
+            # The proof continues after an error of the cycle and needs the programmed surface.
+            state.q[_SURFACE] = surface
 
     def call_at(self, node: CycleCall) -> Iterator[Block]:
         """Yield the blocks of CYCL CALL POS: to the position above the workpiece, then the cycle."""

@@ -93,9 +93,14 @@ class CycleTool:
             raise self.refuse(text, hint, CYCLE_MISSING, parameter=self.named(q))
         return found
 
-    def length(self, q: int, default: float | None = None) -> float:
-        """Return a length in mm."""
-        return self.plain(q, default) * self._state.scale
+    def length(self, q: int, default_mm: float | None = None) -> float:
+        """Return a length in mm, or ``default_mm`` if the parameter is missing.
+
+        Raises ProgramError if the parameter is missing and has no ``default_mm``.
+        """
+        if default_mm is not None and self._value(q) is None:
+            return default_mm
+        return self.plain(q) * self._state.scale
 
     def feed(self, q: int) -> float | None:
         """Return a feed as programmed; None for a rapid."""
