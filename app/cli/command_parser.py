@@ -9,7 +9,7 @@ from __future__ import annotations
 import argparse
 import os
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from contextlib import suppress
 from typing import Any, NoReturn
 
@@ -93,13 +93,12 @@ class Parser(argparse.ArgumentParser):
             if isinstance(action, argparse._SubParsersAction) and os.path.isfile(str(value)):
                 self.error(
                     Message(
-                        "{value} is a file, not a command; to prove it, use: turndesk prove {value2}; to "
-                        "open it on the screen, use: turndesk --program {value3}",
+                        "{value}: the screen opens one program; to prove several, use: turndesk prove FILE…",
                         value=value,
-                        value2=value,
-                        value3=value,
                     )
                 )
+            if isinstance(action, argparse._SubParsersAction) and os.path.splitext(str(value))[1]:
+                self.error(Message("{value}: there is no file and no command with this name", value=value))
             near = nearest(str(value), map(str, action.choices))
             if near:
                 raise argparse.ArgumentError(
@@ -178,8 +177,7 @@ def add_screen_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--demo",
         action="store_true",
-        help="open the screen with a separate data store that contains sample offsets; you "
-        "can change these offsets",
+        help="use a separate data store that contains sample offsets, for the screen or for a command",
     )
     parser.add_argument(
         "--kiosk", action="store_true", help="run in full screen; the window cannot be closed"
@@ -207,6 +205,27 @@ def is_for_screen(argv: Sequence[str]) -> bool:
     return True
 
 
+def with_program_option(argv: Sequence[str], commands: Collection[str]) -> Sequence[str]:
+    """Return the arguments with ``--program`` before the first word if that word is a file, not a command.
+
+    ``commands`` are the names of all commands. A command precedes a file of the same name.
+    """
+    value_of = ""
+    for index, word in enumerate(argv):
+        if value_of or word.startswith("-"):
+            value_of = word if word in VALUED and not value_of else ""
+        elif word in commands or not os.path.isfile(word):
+            break
+        else:
+            return [*argv[:index], "--program", *argv[index:]]
+    return argv
+
+
+def with_demo_first(argv: Sequence[str]) -> Sequence[str]:
+    """Return the arguments with ``--demo`` before the command, where the parser of the screen reads it."""
+    return ["--demo", *(word for word in argv if word != "--demo")] if "--demo" in argv else argv
+
+
 def settled(args: argparse.Namespace) -> argparse.Namespace:
     """Return the arguments with the options before the command assigned to it. Raises CommandError."""
     command = args.command
@@ -214,16 +233,11 @@ def settled(args: argparse.Namespace) -> argparse.Namespace:
         command or args.demo or args.kiosk or any(getattr(args, f"before_{name}") for name in BEFORE)
     ):
         raise CommandError("--version cannot be combined with other options or commands", "version-alone")
-    for name in ("demo", "kiosk"):
-        if command and getattr(args, name):
-            raise CommandError(
-                Message(
-                    "--{name} opens the screen; remove this option to run {command}",
-                    name=name,
-                    command=command,
-                ),
-                "screen-option",
-            )
+    if command and args.kiosk:
+        raise CommandError(
+            Message("--kiosk opens the screen; remove this option to run {command}", command=command),
+            "screen-option",
+        )
     for name in BEFORE:
         before = getattr(args, f"before_{name}")
         if not command:

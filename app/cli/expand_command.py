@@ -12,7 +12,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING
 
 from app.cli.program_options import add_ideal_option, add_program_options, circumstances, read_source
-from app.cli.progress_bar import Progress
+from app.cli.proofs.progress_bar import Progress
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK
 
 if TYPE_CHECKING:

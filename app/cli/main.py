@@ -17,7 +17,15 @@ from collections.abc import Mapping, Sequence
 from types import ModuleType
 
 from app import VERSION
-from app.cli.command_parser import Parser, Subcommands, add_screen_options, is_for_screen, settled
+from app.cli.command_parser import (
+    Parser,
+    Subcommands,
+    add_screen_options,
+    is_for_screen,
+    settled,
+    with_demo_first,
+    with_program_option,
+)
 from app.cli.crash_report import keep_interrupts, raise_interrupt, report_crash, report_thread
 from app.compose.extra import Subcommand, command_modules, extras, insert_after
 from app.desk import command_errors
@@ -37,6 +45,8 @@ COMMANDS: Mapping[str, str] = {
     "alarms": "list all alarms with number, meaning, causes and remedies",
     "scope": "show scope data from a saved record or from the last few minutes",
     "setup": "copy a machine's setup, add a desktop entry, or print a shell completion script",
+    "where": "list the folders and files that TurnDesk uses",
+    "help": "explain a command and its options",
 }
 """Subcommands with their help. Each has a module with add_parser(subparsers) and run(args) -> exit status.
 The help of all of them imports none."""
@@ -99,10 +109,19 @@ def build_parser(commands: Sequence[str] | None = None, *, bare: bool = False) -
 
 def _commands_for(argv: Sequence[str]) -> Sequence[str]:
     """Return only the requested command, to import one module, or all commands if it is invalid."""
-    if argv and argv[0] in COMMANDS:
-        return (argv[0],)
+    first = next((word for word in argv if word != "--demo"), "")
+    if first in COMMANDS:
+        return (first,)
     commands = all_commands()
-    return (argv[0],) if argv and argv[0] in commands else commands
+    return (first,) if first in commands else commands
+
+
+def _arguments(argv: Sequence[str]) -> Sequence[str]:
+    """Return the arguments with the demo and a program file in the places where the parser expects them."""
+    argv = with_demo_first(argv)
+    if is_for_screen(argv) or (argv and argv[0] in COMMANDS):
+        return argv
+    return with_program_option(argv, all_commands())
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -110,7 +129,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
     The status is 0 if successful, 1 if the program has errors, and 2 for a usage error.
     """
-    argv = sys.argv[1:] if argv is None else argv
+    argv = _arguments(sys.argv[1:] if argv is None else argv)
     gc.set_threshold(200_000)  # imports alone would cause a hundred useless collections
     try:
         nothing_taken()
@@ -185,10 +204,22 @@ def _dispatch(args: argparse.Namespace) -> int:
     if args.version:
         sys.stdout.write(f"turndesk {VERSION}\n")
         return EXIT_OK
+    if args.demo:
+        _open_demo(args)
     if args.command:
         status: int = _module_of(args.command).run(args)
         return status
     return _screen(args)
+
+
+def _open_demo(args: argparse.Namespace) -> None:
+    """Use the data folder of the demo, and its program on the screen if none is specified."""
+    from app.compose.demo_store import demo_program, open_demo
+
+    machine = getattr(args, "machine", None)
+    open_demo(machine)
+    if not args.command:
+        args.program = args.program or demo_program(machine)
 
 
 def _has_display() -> bool:
@@ -207,15 +238,15 @@ def _screen(args: argparse.Namespace) -> int:
         raise CommandError(
             Message("the screen cannot be opened: {why}. {without}", why=why, without=WITHOUT), "no-screen"
         )
-    program = args.program
-    if args.demo:
-        from app.compose.demo_store import demo_program, open_demo
+    if args.program and not (args.machine or args.offsets or args.kiosk):
+        from app.screen.window.running_screen import hand_over
 
-        open_demo(args.machine)
-        program = program or demo_program(args.machine)
+        if hand_over(args.program):
+            sys.stdout.write(f"{args.program}: opened in the TurnDesk that is already running\n")
+            return EXIT_OK
     from app.screen.run_screen import run_screen
 
-    return run_screen(machine=args.machine, program=program, offsets=args.offsets, kiosk=args.kiosk)
+    return run_screen(machine=args.machine, program=args.program, offsets=args.offsets, kiosk=args.kiosk)
 
 
 def _streams_for_any_text() -> None:

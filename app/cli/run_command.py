@@ -19,7 +19,7 @@ from app.cli.program_options import (
     input_states,
     read_source,
 )
-from app.cli.progress_bar import Progress
+from app.cli.proofs.progress_bar import Progress
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
 from core.message import Message
 from core.tool_edges import edge_name

@@ -276,7 +276,7 @@ def carry(transfer: Transfer[T], what: str) -> T | None:
     """Run a transfer and return its result; None if it failed, after printing the error."""
     from concurrent.futures import ThreadPoolExecutor, wait
 
-    from app.cli.progress_bar import Progress
+    from app.cli.proofs.progress_bar import Progress
     from app.programs.whole_file import FileError
     from core.ports import DriverError
 

@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli.meant_changes import Changes, add_consent_options, demand_meant
+from app.cli.actions.meant_changes import Changes, add_consent_options, demand_meant
 from app.cli.who_changes import COMMAND_LINE, add_as_option, note_change, who_changes, who_may
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, as_command_error
 from app.desk.data_folder import data_folder

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from app.cli.expand_command import report_diagnostics
 from app.cli.program_options import add_program_options, circumstances, out_file, read_source
-from app.cli.progress_bar import Progress
+from app.cli.proofs.progress_bar import Progress
 from app.desk.command_errors import CommandError, cannot_write
 from core.file_placing import put_in_place
 from core.language.source import Dialect, Source

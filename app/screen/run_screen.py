@@ -18,6 +18,7 @@ from app.screen.look import PALETTES, Look, dress, load_fonts
 from app.screen.window.main_window import MainWindow
 from core.message import Message
 
+_LISTENS_AFTER = 500  # ms; the first picture does not wait for what few starts need
 BuildDesk = Callable[[], Desk]
 _log = logging.getLogger(__name__)
 # These signals stop the machine and end the threads, like closing the window.
@@ -76,9 +77,25 @@ class _Start:
             desk = self._desk = self._build()
             self._window.open_desk(desk)
             begin_with(desk, self._program)
+            self._listen_later()
         except Exception as error:  # noqa: BLE001 - raised into Qt's loop nobody could catch it
             self._trouble = error
             QApplication.exit(1)
+
+    def _listen_later(self) -> None:
+        """Start ``_listen`` after the first pictures; the timer ends with the window."""
+        timer = QTimer(self._window)
+        timer.setSingleShot(True)
+        timer.timeout.connect(self._listen)
+        timer.start(_LISTENS_AFTER)
+
+    def _listen(self) -> None:
+        """Receive the programs that later starts of TurnDesk hand over."""
+        from app.screen.window.file_opening import FileOpening
+        from app.screen.window.running_screen import RunningScreen
+
+        opening = FileOpening(self._window)
+        RunningScreen(opening.open_file, self._window).listen()
 
     def mistake(self, kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
         """Log an exception from Qt's event loop with its traceback, and show it to the operator."""

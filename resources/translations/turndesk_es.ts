@@ -13939,6 +13939,16 @@
       <translation>línea {line}</translation>
     </message>
     <message>
+      <location filename="app/screen/window/file_opening.py" />
+      <source>DROP ONE PROGRAM AT A TIME</source>
+      <translation>SUELTE UN SOLO PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/file_opening.py" />
+      <source>{name} IS A FOLDER. DROP A PROGRAM</source>
+      <translation>{name} ES UNA CARPETA. SUELTE UN PROGRAMA</translation>
+    </message>
+    <message>
       <location filename="app/screen/window/main_window.py" />
       <source>KIOSK MODE: SHUT DOWN THE COMPUTER TO CLOSE TURNDESK</source>
       <translation>MODO QUIOSCO: PARA CERRAR TURNDESK, APAGUE LA COMPUTADORA</translation>

@@ -68,10 +68,22 @@ def test_no_real_machine_gets_offsets_of_samples(home: Path) -> None:
     assert not (home / "demo").exists()
 
 
-def test_it_is_the_screen_alone(home: Path, refusals: list[CodedError]) -> None:
-    assert main(["--demo", "offsets", "show"]) == 2
+@pytest.mark.parametrize("argv", [["--demo", "offsets", "show"], ["offsets", "show", "--demo"]])
+def test_a_command_uses_the_data_of_the_demo(
+    argv: list[str], home: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(argv) == 0
+    assert capsys.readouterr().out.startswith("T1  X -0.50000")
+    assert not (home / "turndesk.db").exists()
+
+
+def test_it_is_not_combined_with_a_version_or_a_kiosk_with_a_command(
+    home: Path, refusals: list[CodedError]
+) -> None:
+    assert main(["--kiosk", "offsets", "show"]) == 2
     assert main(["--version", "--demo"]) == 2
-    assert [each.code for each in refusals] == ["screen-option", "version-alone"]
+    assert main(["--demo", "prove", "part.nc", "--machine", "gt75-grblhal"]) == 2
+    assert [each.code for each in refusals] == ["screen-option", "version-alone", "real-machine"]
 
 
 MILLS = ("ac-table-mill", "bc-table-mill", "fork-head-mill", "head-table-mill")

@@ -111,6 +111,8 @@ COVERED = {
     **{(command, "--as"): "tests/cli/test_access.py"
        for command in ("prove", "run", "offsets set", "offsets clear", "offsets undo", "store restore",
                        "store import", "setup load", "machine accept", "serial receive")},
+    ("where", "--machine"): "tests/cli/test_where.py",
+    ("where", "--json"): "tests/cli/test_where.py",
     ("serial receive", "--out"): "tests/drivers/transfer",
     ("serial send", "--eol"): "tests/drivers/transfer",
     ("serial send", "--wait"): "tests/drivers/transfer",
@@ -164,6 +166,7 @@ def test_an_option_before_a_command_acts_or_is_refused(
         "begin",
         "status",
         "publish",
+        "where",
     }
     words = rest.get(name, [] if name.rpartition(" ")[2] in bare else [str(tmp_path / "part.nc")])
     (tmp_path / "part.nc").write_text(PART)
@@ -406,13 +409,3 @@ def test_a_program_from_stdin_is_proved_as_from_a_file(
     assert turndesk("prove", "-", part).status == 2
     monkeypatch.setattr("sys.stdin", TextIOWrapper(BytesIO(b"")))
     assert turndesk("prove", "-").status == 2  # nothing came
-
-
-def test_a_program_where_a_command_belongs_is_told_both_ways(turndesk: Turndesk, tmp_path: Path) -> None:
-    program = tmp_path / "part.nc"
-    program.write_text("M30\n")
-    told = turndesk(program)
-    assert told.status == 2
-    assert f"turndesk prove {program};" in told.err
-    assert f"turndesk --program {program};" in told.err
-    assert told.err.count("\n") == 1

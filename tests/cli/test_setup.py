@@ -6,6 +6,7 @@ import errno
 import hashlib
 import json
 import os
+import re
 import resource
 import shutil
 import stat
@@ -226,9 +227,12 @@ def test_a_desktop_entry_is_written_and_taken_away(
     entry = (tmp_path / "data" / "applications" / "turndesk.desktop").read_text()
     start = (tmp_path / "config" / "autostart" / "turndesk.desktop").read_text()
     assert "--kiosk" not in entry
+    assert "turndesk %f\n" in entry
     assert "--kiosk" in start
+    types = (tmp_path / "data" / "mime" / "packages" / "turndesk.xml").read_text()
+    assert [name in types for name in re.findall(r"application/[a-z-]+", entry)] == [True] * 3
     assert (tmp_path / "data" / "icons" / "hicolor" / "scalable" / "apps" / "turndesk.svg").exists()
-    assert turndesk("setup", "desktop", "--remove").out.count("removed") == 3
+    assert turndesk("setup", "desktop", "--remove").out.count("removed") == 4
     assert "no entry" in turndesk("setup", "desktop", "--remove").out
     assert turndesk("setup", "desktop", "--remove", "--autostart").status == 2
 
@@ -293,7 +297,7 @@ def test_a_command_in_a_folder_with_blanks_and_signs_is_quoted_as_an_entry_wants
     monkeypatch.setattr("sys.executable", str(place / "python"))
     assert turndesk("setup", "desktop").status == 0
     entry = (tmp_path / "data" / "applications" / "turndesk.desktop").read_text()
-    assert f'Exec="{tmp_path}/my \\\\$own \\\\"50%%\\\\"/turndesk"\n' in entry
+    assert f'Exec="{tmp_path}/my \\\\$own \\\\"50%%\\\\"/turndesk" %f\n' in entry
 
 
 # --- hostile archives -----------------------------------------------------------------------------------

@@ -1,10 +1,11 @@
-"""Desktop menu entry, its icon and the autostart entry, in the XDG folders."""
+"""Desktop menu entry with its icon and file types, and the autostart entry, in the XDG folders."""
 
 from __future__ import annotations
 
 import os
 import re
 import shutil
+import subprocess
 import sys
 from importlib.resources import files
 from pathlib import Path
@@ -22,6 +23,7 @@ Comment=Operator screen for OmniTurn-style lathes
 Comment[es]=El puesto de mando para tornos tipo OmniTurn
 Exec={command}
 Icon=turndesk
+MimeType=application/x-omniturn;application/x-sinumerik;application/x-klartext;
 Categories=Engineering;Science;
 StartupWMClass=turndesk
 Terminal=false
@@ -42,12 +44,13 @@ def _under(variable: str, otherwise: str) -> Path:
         ) from error
 
 
-def _places() -> tuple[Path, Path, Path]:
-    """Return the paths of the menu entry, the icon and the autostart entry."""
+def _places() -> tuple[Path, Path, Path, Path]:
+    """Return the paths of the menu entry, the icon, the file types and the autostart entry."""
     data, config = _under("XDG_DATA_HOME", ".local/share"), _under("XDG_CONFIG_HOME", ".config")
     return (
         data / "applications" / f"{NAME}.desktop",
         data / "icons" / "hicolor" / "scalable" / "apps" / f"{NAME}.svg",
+        data / "mime" / "packages" / f"{NAME}.xml",
         config / "autostart" / f"{NAME}.desktop",
     )
 
@@ -70,17 +73,32 @@ def _quoted(word: str) -> str:
 
 def install(*, autostart: bool) -> list[Path]:
     """Write the entries and return their paths. Raises CommandError if a file cannot be written."""
-    entry, icon, start = _places()
+    entry, icon, types, start = _places()
+    shipped = files("resources") / "desktop"
     try:
-        for path in (entry, icon, *((start,) if autostart else ())):
+        for path in (entry, icon, types, *((start,) if autostart else ())):
             path.parent.mkdir(parents=True, exist_ok=True)
-        entry.write_text(_ENTRY.format(command=_command()), encoding="utf-8")
-        shutil.copyfile(str(files("resources") / "desktop" / f"{NAME}.svg"), icon)
+        entry.write_text(entry_text(f"{_command()} %f"), encoding="utf-8")
+        shutil.copyfile(str(shipped / f"{NAME}.svg"), icon)
+        shutil.copyfile(str(shipped / f"{NAME}.xml"), types)
         if autostart:
-            start.write_text(_ENTRY.format(command=f"{_command()} --kiosk"), encoding="utf-8")
+            start.write_text(entry_text(f"{_command()} --kiosk"), encoding="utf-8")
     except OSError as error:
         raise cannot_write(error.filename, error) from error
-    return [entry, icon, *([start] if autostart else [])]
+    _update_databases(entry.parent, types.parent.parent)
+    return [entry, icon, types, *([start] if autostart else [])]
+
+
+def entry_text(command: str) -> str:
+    """Return the text of a desktop entry that runs ``command``."""
+    return _ENTRY.format(command=command)
+
+
+def _update_databases(applications: Path, mime: Path) -> None:
+    """Let file managers find the entry and the file types now, if the desktop has the tools for this."""
+    for tool, folder in (("update-desktop-database", applications), ("update-mime-database", mime)):
+        if shutil.which(tool) and folder.is_dir():
+            subprocess.run([tool, str(folder)], check=False, capture_output=True, timeout=60)
 
 
 def remove() -> list[Path]:
@@ -94,4 +112,5 @@ def remove() -> list[Path]:
                 Message("{path} cannot be removed: {cause}", path=path, cause=error.strerror),
                 "cannot-remove",
             ) from error
+    _update_databases(_places()[0].parent, _places()[2].parent.parent)
     return there

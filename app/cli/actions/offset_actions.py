@@ -10,7 +10,7 @@ import sys
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
-from app.cli.meant_changes import demand_meant
+from app.cli.actions.meant_changes import demand_meant
 from app.cli.store_command import opened_store
 from app.cli.who_changes import who_changes
 from app.desk.arithmetic import EntryError, value_of

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 from app.cli.part_options import with_kept
 from app.cli.program_options import read_source
-from app.cli.progress_bar import Progress
+from app.cli.proofs.progress_bar import Progress
 from app.cli.proofs.proof_cache import ProofCache
 from app.cli.proofs.proof_job import FittingJobs, ProofJob, on_machine
 from app.cli.proofs.proof_pool import KILLED, Proving, Workers, WorkerSource, cores

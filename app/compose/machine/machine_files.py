@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from functools import lru_cache
 from pathlib import Path
+from typing import TypeGuard
 
 import resources
 from app.compose.extra import extras, insert_after
@@ -78,9 +79,20 @@ def named_machine(name: str | None) -> Machine:
 
     Raises MachineFileError with every finding.
     """
-    if name and name in resources.machine_names() and not Path(name).exists():
+    if _is_shipped(name):
         return shipped_machine(name)
     return load_machine(Path(name) if name else None)
+
+
+def machine_path(name: str | None) -> Path:
+    """Return the path of the file that ``named_machine`` reads."""
+    if name and not _is_shipped(name):
+        return Path(name).absolute()
+    return resources.machine_path(f"{name}.toml" if name else SHIPPED)
+
+
+def _is_shipped(name: str | None) -> TypeGuard[str]:
+    return bool(name) and name in resources.machine_names() and not Path(name).exists()
 
 
 def shipped_machine(name: str) -> Machine:

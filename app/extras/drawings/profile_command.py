@@ -148,7 +148,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _run(args: argparse.Namespace) -> int:
-    from app.cli.progress_bar import Progress
+    from app.cli.proofs.progress_bar import Progress
     from app.compose.machine.machine_setup import read_machine
     from core.extras.drawings.drawing_process import read_in_process
 

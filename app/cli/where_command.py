@@ -1,0 +1,60 @@
+"""The command ``turndesk where``: the folders and files that TurnDesk uses."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+from app.desk.command_errors import EXIT_OK
+
+if TYPE_CHECKING:
+    from app.cli.program_options import SubParsers
+
+
+def add_parser(subparsers: SubParsers) -> None:
+    """Add the parser of the command."""
+    parser = subparsers.add_parser("where")
+    parser.add_argument(
+        "--machine", metavar="FILE", help="machine file (default: the shipped simulated lathe)"
+    )
+    parser.add_argument("--json", action="store_true", help="print a JSON object on stdout")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Print one place per line. A place that does not exist yet is marked. Raises CommandError."""
+    places = find_places(args.machine)
+    if args.json:
+        sys.stdout.write(json.dumps(places, indent=1) + "\n")
+        return EXIT_OK
+    from pathlib import Path
+
+    width = max(map(len, places))
+    for name, path in places.items():
+        missing = "" if Path(path).exists() else "   (does not exist yet)"
+        sys.stdout.write(f"{name:{width}}  {path}{missing}\n")
+    return EXIT_OK
+
+
+def find_places(machine_file: str | None) -> Mapping[str, str]:
+    """Return the path of each place by its name. Raises CommandError for an invalid machine file."""
+    from app import __file__ as package
+    from app.compose.machine.machine_files import machine_path
+    from app.compose.machine.machine_setup import read_machine
+    from app.desk.data_folder import BACKUPS, RECORDS, data_folder
+    from core.store.store_file import FILE_NAME
+
+    read_machine(machine_file)
+    data = data_folder()
+    return {
+        "data_folder": str(data),
+        "store": str(data / FILE_NAME),
+        "programs": str(data / "programs"),
+        "logs": str(data / "logs"),
+        "backups": str(data / BACKUPS),
+        "scope_records": str(data / RECORDS),
+        "machine_file": str(machine_path(machine_file)),
+        "code": str(package),
+    }

@@ -1,0 +1,72 @@
+"""Files that are dropped on the window, or that a later start of TurnDesk hands over."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QEvent, QMimeData, QObject, Qt
+from PySide6.QtGui import QDropEvent
+
+from app.desk.translation import tr
+from app.screen.page_table import AUTOMATIC
+from core.message import Message
+
+if TYPE_CHECKING:
+    from app.screen.window.main_window import MainWindow
+
+_DRAGS = frozenset({QEvent.Type.DragEnter, QEvent.Type.DragMove, QEvent.Type.Drop})
+
+
+class FileOpening(QObject):
+    """Loads a dropped file as the program, on the Automatic page.
+
+    The same rules apply as for a program of the list: not while a program runs, and only after a question
+    if it would replace an interrupted job. A page with unsaved changes stays open.
+    """
+
+    def __init__(self, window: MainWindow) -> None:
+        super().__init__(window)
+        self._window = window
+        window.setAcceptDrops(True)
+        window.installEventFilter(self)
+
+    def eventFilter(self, _watched: QObject, event: QEvent) -> bool:
+        """Handle the drag events of the window, and leave all other events to it."""
+        if event.type() not in _DRAGS or not isinstance(event, QDropEvent):
+            return False
+        files = files_of(event.mimeData())
+        if not files or not event.possibleActions() & Qt.DropAction.CopyAction:
+            event.ignore()  # after a move, the file manager would delete the file
+            return True
+        event.setDropAction(Qt.DropAction.CopyAction)
+        event.accept()
+        if event.type() is QEvent.Type.Drop:
+            self.open_files(files)
+        return True
+
+    def open_files(self, files: list[Path]) -> None:
+        """Open the only file of the list, or show why none can be opened."""
+        frame = self._window.frame
+        if frame is None or not files:
+            return
+        if len(files) > 1:
+            frame.desk.say(tr("DROP ONE PROGRAM AT A TIME"))
+        elif not files[0].is_file():
+            frame.desk.say(tr(Message("{name} IS A FOLDER. DROP A PROGRAM", name=files[0].name)))
+        elif frame.desk.programs.can_choose() and frame.go(AUTOMATIC):
+            frame.desk.programs.load(files[0])
+        self._window.refresh()
+
+    def open_file(self, path: Path) -> None:
+        """Open the program of a later start of TurnDesk, and bring the window to the front."""
+        window = self._window
+        window.setWindowState(window.windowState() & ~Qt.WindowState.WindowMinimized)
+        window.raise_()
+        window.activateWindow()
+        self.open_files([path])
+
+
+def files_of(data: QMimeData) -> list[Path]:
+    """Return the local files and folders of a drop."""
+    return [Path(url.toLocalFile()) for url in data.urls() if url.isLocalFile()]

@@ -1,0 +1,86 @@
+"""Handover of a program from a second start of TurnDesk to the screen that is already running.
+
+The running screen listens on a local socket that belongs to its data folder. Only processes of the same user
+can connect to it. A request is one line with the absolute path of a program; the reply is one line.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+from PySide6.QtCore import QObject
+from PySide6.QtNetwork import QLocalServer, QLocalSocket
+
+from app.desk.data_folder import data_folder
+
+ACCEPTED = b"accepted\n"
+WAITS = 2000  # ms for each step of a request; a screen that does not reply by then is not used
+MOST = 8192  # bytes of a request
+_MOST_PATH = 100  # bytes of a socket's path that every system accepts
+
+
+def socket_name() -> str:
+    """Return the name of the data folder's socket: its path, or a short name if the path is too long."""
+    path = os.fsencode(data_folder() / "screen.sock")
+    if os.name == "posix" and len(path) <= _MOST_PATH:
+        return os.fsdecode(path)
+    return f"turndesk-{hashlib.sha256(path).hexdigest()[:16]}"
+
+
+def hand_over(program: str) -> bool:
+    """Ask the running screen to open a program. Return False if there is no such screen."""
+    path = Path(program).absolute()
+    if not path.is_file():
+        return False
+    socket = QLocalSocket()
+    socket.connectToServer(socket_name())
+    if not socket.waitForConnected(WAITS):
+        return False
+    socket.write(os.fsencode(path) + b"\n")
+    if not socket.waitForReadyRead(WAITS):
+        return False
+    return socket.readLine().data() == ACCEPTED
+
+
+class RunningScreen(QObject):
+    """Receiver of the programs that later starts of TurnDesk hand over. ``open_file`` gets each path."""
+
+    def __init__(self, open_file: Callable[[Path], None], parent: QObject) -> None:
+        super().__init__(parent)
+        self._open_file = open_file
+        self._server = QLocalServer(self)
+        self._server.setSocketOptions(QLocalServer.SocketOption.UserAccessOption)
+        self._server.newConnection.connect(self._connect)
+
+    def listen(self) -> bool:
+        """Start to listen. Return False if another screen already listens for this data folder."""
+        name = socket_name()
+        probe = QLocalSocket()
+        probe.connectToServer(name)
+        if probe.waitForConnected(WAITS):  # listen() would replace the socket of the other screen
+            return False
+        QLocalServer.removeServer(name)  # left by a screen that was killed
+        return self._server.listen(name)
+
+    def _connect(self) -> None:
+        while (socket := self._server.nextPendingConnection()) is not None:
+            socket.readyRead.connect(lambda socket=socket: self._read(socket))
+            socket.disconnected.connect(socket.deleteLater)
+            self._read(socket)
+
+    def _read(self, socket: QLocalSocket) -> None:
+        """Open the program of a complete request. Ignore a request that is too long or not a file."""
+        if not socket.canReadLine():
+            if socket.bytesAvailable() > MOST:
+                socket.abort()
+            return
+        path = Path(os.fsdecode(bytes(socket.readLine(MOST).data()).rstrip(b"\n")))
+        if not path.is_absolute() or not path.is_file():
+            socket.abort()
+            return
+        socket.write(ACCEPTED)
+        socket.flush()
+        self._open_file(path)

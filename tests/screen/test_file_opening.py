@@ -1,0 +1,132 @@
+"""Files that are dropped on the window, and those that another start of TurnDesk hands over."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from PySide6.QtCore import QMimeData, QPointF, Qt, QUrl
+from PySide6.QtGui import QDropEvent
+from PySide6.QtNetwork import QLocalSocket
+from pytestqt.qtbot import QtBot
+
+from app.screen.page_table import AUTOMATIC
+from app.screen.window.file_opening import FileOpening
+from app.screen.window.main_window import MainWindow
+from app.screen.window.running_screen import ACCEPTED, MOST, RunningScreen, socket_name
+from core.executor.snapshot import State
+from tests.screen.desks import SAMPLES
+from tests.screen.fake import FakeMachine
+from tests.screen.hands import Hands
+
+EITHER = Qt.DropAction.CopyAction | Qt.DropAction.MoveAction
+PIN = SAMPLES / "pin.nc"
+
+
+def drop(
+    opening: FileOpening, window: MainWindow, *paths: Path, offered: Qt.DropAction = EITHER
+) -> Qt.DropAction:
+    data = QMimeData()
+    data.setUrls([QUrl.fromLocalFile(str(path)) for path in paths])
+    event = QDropEvent(
+        QPointF(100, 100),
+        offered,
+        data,
+        Qt.MouseButton.LeftButton,
+        Qt.KeyboardModifier.NoModifier,
+    )
+    assert opening.eventFilter(window, event)
+    return event.dropAction()
+
+
+@pytest.fixture
+def window(hands: Hands) -> MainWindow:
+    return hands.window
+
+
+@pytest.fixture
+def opening(window: MainWindow) -> FileOpening:
+    return FileOpening(window)
+
+
+def test_a_dropped_program_is_loaded_and_never_moved(opening: FileOpening, window: MainWindow) -> None:
+    assert drop(opening, window, PIN) == Qt.DropAction.CopyAction
+    assert window.frame is not None
+    assert window.frame.desk.session.now.name == "pin.nc"
+    assert window.frame.page.NAME == AUTOMATIC
+
+
+def test_a_drop_that_can_only_move_the_file_is_rejected(opening: FileOpening, window: MainWindow) -> None:
+    assert window.frame is not None
+    before = window.frame.desk.session.now.name
+    drop(opening, window, PIN, offered=Qt.DropAction.MoveAction)
+    assert window.frame.desk.session.now.name == before
+
+
+@pytest.mark.parametrize("paths", [(PIN, SAMPLES / "knob.nc"), (SAMPLES,)])
+def test_several_files_and_folders_are_rejected(
+    opening: FileOpening, window: MainWindow, paths: tuple[Path, ...]
+) -> None:
+    assert window.frame is not None
+    before = window.frame.desk.session.now.name
+    drop(opening, window, *paths)
+    assert window.frame.desk.session.now.name == before
+    assert window.frame.desk.notice
+
+
+def test_no_program_is_loaded_while_one_runs(
+    opening: FileOpening, window: MainWindow, machine: FakeMachine
+) -> None:
+    machine.now = replace(machine.now, state=State.HOLD)
+    assert window.frame is not None
+    before = window.frame.desk.session.now.name
+    drop(opening, window, PIN)
+    assert window.frame.desk.session.now.name == before
+    assert window.frame.desk.notice
+
+
+@pytest.fixture
+def received(window: MainWindow, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[Path]:
+    monkeypatch.setenv("TURNDESK_HOME", str(tmp_path))
+    found: list[Path] = []
+    assert RunningScreen(found.append, window).listen()
+    return found
+
+
+def ask(request: bytes, qtbot: QtBot) -> bytes:
+    """Send a request and return the reply, or nothing if the screen closes the connection."""
+    socket = QLocalSocket()
+    socket.connectToServer(socket_name())
+    assert socket.waitForConnected(5000)
+    socket.write(request)
+    socket.flush()
+    ended = QLocalSocket.LocalSocketState.UnconnectedState
+    qtbot.waitUntil(lambda: socket.canReadLine() or socket.state() is ended)
+    return bytes(socket.readAll().data())
+
+
+def test_a_second_start_hands_its_program_over(received: list[Path], qtbot: QtBot) -> None:
+    assert ask(os.fsencode(PIN) + b"\n", qtbot) == ACCEPTED
+    assert received == [PIN]
+
+
+@pytest.mark.parametrize("request_", [b"pin.nc\n", b"/nowhere/pin.nc\n", b"\n", b"x" * (MOST + 1)])
+def test_a_request_that_is_not_an_existing_file_is_rejected(
+    request_: bytes, received: list[Path], qtbot: QtBot
+) -> None:
+    assert ask(request_, qtbot) == b""
+    assert received == []
+
+
+def test_a_second_screen_does_not_replace_the_first(received: list[Path], window: MainWindow) -> None:
+    assert not RunningScreen(received.append, window).listen()
+
+
+def test_a_socket_of_a_killed_screen_is_replaced(
+    window: MainWindow, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("TURNDESK_HOME", str(tmp_path))
+    Path(socket_name()).touch()
+    assert RunningScreen(lambda _path: None, window).listen()
