@@ -46,6 +46,15 @@ def arc_extent(
     x0: float, z0: float, x: float, z: float, cx: float, cz: float, clockwise: bool
 ) -> tuple[float, float, float, float]:
     """Return (least x, greatest x, least z, greatest z) of an arc, in mm."""
+    a, b, c, d = x0 - cx, z0 - cz, x - cx, z - cz
+    turned = b * c - a * d
+    if (
+        a * c > 0.0
+        and b * d > 0.0
+        and (turned > 0.0 if clockwise else turned < 0.0)
+        and abs(x - x0) + abs(z - z0) > 2.0 * SAME_POINT
+    ):  # within a quadrant, the ends are the extremes
+        return min(x0, x), max(x0, x), min(z0, z), max(z0, z)
     start, sweep = arc_sweep(x0, z0, x, z, cx, cz, clockwise)
     radius = math.hypot(x0 - cx, z0 - cz)
     low, high = sorted((start, start + sweep))

@@ -38,3 +38,24 @@ def test_a_barrel_bulges_past_both_ends() -> None:
 
 def test_a_full_circle_reaches_its_four_quadrants() -> None:
     assert arc_extent(2.0, 0.0, 2.0, 0.0, 1.0, 0.0, clockwise=False) == pytest.approx((0.0, 2.0, -1.0, 1.0))
+
+
+@pytest.mark.parametrize("quadrant", range(4))
+@pytest.mark.parametrize("clockwise", [True, False])
+def test_an_arc_between_two_points_of_a_quadrant_is_short_or_reaches_all_quadrants(
+    quadrant: int, clockwise: bool
+) -> None:
+    # Angles of 20 and 70 degrees in the quadrant: the arc the other way around passes all four axes.
+    angles = [math.radians(90.0 * quadrant + each) for each in (20.0, 70.0)]
+    (x0, z0), (x, z) = ((3.0 + 2.0 * math.sin(a), -1.0 + 2.0 * math.cos(a)) for a in angles)
+    box = arc_extent(x0, z0, x, z, 3.0, -1.0, clockwise=clockwise)
+    short = (min(x0, x), max(x0, x), min(z0, z), max(z0, z))
+    assert box == pytest.approx(short if clockwise else (1.0, 5.0, -3.0, 1.0))
+    back = arc_extent(x, z, x0, z0, 3.0, -1.0, clockwise=not clockwise)
+    assert back == pytest.approx(box)
+
+
+def test_equal_ends_within_a_quadrant_are_a_full_circle() -> None:
+    at = math.radians(30.0)
+    x, z = 2.0 * math.sin(at), 2.0 * math.cos(at)
+    assert arc_extent(x, z, x + 5e-7, z, 0.0, 0.0, clockwise=True) == pytest.approx((-2.0, 2.0, -2.0, 2.0))

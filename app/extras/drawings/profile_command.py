@@ -282,11 +282,12 @@ def _contours(drawing: Drawing, view: View, args: argparse.Namespace) -> list[Ne
 def _list(drawing: Drawing, view: View, found: list[Net], *, as_json: bool) -> None:
     from core.extras.drawings.drawing_view import axes
 
+    names = [axis.name for axis in axes(drawing)]
     told: Json = {
         "file": drawing.name,
         "unit_mm": drawing.unit or None,
         "layers": list(drawing.layers),
-        "axes": [axis.name for axis in axes(drawing)],
+        "axes": names,
         "axis": view.axis.name,
         "contours": [
             {"elements": len(net.elements), "length_mm": round(high - low, 4), "diameter_mm": round(2 * r, 4)}
@@ -303,7 +304,7 @@ def _list(drawing: Drawing, view: View, found: list[Net], *, as_json: bool) -> N
         Message("{drawing}: unit {unit}", drawing=drawing.name, unit=unit),
         f"  layers: {', '.join(each or '(none)' for each in drawing.layers)}",
     ]
-    lines.append(f"  axes: {', '.join(axis.name for axis in axes(drawing))}")
+    lines.append(f"  axes: {', '.join(names)}")
     for number, net in enumerate(found, 1):
         low, high, r = net.reach
         words = Message(

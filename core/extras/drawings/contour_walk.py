@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
 from core.extras.drawings.drawing import DrawingError, check_work
-from core.geometry.lines_and_arcs import Arc, Element, Line, Point, arc_between, intersections
+from core.geometry.lines_and_arcs import Arc, Box, Element, Line, Point, arc_between, intersections
 from core.message import Message
 
 GAP = 0.02
@@ -25,28 +25,34 @@ _NO_BORE = "the contour has no bore at its face. Choose the outside, or another 
 _AHEAD = 0.05
 
 
-def above_axis(elements: Iterable[Element], gap: float = GAP) -> Iterator[Element]:
+def _above_axis(drawn: Iterable[tuple[Element, Box]], gap: float) -> Iterator[Element]:
     """Yield the parts of elements at r > 0, cut at the axis; lines on the axis are omitted."""
-    for each in elements:
+    for each, box in drawn:
         if isinstance(each, Line) and abs(each.start[0]) <= gap and abs(each.end[0]) <= gap:
             continue
-        for part in _cut_at_axis(each):
+        low, high, z0, z1 = box
+        if high <= 0.0:
+            continue
+        if low > 0.0 and max(high - low, z1 - z0) > _AXIS:
+            yield each
+            continue
+        for part in _cut_at_axis(each, box):
             if part.point(part.length / 2.0)[0] > 0.0 and part.length > _AXIS:
                 yield part
 
 
-def _cut_at_axis(each: Element) -> list[Element]:
-    low, high, z0, z1 = each.box
+def _cut_at_axis(each: Element, box: Box) -> list[Element]:
+    low, high, z0, z1 = box
     if low >= -_AXIS or high <= _AXIS:
         return [each]
     axis = Line((0.0, z0 - 1.0), (0.0, z1 + 1.0))
     return split(each, [(0.0, p[1]) for p in intersections(axis, each)])
 
 
-def _crossings(elements: Iterable[Element]) -> Iterator[float]:
+def _crossings(drawn: Iterable[tuple[Element, Box]]) -> Iterator[float]:
     """Yield the Z positions at which elements cross the axis, except faces that cross it at a right angle."""
-    for each in elements:
-        for part in _cut_at_axis(each)[:-1]:
+    for each, box in drawn:
+        for part in _cut_at_axis(each, box)[:-1]:
             if abs(part.end_direction[1]) > _SQUARE:
                 yield part.end[1]
 
@@ -65,15 +71,22 @@ class _Nodes:
     gap: float
     points: list[Point] = field(default_factory=list)
     _cells: dict[tuple[int, int], list[int]] = field(default_factory=dict)
+    _known: dict[Point, int] = field(default_factory=dict)  # found since the last new node
 
     def at(self, point: Point) -> int:
         """Return the node of a point; create a node if none is near."""
+        if (known := self._known.get(point)) is None:
+            known = self._known[point] = self._found(point)
+        return known
+
+    def _found(self, point: Point) -> int:
         size = self.gap or 1e-6
         i, k = math.floor(point[0] / size), math.floor(point[1] / size)
         near = [n for a in (i - 1, i, i + 1) for b in (k - 1, k, k + 1) for n in self._cells.get((a, b), ())]
         best = min(near, key=lambda n: math.dist(self.points[n], point), default=None)
         if best is not None and math.dist(self.points[best], point) <= size:
             return best
+        self._known.clear()  # the new node may be nearer to known points
         self.points.append(point)
         self._cells.setdefault((i, k), []).append(len(self.points) - 1)
         return len(self.points) - 1
@@ -105,8 +118,8 @@ def nets(elements: Iterable[Element], gap: float = GAP) -> list[Net]:
 
     Duplicate lines count once.
     """
-    drawn = tuple(elements)
-    parts = _at_touching_ends(list(above_axis(drawn, gap)), gap)
+    drawn = [(each, each.box) for each in elements]
+    parts = _at_touching_ends(list(_above_axis(drawn, gap)), gap)
     nodes, found, widest = _Nodes(gap), dict[tuple[int, int, int, int], tuple[Element, float]](), 0.0
     for each in parts:
         a, b = nodes.at(each.start), nodes.at(each.end)
@@ -385,6 +398,6 @@ def turned_about(elements: Iterable[Element]) -> Iterator[Element]:
     for each in elements:
         if isinstance(each, Arc):
             a, b, c = ((-p[0], p[1]) for p in (each.start, each.end, each.centre))
-            yield replace(each, start=a, end=b, centre=c, clockwise=not each.clockwise)
+            yield Arc(a, b, c, not each.clockwise)
         else:
             yield Line((-each.start[0], each.start[1]), (-each.end[0], each.end[1]))

@@ -88,10 +88,11 @@ def arc(centre: Point, radius: float, start: float, sweep: float) -> Iterator[El
     if radius <= _NONE or abs(sweep) < 1e-9:
         return
     count = math.ceil(abs(sweep) / (0.95 * math.pi))
+    x, y = centre
     ends = [start + sweep * k / count for k in range(count + 1)]
-    points = [(centre[1] + radius * math.sin(a), centre[0] + radius * math.cos(a)) for a in ends]
+    points = [(y + radius * math.sin(a), x + radius * math.cos(a)) for a in ends]
     for a, b in itertools.pairwise(points):
-        yield Arc(a, b, (centre[1], centre[0]), clockwise=sweep > 0.0)
+        yield Arc(a, b, (y, x), sweep > 0.0)
 
 
 def bulged(a: Point, b: Point, bulge: float) -> Iterator[Element]:
@@ -121,23 +122,24 @@ def within_limits(found: Iterable[Drawn], name: str) -> Iterator[Drawn]:
                 ),
                 "too-many-lines",
             )
-        values = [v for p in (each.element.start, each.element.end) for v in p]
-        if not all(map(math.isfinite, values)):
+        (a, b), (c, d) = each.element.start, each.element.end
+        if abs(a) <= _FARTHEST and abs(b) <= _FARTHEST and abs(c) <= _FARTHEST and abs(d) <= _FARTHEST:
+            yield each
+            continue
+        if not all(map(math.isfinite, (a, b, c, d))):
             raise DrawingError(
                 Message(
                     "{name} has a point whose coordinate is not a number: save the drawing again.", name=name
                 ),
                 "not-a-number",
             )
-        if max(map(abs, values)) > _FARTHEST:
-            raise DrawingError(
-                Message(
-                    "{name} has a point too far from the drawing origin: move the contour to the origin.",
-                    name=name,
-                ),
-                "too-far-from-zero",
-            )
-        yield each
+        raise DrawingError(
+            Message(
+                "{name} has a point too far from the drawing origin: move the contour to the origin.",
+                name=name,
+            ),
+            "too-far-from-zero",
+        )
 
 
 _HEAD = struct.Struct("<I")  # length in bytes of the JSON that follows

@@ -69,7 +69,7 @@ class View:
 
 def axes(drawing: Drawing, layer: str = "") -> list[Axis]:
     """Return the lines that may be the axis, the most likely first."""
-    there = [each for each in drawing.on(layer) if not each.centre] or list(drawing.on(layer))
+    there = _contour_lines(drawing, layer)
     if not there:
         return []
     boxes = [each.element.box for each in there]
@@ -78,7 +78,7 @@ def axes(drawing: Drawing, layer: str = "") -> list[Axis]:
     found = _centre_lines(drawing)
     near = 1e-3 * max(high - low, right - left, 1e-9)
     flat, lowest = Axis("Y 0", (0.0, 0.0), (0.0, 1.0)), _lowest(there, low + near, right - left)
-    tall = [each.element.box[:2] for each in drawing.drawn]
+    tall = boxes if len(there) == len(drawing.drawn) else [each.element.box for each in drawing.drawn]
     if min(b[0] for b in tall) <= near and max(b[1] for b in tall) >= -near:
         found.append(flat)
     if lowest is not None:
@@ -89,6 +89,12 @@ def axes(drawing: Drawing, layer: str = "") -> list[Axis]:
         Axis("X 0", (0.0, 0.0), (1.0, 0.0)),
     )
     return found + [each for each in others if each not in found]
+
+
+def _contour_lines(drawing: Drawing, layer: str) -> list[Drawn]:
+    """Return the elements on a layer without the center lines; all of them if there are no others."""
+    there = drawing.on(layer)
+    return [each for each in there if not each.centre] or list(there)
 
 
 def _centre_lines(drawing: Drawing) -> list[Axis]:
@@ -210,10 +216,13 @@ def contours(drawing: Drawing, view: View, layer: str = "") -> list[Net]:
 
     Z is as in ``on_lathe``. Raises DrawingError if the work limit is exceeded.
     """
-    there = [each for each in drawing.on(layer) if not each.centre] or list(drawing.on(layer))
+    there = _contour_lines(drawing, layer)
     placed = list(on_lathe((each.element for each in there), view))
     try:
-        above, below = nets(placed, view.gap), nets(turned_about(placed), view.gap)
+        above, below = (
+            nets(placed, view.gap),
+            nets(turned_about(each for each in placed if each.box[0] < 0.0), view.gap),
+        )
     except DrawingError as error:
         raise DrawingError(
             Message("{drawing}: {error}", drawing=drawing.name, error=error), error.code
