@@ -26,9 +26,9 @@ from core.motion.axis_limits import (
     MotionLimits,
 )
 from core.motion.block_table import BlockTable, MotionBlock, Part, table_of
+from core.motion.joint_easing import SUPPORT
 from core.motion.path_pieces import (
     SAME_POINT,
-    SUPPORT,
     Pieces,
     ends_in_chord,
     joined,

@@ -11,22 +11,19 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
-from typing import NamedTuple
 
 import numpy as np
 
 from core.message import Message
 from core.motion.axis_limits import BoolArray, FloatArray, IntArray, MotionError, MotionLimits
 from core.motion.block_table import BlockTable
+from core.motion.joint_easing import eased
 
 SAME_POINT = 1e-7  # mm or degrees; closer points count as one point
 _STEEPEST = 1e5  # degrees of C per mm; distances have an accuracy of 1e-9 mm, so C has 1e-4 degrees
 _NO_WAY = 1e-4  # mm of X and Z below which a rotation of C measures the path
 _TURN_ALONE = 1e-6  # mm of X and Z below which the feed is that of C
 RADII_DIFFER = 0.02  # mm by which the radii at the start and end of an arc may differ
-_AROUND = 6  # joints on either side for the mean, which is applied four times
-_BACK = 6  # joints on either side for the correction of excess moves, which is applied twice
-SUPPORT = 4 * _AROUND + 4 * _BACK + 2  # joints on either side that affect a joint
 _SHARE = 0.25  # fraction of a chord by which its ends may be moved
 _TURNS = 4.0  # resolution steps per chord length; a larger turn is not caused by rounding
 
@@ -178,13 +175,16 @@ def unrounded(pieces: Pieces, limits: MotionLimits) -> Pieces:
     inner = _free(pieces, limits)
     if not inner.any():
         return pieces
-    joints = _joints(pieces)
     free = np.concatenate([[False], inner, [False]])
     shorter = np.minimum(pieces.length[:-1], pieces.length[1:])
     allowed = np.zeros(len(free))
     allowed[1:-1] = np.where(inner, np.minimum(limits.grain, _SHARE * shorter), 0.0)
     s = np.concatenate([[0.0], np.cumsum(pieces.length)])
-    joints[:, :2] = _eased(joints[:, :2].T, s, free, allowed).T
+    joints = _joints(pieces)
+    points = np.empty(len(joints), dtype=np.complex128)
+    points.real, points.imag = joints[:, 0], joints[:, 1]
+    points = eased(points, s, free, allowed)
+    joints[:, 0], joints[:, 1] = points.real, points.imag
     return moved(pieces, joints, free)
 
 
@@ -198,10 +198,13 @@ def moved(pieces: Pieces, joints: FloatArray, free: BoolArray) -> Pieces:
     touched = np.flatnonzero(free[:-1] | free[1:])
     start, direction = pieces.start.copy(order="K"), pieces.direction.copy(order="K")
     length = pieces.length.copy()
-    way = joints[touched + 1, :2] - joints[touched, :2]
-    length[touched] = np.hypot(way[:, 0], way[:, 1])
-    start[touched, :2] = joints[touched, :2]
-    direction[touched, :2] = way / length[touched, None]
+    begins = [joints[:, axis].take(touched) for axis in (0, 1)]
+    ways = [joints[:, axis].take(touched + 1) - begin for axis, begin in enumerate(begins)]
+    size = np.hypot(*ways)
+    length[touched] = size
+    for axis, (begin, way) in enumerate(zip(begins, ways, strict=True)):
+        start[touched, axis] = begin
+        direction[touched, axis] = way / size
     return dataclasses.replace(pieces, start=start, direction=direction, length=length)
 
 
@@ -212,14 +215,14 @@ def regrown(known: Pieces, written: Pieces, new: Pieces, redo: int, limits: Moti
     exist.
     """
     both = joined([written, new])
-    eased = unrounded(both, limits)[len(written) - redo :]
+    smooth = unrounded(both, limits)[len(written) - redo :]
     begin = known[-1:].point(known.length[-1:])[0] if redo == 0 else known.start[len(known) - redo]
     # Only chords have moved ends. A rotation of C must not change its length because of noise in X and Z.
-    if not len(eased) or not _chords(eased[:1], limits)[0] or (eased.start[0] == begin).all():
-        return eased
-    joints = _joints(eased)
+    if not len(smooth) or not _chords(smooth[:1], limits)[0] or (smooth.start[0] == begin).all():
+        return smooth
+    joints = _joints(smooth)
     joints[0] = begin
-    return moved(eased, joints, np.arange(len(joints)) == 0)
+    return moved(smooth, joints, np.arange(len(joints)) == 0)
 
 
 def ends_in_chord(pieces: Pieces, limits: MotionLimits) -> bool:
@@ -246,105 +249,3 @@ def _free(pieces: Pieces, limits: MotionLimits) -> BoolArray:
     rounding = turn * shorter <= _TURNS * limits.grain
     free: BoolArray = chord[:-1] & chord[1:] & rounding & (pieces.rapid[:-1] == pieces.rapid[1:])
     return free
-
-
-def _clear(free: BoolArray) -> IntArray:
-    """Return the number of free joints on either side of each joint (n+1,)."""
-    at = np.arange(len(free))
-    before = at - np.maximum.accumulate(np.where(free, -1, at))
-    behind = np.minimum.accumulate(np.where(free, len(free), at)[::-1])[::-1] - at
-    clear: IntArray = np.minimum(before, behind)
-    return clear
-
-
-class _Window(NamedTuple):
-    """The neighbors of each of n+1 joints.
-
-    A sum over a window of ``size`` joints is the running sum at ``behind`` minus the one at ``first``.
-    """
-
-    first: IntArray
-    behind: IntArray
-    size: FloatArray
-
-    @classmethod
-    def of(cls, around: IntArray) -> _Window:
-        """Return the windows with ``around`` (n+1,) joints on either side of each joint."""
-        at = np.arange(len(around))
-        return cls(at - around, at + around + 1, (2 * around + 1).astype(np.float64))
-
-    def mean(self, values: FloatArray) -> FloatArray:
-        """Return the means (k, n+1) of the values in each window."""
-        base = values[:, :1]
-        sums = np.zeros((len(values), values.shape[1] + 1))
-        np.subtract(values, base, out=sums[:, 1:])
-        np.cumsum(sums, axis=1, out=sums)
-        mean = sums.take(self.behind, axis=1)
-        mean -= sums.take(self.first, axis=1)
-        mean /= self.size
-        mean += base
-        return mean
-
-
-def _eased(joints: FloatArray, s: FloatArray, free: BoolArray, allowed: FloatArray) -> FloatArray:
-    """Return joints (2, n+1) at the distances ``s``, moved toward the mean of their neighbors.
-
-    Each joint moves by at most ``allowed``. Every run of ``free`` (n+1,) joints is smoothed separately, so
-    that a corner is never crossed.
-    """
-    clear, apart, fixed = _clear(free), _apart(free, _BACK), np.flatnonzero(~free)
-    around, back = _Window.of(np.minimum(clear, _AROUND)), _Window.of(np.minimum(clear, _BACK))
-    span = np.maximum(s[around.behind - 1] - s[around.first], 1e-12)
-    off = s - around.mean(s[None])[0]
-
-    def mean(of: FloatArray) -> FloatArray:
-        """Return the mean of the neighbors, corrected along their line to the joint's own distance.
-
-        The joints of a straight line therefore remain on it.
-        """
-        slope = (of.take(around.behind - 1, axis=1) - of.take(around.first, axis=1)) / span
-        carried: FloatArray = around.mean(of) + slope * off
-        return carried
-
-    once = mean(mean(joints))
-    # A mean flattens the curve by some height, and the mean of the mean flattens it by as much again.
-    eased = 2.0 * once - mean(mean(once))
-    for _ in range(2):
-        over = np.clip(eased, joints - allowed, joints + allowed) - eased
-        if not over.any():
-            return eased
-        for sign in (1.0, -1.0):
-            most = _largest(np.maximum(sign * over, 0.0), _BACK, apart)
-            most[:, fixed] = 0.0
-            eased = eased + sign * back.mean(most)
-    return np.clip(eased, joints - allowed, joints + allowed)
-
-
-def _apart(free: BoolArray, around: int) -> IntArray | None:
-    """Return positions (n+1,) that separate runs of free joints by over ``around``; None for one run."""
-    begins = free.copy()
-    begins[1:] &= ~free[:-1]
-    if np.count_nonzero(begins) < 2:
-        return None
-    places: IntArray = np.arange(len(free)) + around * np.cumsum(begins)
-    return places
-
-
-def _largest(values: FloatArray, around: int, apart: IntArray | None) -> FloatArray:
-    """Return the largest values (k, m), none below 0, within ``around`` joints of each.
-
-    The maximum is built from two, four, … neighbors at a time.
-    """
-    if apart is not None:
-        spread = np.zeros((len(values), int(apart[-1]) + 1))
-        spread[:, apart] = values
-        near: FloatArray = _largest(spread, around, None)[:, apart]
-        return near
-    width, reach = 2 * around + 1, 1
-    largest = np.zeros((len(values), values.shape[1] + 2 * around))
-    largest[:, around : around + values.shape[1]] = values
-    while reach < width:
-        step = min(reach, width - reach)
-        largest = np.maximum(largest[:, :-step], largest[:, step:])
-        reach += step
-    return largest

@@ -13,10 +13,10 @@ from hypothesis import strategies as st
 
 from core.interpreter.shared.elementary_blocks import Block, Kind
 from core.motion.axis_limits import FloatArray
+from core.motion.joint_easing import SUPPORT
 from core.motion.motion_path import Path, PathBuilder
 from core.motion.motion_plan import plan, settled_joints
 from core.motion.motion_profile import Profile
-from core.motion.path_pieces import SUPPORT
 from core.motion.window_planner import ChunkPlanner
 from tests.motion.moves import LIMITS, A, T, arc, chords, line, polyline, programs, rounded_chords
 from tests.motion.paths import build_path

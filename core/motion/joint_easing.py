@@ -1,0 +1,162 @@
+"""Smoothing of the joints between short chords, as columns.
+
+The points are complex numbers, X + iZ, so that a running sum and a selection treat both axes at once.
+Factors of single axes are arrays with two values for each joint, in the order in which the memory contains
+the points.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from core.motion.axis_limits import BoolArray, FloatArray, IntArray
+
+AROUND = 6  # joints on either side for a mean, four times to smooth and twice to correct excess moves
+SUPPORT = 8 * AROUND + 2  # joints on either side that affect a joint
+_CORRECTIONS = 2
+Points = npt.NDArray[np.complex128]
+
+
+class _Window(NamedTuple):
+    """The neighbors of each of m joints.
+
+    A sum over a window of ``size`` joints is the running sum at ``behind`` minus the one at ``first``.
+    ``size`` has two equal values for each joint, (2m,).
+    """
+
+    first: IntArray
+    behind: IntArray
+    size: FloatArray
+
+    @classmethod
+    def of(cls, around: IntArray) -> _Window:
+        """Return the windows with ``around`` (m,) joints on either side of each joint."""
+        at = np.arange(len(around))
+        return cls(at - around, at + around + 1, _twice((2 * around + 1).astype(np.float64)))
+
+    def mean(self, points: Points) -> Points:
+        """Return the means (m,) of the points in each window."""
+        base = points[0]
+        sums = np.zeros(len(points) + 1, dtype=np.complex128)
+        np.subtract(points, base, out=sums[1:])
+        np.cumsum(sums, out=sums)
+        mean = sums.take(self.behind)
+        mean -= sums.take(self.first)
+        flat = axes(mean)
+        flat /= self.size
+        mean += base
+        return mean
+
+
+def axes(points: Points) -> FloatArray:
+    """Return a view (2m,) of the coordinates of the points, X and Z in turn."""
+    return points.view(np.float64)
+
+
+def _twice(values: npt.NDArray[np.generic]) -> FloatArray:
+    """Return each value (m,) for both axes of its joint, (2m,)."""
+    return np.repeat(values, 2).astype(np.float64, copy=False)
+
+
+def eased(joints: Points, s: FloatArray, free: BoolArray, allowed: FloatArray) -> Points:
+    """Return joints (m,) at the distances ``s``, moved toward the mean of their neighbors.
+
+    Each joint moves by at most ``allowed`` along each axis. Every run of ``free`` (m,) joints is smoothed
+    separately, so that a corner is never crossed.
+    """
+    window = _Window.of(np.minimum(_clear(free), AROUND))
+    last = window.behind - 1
+    span = _twice(np.maximum(s[last] - s[window.first], 1e-12))
+    off = _twice(s - window.mean(s.astype(np.complex128)).real)
+
+    def mean(of: Points) -> Points:
+        """Return the mean of the neighbors, corrected along their line to the joint's own distance.
+
+        The joints of a straight line therefore remain on it.
+        """
+        rise = of.take(last)
+        rise -= of.take(window.first)
+        carried = window.mean(of)
+        slope = axes(rise)
+        slope /= span
+        slope *= off
+        carried += rise
+        return carried
+
+    once = mean(mean(joints))
+    # A mean flattens the curve by some height, and the mean of the mean flattens it by as much again.
+    smooth = 2.0 * axes(once)
+    smooth -= axes(mean(mean(once)))
+    return _within(smooth, axes(joints), window, free, _twice(allowed)).view(np.complex128)
+
+
+def _within(
+    smooth: FloatArray, joints: FloatArray, window: _Window, free: BoolArray, allowed: FloatArray
+) -> FloatArray:
+    """Return the coordinates (2m,) with excess moves spread over the neighbors, and limited to the rest."""
+    low, high = joints - allowed, joints + allowed
+    near, movable = _Near.of(free), _twice(free)
+    for _ in range(_CORRECTIONS):
+        over = np.clip(smooth, low, high)
+        over -= smooth
+        if not over.any():
+            return smooth
+        for correct, excess in ((np.add, over), (np.subtract, -over)):
+            most = near.largest(np.maximum(excess, 0.0, out=excess))
+            most *= movable
+            correct(smooth, axes(window.mean(most.view(np.complex128))), out=smooth)
+    return np.clip(smooth, low, high, out=smooth)
+
+
+def _clear(free: BoolArray) -> IntArray:
+    """Return the number of free joints on either side of each joint (m,)."""
+    at = np.arange(len(free))
+    before = at - np.maximum.accumulate(np.where(free, -1, at))
+    behind = np.minimum.accumulate(np.where(free, len(free), at)[::-1])[::-1] - at
+    clear: IntArray = np.minimum(before, behind)
+    return clear
+
+
+class _Near(NamedTuple):
+    """The joints within AROUND of each joint in the same run, by halves of the window.
+
+    Each item is a distance in coordinates (2 for one joint), and for each coordinate 1.0 if the coordinate at
+    that distance after it belongs to the same run and 0.0 otherwise, or None if there is only one run.
+    """
+
+    steps: tuple[tuple[int, FloatArray | None], ...]
+
+    @classmethod
+    def of(cls, free: BoolArray) -> _Near:
+        """Return the neighbors in the runs of ``free`` joints; a run ends before the next one begins."""
+        begins = free.copy()
+        begins[1:] &= ~free[:-1]
+        run = np.repeat(np.cumsum(begins), 2)
+        if not len(run) or run[-1] < 2:
+            return cls(tuple((2 * step, None) for step in _doublings()))
+        steps = [2 * step for step in _doublings()]
+        return cls(tuple((step, (run[step:] == run[:-step]).astype(np.float64)) for step in steps))
+
+    def largest(self, values: FloatArray) -> FloatArray:
+        """Return the largest of the values (2m,), none below 0, within AROUND joints of each."""
+        ahead, back = values.copy(), values.copy()
+        for step, same in self.steps:
+            later, earlier = ahead[step:], back[:-step]
+            if same is not None:
+                later, earlier = later * same, earlier * same
+            np.maximum(ahead[:-step], later, out=ahead[:-step])
+            np.maximum(back[step:], earlier, out=back[step:])
+        return np.maximum(ahead, back, out=ahead)
+
+
+def _doublings() -> Iterator[int]:
+    """Yield the shifts by which windows of one joint grow to AROUND + 1 joints."""
+    reach = 1
+    while reach <= AROUND:
+        step = min(reach, AROUND + 1 - reach)
+        yield step
+        reach += step
