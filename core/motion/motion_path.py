@@ -148,6 +148,8 @@ def _fed_by_c(table: BlockTable) -> BoolArray:
 
     The revolutions of C count for their feed.
     """
+    if not table.locked.any():
+        return np.zeros(len(table.n), dtype=bool)
     delta = table.end - table.start
     lathe = np.isnan(table.length)
     slides = np.hypot(delta[:, 0], delta[:, 1]) > SAME_POINT

@@ -111,17 +111,16 @@ def profile_of(
     entered above its cap decelerates first.
     """
     peak = np.minimum(np.maximum(cap, speeds[1:]), 0.5 * (speeds[:-1] + speeds[1:]) + a * length)
-    v0, vp, v1 = np.sqrt(speeds[:-1]), np.sqrt(peak), np.sqrt(speeds[1:])
-    ends = np.stack([v0, vp, vp, v1], axis=1)
-    dist = _distances(length, a, ends)
-    total = ends[:, :-1] + ends[:, 1:]
-    dt = np.divide(2.0 * dist, total, out=np.zeros_like(dist), where=total > 0.0)
-    accel = np.divide(np.diff(ends, axis=1), dt, out=np.zeros_like(dist), where=dt > 0.0)
+    v, vp = np.sqrt(speeds), np.sqrt(peak)
+    v0, v1 = v[:-1], v[1:]
+    up, cruise, down = _distances(length, a, v0, vp, v1)
     s = path.s[first : first + len(length)].copy()
     s[0] = at
-    starts = np.stack([s, s + dist[:, 0], s + dist[:, 0] + dist[:, 1]], axis=1)
-    kept = (dt > 0.0).reshape(-1)
-    dt = dt.reshape(-1)[kept]
+    times = np.zeros((len(length), 3))
+    for k, (dist, total) in enumerate(((up, v0 + vp), (cruise, vp + vp), (down, vp + v1))):
+        np.divide(2.0 * dist, total, out=times[:, k], where=total > 0.0)
+    kept = np.flatnonzero(times > 0.0)
+    dt = times.take(kept)
     t = np.concatenate([[0.0], np.cumsum(dt)])
     return Profile(
         path=path,
@@ -131,24 +130,36 @@ def profile_of(
         phases=Phases(
             t=t[:-1],
             dt=dt,
-            s=starts.reshape(-1)[kept],
-            v=ends[:, :3].reshape(-1)[kept],
-            a=accel.reshape(-1)[kept],
-            piece=np.repeat(np.arange(first, first + len(length)), 3)[kept],
+            s=_in_turn(s, s + up, s + up + cruise).take(kept),
+            v=_in_turn(v0, vp, vp).take(kept),
+            a=_in_turn(vp - v0, vp - vp, v1 - vp).take(kept) / dt,
+            piece=np.repeat(np.arange(first, first + len(length)), 3).take(kept),
         ),
     )
 
 
-def _distances(length: FloatArray, a: FloatArray, ends: FloatArray) -> FloatArray:
-    """Return the lengths (n, 3) of acceleration, cruise and deceleration for ``ends`` (n, 4)."""
-    v0, peak, _, v1 = ends.T
-    up = np.where(np.abs(peak - v0) > _TINY * peak, np.abs(peak - v0) * (peak + v0) / (2.0 * a), 0.0)
-    down = np.where(np.abs(peak - v1) > _TINY * peak, (peak - v1) * (peak + v1) / (2.0 * a), 0.0)
+def _in_turn(*columns: FloatArray) -> FloatArray:
+    """Return the three values (n, 3) of each piece from three columns (n,)."""
+    rows = np.empty((len(columns[0]), len(columns)))
+    for k, column in enumerate(columns):
+        rows[:, k] = column
+    return rows
+
+
+def _distances(
+    length: FloatArray, a: FloatArray, v0: FloatArray, peak: FloatArray, v1: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return the lengths (n,) of acceleration, cruise and deceleration for the speeds between them."""
+    tiny, double = _TINY * peak, 2.0 * a
+    rise = np.abs(peak - v0)
+    fall = np.abs(peak - v1)
+    up = np.where(rise > tiny, rise * (peak + v0) / double, 0.0)
+    down = np.where(fall > tiny, (peak - v1) * (peak + v1) / double, 0.0)
     ramps = up + down
     cruise = length - ramps
     full = (cruise <= _TINY * length) & (ramps > 0.0)
     fit = np.divide(length, ramps, out=np.ones_like(length), where=full)
-    return np.stack([up * fit, np.where(full, 0.0, cruise), down * fit], axis=1)
+    return up * fit, np.where(full, 0.0, cruise), down * fit
 
 
 _SETTLED = 1e-12  # relative difference of squared speeds that is a rounding error

@@ -74,6 +74,10 @@ class Tally:
         """Add the moving blocks of a span."""
         if not parts:
             return
+        series = [part for part in parts if isinstance(part, Series)]
+        if len(series) == len(parts) and len({part.pattern.rapid for part in series}) == 1:
+            self._add_series(series)
+            return
         table = np.concatenate([_columns(part) for part in parts], axis=1)
         length = np.hypot(table[2] - table[0], table[3] - table[1])
         first = 0
@@ -90,6 +94,29 @@ class Tally:
         if not in_degrees.all():
             self._feeds(*table[5:8, ~in_degrees])
         self._turning(table[5, ~(turned | locked)])
+
+    def _add_series(self, parts: Sequence[Series]) -> None:
+        """Add series that are all rapids or all feeds, without a table of their equal values."""
+        x0, z0, x, z = (np.concatenate([getattr(part, name) for part in parts]) for name in _ENDS)
+        length = np.hypot(x - x0, z - z0)
+        total = float(length.sum())
+        if parts[0].pattern.rapid:
+            self.rapid_length += total
+        else:
+            self.cutting_length += total
+        self.x.see(float(x.min()), float(x.max()))
+        self.z.see(float(z.min()), float(z.max()))
+        self.c.see(*(part.pattern.c for part in parts))
+        first = 0
+        for part in parts:
+            like, moves = part.pattern, length[first : first + len(part)] != 0.0
+            first += len(part)
+            rpm = np.array([like.rpm])
+            if moves.any():
+                feeds = np.array([like.feed]) if part.feed is None else part.feed[moves]
+                self._feeds(rpm, feeds, np.array([like.per_rev]))
+            if not like.modal.c_locked:
+                self._turning(rpm)
 
     def _curved(self, blocks: Sequence[Block], length: Floats) -> None:
         """Store the lengths of moves that are not straight lines of X and Z."""
@@ -147,6 +174,7 @@ def _columns(part: Part) -> Floats:
 
 
 _FEED = 6  # index of the feed in the columns
+_ENDS = ("x0", "z0", "x", "z")
 
 
 def _figures(b: Block) -> tuple[float, ...]:
