@@ -33,7 +33,8 @@ _MOVE = re.compile(
 _FIVE_PLACES = re.compile(r"\.[0-9]{5}")
 _SHAPE = bytes.maketrans(b"123456789", b"000000000")
 _NEW_LINE = ord("\n")
-_FEW = 8  # lines of one shape that are read one by one
+_FEW = 8  # lines of one form that are read one by one; rare forms of one length after which all are
+_LONGEST = 64  # characters; longer lines are no plain moves
 _PAGE, _PAGES = 1024, 32
 
 
@@ -107,49 +108,83 @@ def _words_of(column: Floats) -> list[float | None]:
 def read_columns(text: str, columns: Columns) -> None:
     """Fill the columns from the text; ``known`` remains False for other lines and lines of a rare form."""
     raw = text.encode("ascii", "replace")  # one byte per character
-    digits = np.frombuffer(raw, np.uint8)
-    starts = np.concatenate([[0], np.flatnonzero(digits == _NEW_LINE) + 1])
-    shapes = raw.translate(_SHAPE).split(b"\n")
-    number = {shape: k for k, shape in enumerate(set(shapes))}
-    kinds = np.fromiter(map(number.__getitem__, shapes), np.int64, len(shapes))
-    order = np.argsort(kinds, kind="stable")
-    bounds = np.searchsorted(kinds[order], np.arange(len(number) + 1))
-    for shape, k in number.items():
-        rows = order[bounds[k] : bounds[k + 1]]
-        match = _words(shape.decode()) if len(rows) >= _FEW else None
+    digits, shapes = np.frombuffer(raw, np.uint8), np.frombuffer(raw.translate(_SHAPE), np.uint8)
+    ends = np.append(np.flatnonzero(digits == _NEW_LINE), len(digits))
+    starts = np.concatenate([[0], ends[:-1] + 1])
+    lengths = np.minimum(ends - starts, _LONGEST)
+    for length in np.flatnonzero(np.bincount(lengths)[:_LONGEST] >= _FEW).tolist():
+        _read_length(columns, np.flatnonzero(lengths == length), starts, length, digits, shapes)
+
+
+def _read_length(
+    columns: Columns, rows: Ints, starts: Ints, length: int, digits: Digits, shapes: Digits
+) -> None:
+    """Fill the lines ``rows``, all of which have this length, form by form; the most in their first line."""
+    rare = 0
+    while len(rows) >= _FEW and rare < _FEW:
+        lines, begin = _Lines.of(starts[rows]), starts[rows[0]]
+        form = shapes[begin : begin + length]
+        same = np.ones(len(rows), bool)
+        for at, character in enumerate(form.tolist()):
+            same &= lines.column(shapes, at) == character
+        alike = rows if same.all() else rows[same]
+        match = _words(form.tobytes().decode()) if len(alike) >= _FEW else None
         if match is not None:
-            _read_shape(columns, rows, match, digits, starts)
+            _read_shape(columns, alike, match, digits, lines if alike is rows else _Lines.of(starts[alike]))
+        rare += len(alike) < _FEW
+        rows = rows[~same]
 
 
-def _read_shape(columns: Columns, rows: Ints, match: re.Match[str], digits: Digits, starts: Ints) -> None:
+class _Lines(NamedTuple):
+    """The first characters of lines in a text; ``step`` is the distance between lines, 0 if it varies."""
+
+    first: Ints
+    step: int
+
+    @classmethod
+    def of(cls, first: Ints) -> _Lines:
+        """Return the lines that start at these characters, in ascending order."""
+        steps = np.diff(first)
+        return cls(first, int(steps[0]) if len(steps) and (steps == steps[0]).all() else 0)
+
+    def column(self, text: Digits, at: int) -> Digits:
+        """Return the character ``at`` (from 0) of each line."""
+        if not self.step:
+            return text.take(self.first + at)
+        return text[self.first[0] + at : self.first[-1] + at + 1 : self.step]
+
+
+def _read_shape(columns: Columns, rows: Ints, match: re.Match[str], digits: Digits, lines: _Lines) -> None:
     """Fill the lines ``rows``, all of which have the form of the match."""
-    first = starts[rows]
     known = np.ones(len(rows), bool)
     for name, column in (("x", columns.x), ("z", columns.z), ("f", columns.f)):
         if match[name] is not None:
-            column[rows] = _numbers(match, name, first, digits)
+            column[rows] = _numbers(match, name, lines, digits)
     if match["f"] is not None:
         known &= columns.f[rows] > 0.0
     if match["g"] is not None:
-        at = first + match.start("g")
-        columns.g[rows] = digits[at] - ord("0")
-        known &= (digits[at - 1] == ord("0")) & (columns.g[rows] <= 1)
+        at = match.start("g")
+        columns.g[rows] = lines.column(digits, at) - ord("0")
+        known &= (lines.column(digits, at - 1) == ord("0")) & (columns.g[rows] <= 1)
     columns.fine[rows] = _is_fine(match.string)
     columns.known[rows] = known
 
 
-def _numbers(match: re.Match[str], name: str, first: Ints, digits: Digits) -> Floats:
+def _numbers(match: re.Match[str], name: str, lines: _Lines, digits: Digits) -> Floats:
     """Return the numbers of a word in these lines.
 
     Digits as a whole number and powers of ten are exact, so that their quotient equals the result of
     ``float``.
     """
     text, start = match[name], match.start(name)
-    places = [start + k for k, character in enumerate(text) if character.isdigit()]
-    whole = digits[first[:, None] + np.array(places)].astype(np.float64) - ord("0")
-    value: Floats = whole @ 10.0 ** np.arange(len(places))[::-1]
+    whole = np.zeros(len(lines.first), np.int32)  # at most nine digits
+    for at, character in enumerate(text, start=start):
+        if character.isdigit():
+            whole *= 10
+            whole += lines.column(digits, at)
+            whole -= ord("0")
     decimals = len(text) - text.index(".") - 1 if "." in text else 0
-    value /= 10.0**decimals
+    value: Floats = whole / 10.0**decimals
     return -value if text.startswith("-") else value
 
 
