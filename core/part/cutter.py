@@ -186,7 +186,7 @@ class Cutter:
 
     def _take(self, part: TurnedPart, outline: _Sides, start: Point, end: Point, *, cut: bool) -> Cut:
         if self.side is Side.OUTSIDE:
-            return part.outwards(*sweep(outline.near, start, end, part.columns), cut=cut)
+            return part.outwards(*sweep(outline.near, start, end, part.columns, part.largest), cut=cut)
         first, far = sweep(outline.far, _mirrored(start), _mirrored(end), part.columns)
         if self.side is Side.BORE and not self.drills:
             return part.inwards(first, -far, cut=cut)

@@ -70,42 +70,37 @@ def _turn(a: Point, b: Point, c: Point) -> float:
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 
 
-def sweep(edge: Edge, start: Point, end: Point, columns: Columns) -> tuple[int, FloatArray]:
+def sweep(
+    edge: Edge, start: Point, end: Point, columns: Columns, below: float = math.inf
+) -> tuple[int, FloatArray]:
     """Return the first column that the edge reaches, and the least r (m,) in each column on the move.
 
-    ``start`` and ``end`` are the positions of the outline's origin.
+    ``start`` and ``end`` are the positions of the outline's origin. Columns at both ends in which the edge
+    remains at r ``below`` or further out are left out.
     """
     (z1, r1), (z0, r0) = (start, end) if start[0] <= end[0] else (end, start)
     way = z0 - z1
     if way <= _UPRIGHT:
-        return _standing(edge, z1, min(r0, r1), columns)
-    slope = (r0 - r1) / way
-    tangent = int(edge.slope.searchsorted(slope))
-    low, high = float(edge.z[0]), float(edge.z[-1])
-    first, last = columns.at(low + z1), columns.at(high + z0)
-    reached = np.empty(max(last - first, 0))
-    if last <= first:
-        return first, reached
-    corner = float(edge.z[tangent])
-    a, b = max(columns.at(corner + z1), first) - first, min(columns.at(corner + z0), last) - first
-    begin, step = columns.first + columns.step * first, columns.step
-    if a > 0:
-        there = begin + step * np.arange(a)
-        reached[:a] = np.interp(there, edge.z[: tangent + 1] + z1, edge.r[: tangent + 1] + r1)
-    if a < b:
-        along = float(edge.r[tangent]) + r1
-        if slope == 0.0:
-            reached[a:b] = along
-        else:
-            along += slope * (begin + step * a - (corner + z1))
-            reached[a:b] = along + slope * step * np.arange(b - a)
-    if b < len(reached):
-        there = begin + step * np.arange(b, len(reached))
-        reached[b:] = np.interp(there, edge.z[tangent:] + z0, edge.r[tangent:] + r0)
-    return first, reached
-
-
-def _standing(edge: Edge, z: float, r: float, columns: Columns) -> tuple[int, FloatArray]:
-    first, last = columns.at(float(edge.z[0]) + z), columns.at(float(edge.z[-1]) + z)
+        z, r = edge.z + z1, edge.r + min(r0, r1)
+    else:
+        at = int(edge.slope.searchsorted((r0 - r1) / way))  # the edge is tangent to the move
+        z = np.concatenate((edge.z[: at + 1] + z1, edge.z[at:] + z0))
+        r = np.concatenate((edge.r[: at + 1] + r1, edge.r[at:] + r0))
+    low, high = _ends_below(z, r, below)
+    first, last = columns.at(low), columns.at(high)
     there = columns.first + columns.step * np.arange(first, max(first, last))
-    return first, np.interp(there, edge.z + z, edge.r + r)
+    return first, np.interp(there, z, r)
+
+
+def _ends_below(z: FloatArray, r: FloatArray, below: float) -> Point:
+    """Return the ends along Z of the part of a convex chain (k,) in which its r is less than ``below``."""
+    inside = (r < below).nonzero()[0]
+    if not len(inside):
+        return float(z[0]), float(z[0])
+    i, k = int(inside[0]), int(inside[-1])
+    low, high = float(z[i]), float(z[k])
+    if i > 0:
+        low -= (low - float(z[i - 1])) * (below - float(r[i])) / float(r[i - 1] - r[i])
+    if k < len(z) - 1:
+        high += (float(z[k + 1]) - high) * (below - float(r[k])) / float(r[k + 1] - r[k])
+    return low, high

@@ -249,20 +249,19 @@ class TurnedPart:
     def _met(self, first: int, low: FloatArray, high: FloatArray, start: FloatArray, end: FloatArray) -> Cut:
         """Return the material between ``start`` and ``end`` of a layer, both within its interval."""
         thick = end - start
-        deep = float(thick.max(initial=0.0))
-        if deep <= _TOUCH:
+        touched = (thick > _TOUCH).nonzero()[0]
+        if not len(touched):
             return NOTHING
-        touched = thick > _TOUCH
         step, begin = self.columns.step, self.columns.first + self.columns.step * (first - 0.5)
-        whole = float((start - low).min()) <= _TOUCH and float((high - end).min()) <= _TOUCH
+        whole = (start[touched] <= low[touched] + _TOUCH) & (end[touched] >= high[touched] - _TOUCH)
         return Cut(
             area=step * float(thick.sum()),
             volume=math.pi * step * float(end @ end - start @ start),
-            depth=deep,
-            width=step * int(np.count_nonzero(touched)),
-            back=begin + step * int(touched.argmax()),
-            front=begin + step * (len(touched) - int(touched[::-1].argmax())),
-            parts=whole and bool(np.any(touched & (start <= low + _TOUCH) & (end >= high - _TOUCH))),
+            depth=float(thick.max()),
+            width=step * len(touched),
+            back=begin + step * int(touched[0]),
+            front=begin + step * (int(touched[-1]) + 1),
+            parts=bool(whole.any()),
         )
 
     def _taken(self, met: Cut, *, cut: bool) -> Cut:
