@@ -14,7 +14,13 @@ LONG = "prove 1,000,000 blocks"
 
 @pytest.mark.parametrize(
     ("figure", "told"),
-    [((1.2, 200.0), False), ((1.21, 150.0), True), ((1.0, 201.0), True), ((1.0,), False)],
+    [
+        ((1.2, 170.0, 0.35), False),
+        ((1.21, 150.0), True),
+        ((1.0, 171.0), True),
+        ((1.0,), False),
+        ((1.0, 150.0, 0.36), True),
+    ],
 )
 def test_time_or_memory_over_the_goal_is_told(figure: tuple[float, ...], told: bool) -> None:
     assert list(not_met({LONG: figure})) == ([f"{LONG}: {GOALS[LONG].why}."] if told else [])
@@ -23,6 +29,8 @@ def test_time_or_memory_over_the_goal_is_told(figure: tuple[float, ...], told: b
 def test_a_row_without_a_goal_is_never_told_and_shows_none() -> None:
     assert list(not_met({"bare interpreter": (99.0, 999.0)})) == []
     assert (goal_of("bare interpreter", "{:.2f}"), goal_of("window usable", "{:.2f}")) == ("–", "0.50")
+    assert (goal_of(LONG, "{:.0f}", "memory"), goal_of("window usable", "{:.0f}", "memory")) == ("170", "–")
+    assert (goal_of(LONG, "{:.2f}", "peer"), goal_of("window usable", "{:.2f}", "peer")) == ("0.35", "–")
 
 
 @pytest.mark.parametrize("name", GOALS)
@@ -37,4 +45,4 @@ def test_the_page_has_the_figures_that_were_kept() -> None:
 
 
 def test_what_was_never_measured_is_said(tmp_path: Path) -> None:
-    assert kept(tmp_path).count("Not measured yet.") == 3
+    assert kept(tmp_path).count("Not measured yet.") == 5

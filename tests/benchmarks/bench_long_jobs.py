@@ -9,16 +9,18 @@ from __future__ import annotations
 import math
 import sys
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from ezdxf.filemanagement import new
 
 from tests.benchmarks.bench_start import TURNDESK
+from tests.benchmarks.footprint import keep_result
 from tests.benchmarks.installed import installed
-from tests.benchmarks.processor_time import BARE, compared
+from tests.benchmarks.processor_time import BARE, Cost, compared
 
 ROUNDS = 3
+NO_JOB = "bare interpreter"
 PASSES, CUTS = 20, 3000
 TOOL = """
 [tool.1]
@@ -75,7 +77,7 @@ def jobs(home: Path) -> dict[str, Sequence[str]]:
         (home / f"{name}.nc").write_text(text)
     given = ("--offsets", str(tools), "--tools", str(tools), "--stock", "bar:1.2:4")
     commands: dict[str, Sequence[str]] = {
-        "bare interpreter": BARE,
+        NO_JOB: BARE,
         f"prove {PASSES * CUTS:,} lines with the part": [*TURNDESK, "prove", str(home / "cam.nc"), *given],
         "prove 2,282 thread passes with the part": [*TURNDESK, "prove", str(home / "threads.nc"), *given],
     }
@@ -86,13 +88,22 @@ def jobs(home: Path) -> dict[str, Sequence[str]]:
     return commands
 
 
+def _keep(costs: Mapping[str, Cost]) -> None:
+    """Store the result for ``docs/speed.md``."""
+    rows = {
+        name: (round(cost.seconds, 3), round(cost.memory)) for name, cost in costs.items() if name != NO_JOB
+    }
+    keep_result("long_jobs", {"bare, s": costs[NO_JOB].seconds, "rows": rows})
+
+
 def main() -> None:
     """Print the table."""
     with tempfile.TemporaryDirectory() as folder:
         home = Path(folder)
         costs = compared(jobs(home), installed(home, OPENBLAS_NUM_THREADS="1"), ROUNDS)
+    _keep(costs)
     sys.stdout.write(f"{'processor time of a process':48s}{'s':>9s}{'x bare':>9s}{'MiB':>9s}\n")
-    bare = costs["bare interpreter"].seconds
+    bare = costs[NO_JOB].seconds
     for name, cost in costs.items():
         sys.stdout.write(f"{name:48s}{cost.seconds:9.3f}{cost.seconds / bare:9.0f}{cost.memory:9.0f}\n")
 

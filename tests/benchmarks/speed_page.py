@@ -38,7 +38,7 @@ from tests.benchmarks.bench_prove import feeds, program
 from tests.benchmarks.footprint import RESULTS
 from tests.benchmarks.installed import installed
 from tests.benchmarks.processor_time import BARE, compared
-from tests.benchmarks.speed_goals import GOALS, goal_of, not_met
+from tests.benchmarks.speed_goals import goal_of, not_met
 from tests.motion.moves import rounded_chords
 from tests.motion.paths import build_path
 
@@ -50,11 +50,13 @@ TITLES = (
     "Proofs in a running process",
     "Cutting the stock",
     "Chords of a half circle",
+    "Growth with the length of a program",
+    "Long jobs",
     "Frames of the window with a long program",
     "At rest",
     "SYNC of the driver host under load",
 )
-STARTS, BULK, WARM, STOCK, CHORDS, FIRST_KEPT, REST, SYNC = TITLES
+STARTS, BULK, WARM, STOCK, CHORDS, FIRST_KEPT, JOBS, FRAMES, REST, SYNC = TITLES
 _SHOWN = {
     "longest by the clock, ms": "longest, wall-clock, ms",
     "of processor time, ms": "longest, CPU time, ms",
@@ -82,7 +84,9 @@ def kept(folder: Path = RESULTS) -> str:
     """The parts that other benchmarks have measured; one that never ran is named."""
     parts = []
     for name, title, write in (
-        ("frames", FIRST_KEPT, _frames),
+        ("growth", FIRST_KEPT, _growth),
+        ("long_jobs", JOBS, _jobs),
+        ("frames", FRAMES, _frames),
         ("idle", REST, _idle),
         ("feeder", SYNC, _host),
     ):
@@ -123,7 +127,7 @@ def _filled(text: str) -> str:
 
 
 def _machine() -> str:
-    """Processor, system and Python."""
+    """Return the processor, system and Python."""
     cpu = Path("/proc/cpuinfo")
     lines = cpu.read_text().splitlines() if cpu.exists() else []
     name = next((each.partition(": ")[2] for each in lines if each.startswith("model name")), "")
@@ -173,33 +177,35 @@ def _bulk(home: Path) -> str:
             commands[f"rs274 {count:,} blocks, interpreted only"] = [
                 peer,
                 "-g",
-                str(_for_rs274(long)),
+                str(for_rs274(long)),
                 os.devnull,
             ]
         costs = compared(
             {"bare interpreter": BARE, **commands}, installed(home, OPENBLAS_NUM_THREADS="1"), FEW
         )
         bare = costs.pop("bare interpreter").seconds
-        figures |= costs
-        rows += [
-            (
-                name,
-                f"{cost.seconds:.2f}",
-                goal_of(name, "{:.1f}"),
-                f"{cost.seconds / bare:.0f}",
-                f"{cost.memory:.0f}",
-                _memory_goal(name),
+        other = costs.get(f"rs274 {count:,} blocks, interpreted only")
+        for name, cost in costs.items():
+            ratio = cost.seconds / other.seconds if other is not None else 0.0
+            figures[name] = (*cost, ratio)
+            rows.append(
+                (
+                    name,
+                    f"{cost.seconds:.2f}",
+                    goal_of(name, "{:.1f}"),
+                    f"{cost.seconds / bare:.0f}",
+                    f"{ratio:.2f}" if ratio else "–",
+                    goal_of(name, "{:.2f}", "peer"),
+                    f"{cost.memory:.0f}",
+                    goal_of(name, "{:.0f}", "memory"),
+                )
             )
-            for name, cost in costs.items()
-        ]
-    head = ("process", "CPU time, s", "goal, s", "× bare interpreter", "memory, MiB", "goal, MiB")
+    head = (
+        *("process", "CPU time, s", "goal, s", "× bare interpreter", "× rs274", "goal, × rs274"),
+        *("memory, MiB", "goal, MiB"),
+    )
     above = "`rs274` is the interpreter of LinuxCNC. It interprets the program but does not prove it."
     return _table(BULK, head, rows, _reasons(figures), above)
-
-
-def _memory_goal(name: str) -> str:
-    goal = GOALS.get(name)
-    return f"{goal.memory:.0f}" if goal is not None and goal.memory else "–"
 
 
 def _reasons(figures: Mapping[str, Sequence[float]]) -> str:
@@ -218,8 +224,8 @@ def _reasons(figures: Mapping[str, Sequence[float]]) -> str:
     )
 
 
-def _for_rs274(path: Path) -> Path:
-    """The same lines in RS-274: G01 with the first move, the feed per minute, no tool."""
+def for_rs274(path: Path) -> Path:
+    """Return a file with the same lines in RS-274: G01 with the first move, the feed per minute, no tool."""
     lines = [line for line in path.read_text().replace("G95F.003", "F6").splitlines() if line != "T1"]
     lines = [line.replace("G72", "G20") for line in lines]
     first = next(at for at, line in enumerate(lines) if line.startswith("X"))
@@ -303,6 +309,41 @@ def _chords() -> str:
         f"{FEED:g} mm/s. Each value is the planned time divided by the ideal time."
     )
     return _table(CHORDS, head, rows, above=above)
+
+
+def _growth(title: str, result: Result) -> str:
+    """Return the time and memory of proofs by the length of the program."""
+    rows: list[Row] = []
+    before: tuple[int, float] | None = None
+    for lines, figures in ((int(name), figures) for name, figures in result["rows"].items()):
+        seconds, peer = figures["prove, s"], figures.get("rs274, s")
+        step = "–" if before is None else f"{1e6 * (seconds - before[1]) / (lines - before[0]):.1f}"
+        other = ("–", "–") if peer is None else (f"{peer:.2f}", f"{seconds / peer:.2f}")
+        rows.append((f"{lines:,}", f"{seconds:.2f}", step, f"{figures['memory, MiB']:.0f}", *other))
+        before = lines, seconds
+    head = ("lines", "CPU time, s", "µs per added line", "memory, MiB", "rs274, s", "× rs274")
+    below = (
+        "Each program is proved in its own process, without the part. The time per added line is the "
+        "difference to the row above, divided by the added lines. If the time grows linearly, it is the same "
+        "in all rows."
+    )
+    return _table(title, head, rows, _filled(below))
+
+
+def _jobs(title: str, result: Result) -> str:
+    """Return the time and memory of long jobs with their goals."""
+    rows = [
+        (
+            name,
+            f"{seconds:.2f}",
+            goal_of(name, "{:.1f}"),
+            f"{seconds / result['bare, s']:.0f}",
+            f"{memory:.0f}",
+        )
+        for name, (seconds, memory) in result["rows"].items()
+    ]
+    head = ("process", "CPU time, s", "goal, s", "× bare interpreter", "memory, MiB")
+    return _table(title, head, rows, _reasons(result["rows"]))
 
 
 def _frames(title: str, result: Result) -> str:
