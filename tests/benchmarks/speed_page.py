@@ -43,6 +43,7 @@ from tests.motion.moves import rounded_chords
 from tests.motion.paths import build_path
 
 FEW = 3  # rounds of what takes seconds
+_SHOWS_GROWTH = 100_000  # lines from which the time per line exceeds the differences between two starts
 RADIUS, CHORD, FEED = 50.0, 0.02, 100.0
 TITLES = (
     "Start of a process",
@@ -317,15 +318,19 @@ def _growth(title: str, result: Result) -> str:
     before: tuple[int, float] | None = None
     for lines, figures in ((int(name), figures) for name, figures in result["rows"].items()):
         seconds, peer = figures["prove, s"], figures.get("rs274, s")
-        step = "–" if before is None else f"{1e6 * (seconds - before[1]) / (lines - before[0]):.1f}"
+        step = (
+            "–"
+            if before is None or lines < _SHOWS_GROWTH
+            else f"{1e6 * (seconds - before[1]) / (lines - before[0]):.1f}"
+        )
         other = ("–", "–") if peer is None else (f"{peer:.2f}", f"{seconds / peer:.2f}")
         rows.append((f"{lines:,}", f"{seconds:.2f}", step, f"{figures['memory, MiB']:.0f}", *other))
         before = lines, seconds
     head = ("lines", "CPU time, s", "µs per added line", "memory, MiB", "rs274, s", "× rs274")
     below = (
         "Each program is proved in its own process, without the part. The time per added line is the "
-        "difference to the row above, divided by the added lines. If the time grows linearly, it is the same "
-        "in all rows."
+        "difference to the row above, divided by the added lines. In short programs, it is hidden by the "
+        "start of the process. If the time grows linearly, the values do not increase."
     )
     return _table(title, head, rows, _filled(below))
 
