@@ -34,7 +34,7 @@ from app.compose.control.control_messages import (
     ThreadEnded,
     is_own_user,
 )
-from app.compose.control.control_start import StartedControl, socket_path, start_control
+from app.compose.control.control_start import StartedControl, socket_paths, start_control
 from app.compose.control.passed_files import SharedMemory, send_file
 from core.executor.commands import GiveProof, LoadJob, SetSwitch
 from core.executor.job import Proof
@@ -327,9 +327,7 @@ class Listening:
 
 @pytest.fixture
 def path(tmp_path: Path) -> Path:
-    found = socket_path(tmp_path)
-    assert found is not None
-    return found
+    return socket_paths(tmp_path)[0]
 
 
 def find(tmp_path: Path, path: Path, serve: Callable[[Connection], object]) -> ControlClient | None:

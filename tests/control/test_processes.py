@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import resource
-import shutil
 import signal
 import socket
 import subprocess
@@ -17,8 +16,7 @@ from pathlib import Path
 import pytest
 
 from app.compose.control.control_client import ControlClient, ControlEvents, find_control
-from app.compose.control.control_process import ScreenListener
-from app.compose.control.control_start import socket_path, start_control
+from app.compose.control.control_start import socket_paths, start_control
 from app.compose.control.left_note import NAME
 from app.desk.data_folder import HOME
 from core.executor.commands import (
@@ -101,10 +99,9 @@ def desk(folder: Path) -> Iterator[tuple[Desk, subprocess.Popen[bytes]]]:
         process.wait()
 
 
-def found(folder: Path) -> ControlClient:
+def found(folder: Path, place: int = 0) -> ControlClient:
     """The control that a lost screen has left."""
-    path = socket_path(folder)
-    assert path is not None
+    path = socket_paths(folder)[place]
     clients: list[ControlClient] = []
 
     def look() -> bool:
@@ -146,8 +143,7 @@ def test_a_killed_control_is_an_alarm_and_the_next_start_finds_none(folder: Path
         process.kill()
         screen.until(State.FAULT)
     assert (folder / "control.sock").is_socket()
-    path = socket_path(folder)
-    assert path is not None
+    path = socket_paths(folder)[0]
     assert find_control(MACHINE, folder, path) is None
     with desk(folder) as (screen, process):
         until(lambda: _listens(path))
@@ -190,8 +186,7 @@ def test_a_lost_screen_is_followed_by_the_next_one(folder: Path) -> None:
 
 def test_a_second_start_while_a_screen_is_connected_has_its_own_control(folder: Path) -> None:
     with desk(folder) as (first, _):
-        path = socket_path(folder)
-        assert path is not None
+        path = socket_paths(folder)[0]
         until(lambda: _listens(path))
         for _ in range(5):  # none of them is left in the queue
             assert find_control(MACHINE, folder, path) is None
@@ -202,6 +197,35 @@ def test_a_second_start_while_a_screen_is_connected_has_its_own_control(folder: 
         assert path.is_socket()  # of the first
         first.client.post(EnableDrives())
         first.until(State.IDLE)
+
+
+def test_the_second_control_of_a_folder_is_found_at_its_own_socket(folder: Path) -> None:
+    with desk(folder), desk(folder) as (second, process):
+        second.client.post(EnableDrives())
+        second.until(State.IDLE)
+        second.vanish()
+        paths = socket_paths(folder)
+        assert find_control(MACHINE, folder, paths[0]) is None  # it has its screen
+        client = found(folder, 1)
+        assert client.snapshot.state is State.IDLE
+        again = Desk(client)
+        again.client.close()
+        assert process.wait(30.0) == 0
+        assert not paths[1].exists()
+        assert paths[0].is_socket()
+
+
+def test_the_place_of_a_killed_control_is_used_by_the_next(folder: Path) -> None:
+    path = socket_paths(folder)[0]
+    started = start_control(MACHINE, folder)
+    ControlClient(started, folder)
+    until(lambda: _listens(path))
+    started.abandon()
+    assert path.is_socket()  # left by the killed control
+    assert not _listens(path)
+    with desk(folder):
+        until(lambda: _listens(path))
+        assert not socket_paths(folder)[1].exists()
 
 
 def test_two_folders_have_two_controls(folder: Path) -> None:
@@ -223,7 +247,7 @@ def test_a_folder_in_which_no_socket_can_be_made_is_no_obstacle(folder: Path) ->
 
 def test_a_folder_whose_path_is_too_long_for_a_socket_is_no_obstacle(folder: Path) -> None:
     long = folder / ("long" * 30)
-    assert socket_path(long) is None
+    assert socket_paths(long) == []
     with desk(long) as (screen, _):
         screen.client.post(EnableDrives())
         screen.until(State.IDLE)
@@ -278,27 +302,3 @@ def _listens(path: Path) -> bool:
         sock.connect(str(path))
         return True
     return False
-
-
-def test_a_control_leaves_the_socket_of_another_one(tmp_path: Path) -> None:
-    path = tmp_path / "control.sock"
-    first = ScreenListener(path)
-    path.unlink()
-    second = ScreenListener(path)
-    first.close()
-    assert path.is_socket()
-    second.close()
-    assert not path.exists()
-
-
-def test_nobody_takes_the_socket_of_a_control_that_listens(tmp_path: Path) -> None:
-    listener = ScreenListener(tmp_path / "control.sock")
-    assert ScreenListener.at(tmp_path / "control.sock") is None
-    listener.close()
-
-
-def test_a_folder_that_has_gone_is_no_trouble_at_the_end(tmp_path: Path) -> None:
-    listener = ScreenListener(tmp_path / "home" / "control.sock")
-    shutil.rmtree(tmp_path / "home")
-    listener.close()
-    assert not (tmp_path / "home").exists()

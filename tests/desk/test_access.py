@@ -70,7 +70,7 @@ NO_CHANGE = {
     "cli/proofs/report_file.py": "a report, to a file of whoever asks",
     "extras/quality/shift_command.py": "a report",
     "cli/trace_command.py": "setpoints, to a file of whoever asks",
-    "compose/control/control_process.py": "closes at the end of the computer",
+    "compose/control/control_place.py": "the socket of a control",
     "compose/control/control_server.py": "inputs of a machine that is simulated",
     "compose/control/left_note.py": "the job that is interrupted",
     "compose/demo_store.py": "a store for trying",

@@ -16,9 +16,12 @@ from core.ports import Clock
 HAS_DRIVER_HOST = sys.platform != "win32"
 
 
-def connect(machine: Machine, clock: Clock) -> Connected:
-    """Return everything that the executor needs. Raises DriverError if a device does not respond."""
-    connected = _connected(wired(machine), clock)
+def connect(machine: Machine, clock: Clock, lock: int | None = None) -> Connected:
+    """Return everything that the executor needs. Raises DriverError if a device does not respond.
+
+    ``lock`` is a file descriptor that a driver host process inherits and holds until it has ended.
+    """
+    connected = _connected(wired(machine), clock, lock)
     for extra in extras().values():
         connected = extra.connect(machine, connected)
     return connected
@@ -31,14 +34,14 @@ def wired(machine: Machine) -> Machine:
     return machine
 
 
-def _connected(machine: Machine, clock: Clock) -> Connected:
+def _connected(machine: Machine, clock: Clock, lock: int | None) -> Connected:
     backend = backend_of(machine)
     apart = backend.driven is not None and machine.hardware.feeder and HAS_DRIVER_HOST
     if backend.connect is not None and not apart:
         return backend.connect(machine, clock)
     from app.compose.backends.driver_host_backend import connect_driver_host
 
-    return connect_driver_host(machine, clock)
+    return connect_driver_host(machine, clock, lock)
 
 
 def real_time(machine: Machine) -> bool:

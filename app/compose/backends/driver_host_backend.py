@@ -14,9 +14,12 @@ from drivers.driver_host.host_server import DriverHost
 from drivers.waiting import RealClock
 
 
-def connect_driver_host(machine: Machine, clock: Clock) -> Connected:
-    """Start the driver host and return the machine's ports. Raises DriverError if it does not respond."""
-    line, close = _line(machine, clock)
+def connect_driver_host(machine: Machine, clock: Clock, lock: int | None = None) -> Connected:
+    """Start the driver host and return the machine's ports. Raises DriverError if it does not respond.
+
+    ``lock`` is a file descriptor that the driver host process holds until it has ended.
+    """
+    line, close = _line(machine, clock, lock)
     try:
         ports = host_ports(line)
     except DriverError:
@@ -27,13 +30,13 @@ def connect_driver_host(machine: Machine, clock: Clock) -> Connected:
     return Connected(ports, panel, hands.set_input if played(machine) else None, close)
 
 
-def _line(machine: Machine, clock: Clock) -> tuple[Line, Callable[[], None]]:
+def _line(machine: Machine, clock: Clock, lock: int | None) -> tuple[Line, Callable[[], None]]:
     """Return the connection to the driver host and its close function.
 
     With a real clock the driver host is a process; otherwise the same messages run in this thread.
     """
     if isinstance(clock, RealClock) and not _virtual(machine):
-        process = DriverHostProcess(machine, clock)
+        process = DriverHostProcess(machine, clock, lock)
         return process.line, process.close
     owned = driven(machine, clock)
     return Line(LoopLink(DriverHost(owned, refresh=machine.hardware.refresh)), clock), owned.close

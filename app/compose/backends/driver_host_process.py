@@ -45,10 +45,14 @@ _END = 10.0
 
 
 class DriverHostProcess:
-    """A driver host in a separate process, and the connection to it."""
+    """A driver host in a separate process, and the connection to it.
 
-    def __init__(self, machine: Machine, clock: RealClock) -> None:
+    The process holds the file descriptor ``lock`` until it has ended.
+    """
+
+    def __init__(self, machine: Machine, clock: RealClock, lock: int | None = None) -> None:
         self._machine, self._clock = machine, clock
+        self._held = () if lock is None else (lock,)
         self._closed = False
         self._bell = Bell()  # retained when the driver host is restarted
         try:
@@ -87,7 +91,7 @@ class DriverHostProcess:
             self.process = subprocess.Popen(
                 command,
                 stdin=subprocess.PIPE,
-                pass_fds=(theirs.fileno(), self._bell.far.fileno()),
+                pass_fds=(theirs.fileno(), self._bell.far.fileno(), *self._held),
                 start_new_session=True,
             )
         assert self.process.stdin is not None

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
-from app.compose.control.control_start import StartedControl, socket_path, start_control
+from app.compose.control.control_start import StartedControl, socket_paths, start_control
 from app.compose.control.rights import OWN_PROCESS
 from app.compose.machine.machine_setup import read_machine
 from app.desk.command_errors import as_command_error
@@ -32,11 +32,12 @@ def begin_control(machine_file: str | None) -> Begun:
 
 
 def _found(machine: Machine, folder: Path) -> ControlClient | None:
-    path = socket_path(folder)
-    if path is None or not path.is_socket():
+    paths = [path for path in socket_paths(folder) if path.is_socket()]
+    if not paths:
         return None
     from app.compose.control.control_client import find_control
     from core.ports import DriverError
 
     with as_command_error(DriverError):
-        return find_control(machine, folder, path)
+        found = (find_control(machine, folder, path) for path in paths)
+        return next((each for each in found if each is not None), None)

@@ -193,13 +193,20 @@ def _send(connection: Connection, message: object) -> None:
 class ControlServer:
     """The control of one machine, with the connection to its screen.
 
-    ``folder`` is the data folder, in which the scope writes its records. Raises DriverError if the machine
-    cannot be connected.
+    ``folder`` is the data folder, in which the scope writes its records. ``lock`` is a file that a driver
+    host holds until it has ended. Raises DriverError if the machine cannot be connected.
     """
 
-    def __init__(self, machine: Machine, clock: RealClock, folder: Path, rights: tuple[Right, ...]) -> None:
+    def __init__(
+        self,
+        machine: Machine,
+        clock: RealClock,
+        folder: Path,
+        rights: tuple[Right, ...],
+        lock: int | None = None,
+    ) -> None:
         self._machine, self._clock, self._folder, self._rights = machine, clock, folder, rights
-        self._connected = connect(machine, clock)
+        self._connected = connect(machine, clock, lock)
         recorded = recorded_of(machine, self._connected.ports)
         self._memory = SharedMemory.of_size(recorded.ring_bytes)
         self.recorder = Recorder(recorded, folder / "records", memory=self._memory.view)

@@ -19,6 +19,8 @@ from typing import NamedTuple
 from core.machine.machine_model import Machine
 
 _PATH_LENGTH = 100  # =
+# names of the places of controls in a data folder; see control_place.py
+PLACES = ("control", "control-2", "control-3", "control-4")
 
 
 class StartedControl(NamedTuple):
@@ -35,13 +37,13 @@ class StartedControl(NamedTuple):
             self.process.wait()
 
 
-def socket_path(folder: Path) -> Path | None:
-    """Return the path of the socket at which the control of this data folder listens for a screen.
+def socket_paths(folder: Path) -> list[Path]:
+    """Return the paths of the sockets at which controls of this data folder listen, the usual one first.
 
-    The result is None if the path is too long for a socket. Another screen cannot find such a control.
+    The list is empty if the paths are too long for a socket. Another screen cannot find such a control.
     """
-    path = folder / "control.sock"
-    return path if len(os.fsencode(path)) < _PATH_LENGTH else None
+    paths = [folder / f"{name}.sock" for name in PLACES]
+    return paths if all(len(os.fsencode(path)) < _PATH_LENGTH for path in paths) else []
 
 
 def start_control(machine: Machine, folder: Path) -> StartedControl:

@@ -1,0 +1,119 @@
+"""The place of a control in the data folder: its socket and its two locks.
+
+Each control owns one place: ``control.sock``, or ``control-2.sock`` and so on if the owners of the earlier
+places are running. The kernel releases a lock when the last process that holds it has ended, so a killed
+control leaves at most an old socket, which the next owner replaces.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import os
+import socket
+import time
+from contextlib import suppress
+from multiprocessing.connection import Connection
+from pathlib import Path
+
+from app.compose.control.control_start import PLACES, socket_paths
+from core.ports import DriverError
+
+DRIVERS_END = 15.0  # s for the driver host of a killed control to stop the machine and end
+_LOOK = 0.05  # s between two attempts to lock
+
+
+class ControlPlace:
+    """The first place of a data folder whose owner does not run, reserved for this process.
+
+    ``drivers`` is the file descriptor of the lock that a driver host inherits, so that no other control uses
+    the drivers of this place before that driver host has ended. Both locks are None if the folder cannot be
+    written, or if all places have owners.
+    """
+
+    def __init__(self, folder: Path, drivers_end: float = DRIVERS_END) -> None:
+        """Reserve the place. Raises DriverError if the drivers of its last owner do not end in time."""
+        self._path: Path | None = None
+        self._owner: int | None = None
+        self.drivers: int | None = None
+        with suppress(OSError):
+            folder.mkdir(parents=True, exist_ok=True)
+            for path in (folder / name for name in PLACES):
+                self._owner = _locked(path.with_suffix(".lock"))
+                if self._owner is not None:
+                    self._path = path
+                    break
+        if self._path is not None:
+            with suppress(OSError):
+                self.drivers = _locked_later(folder / f"{self._path.name}-drivers.lock", drivers_end)
+
+    def listen(self) -> ScreenListener | None:
+        """Return a listener at the socket of the place, which replaces an old one.
+
+        The result is None if the socket cannot be created. Another screen cannot find a control without a
+        listener.
+        """
+        if self._path is None or not socket_paths(self._path.parent):
+            return None
+        try:
+            return ScreenListener(self._path.with_suffix(".sock"))
+        except OSError:
+            return None
+
+    def close(self) -> None:
+        """Release the place."""
+        for file in (self._owner, self.drivers):
+            if file is not None:
+                os.close(file)
+        self._owner = self.drivers = None
+
+
+def _locked_later(path: Path, limit: float) -> int:
+    """Return the locked file when the drivers of the last owner have ended. Raises DriverError, OSError."""
+    until = time.monotonic() + limit
+    while (file := _locked(path)) is None:
+        if time.monotonic() >= until:
+            raise DriverError("the drivers of the control that has ended are still running")
+        time.sleep(_LOOK)
+    return file
+
+
+def _locked(path: Path) -> int | None:
+    """Return the open file with an exclusive lock, or None if another process holds it. Raises OSError."""
+    file = os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError as error:
+        os.close(file)
+        if isinstance(error, BlockingIOError):
+            return None
+        raise
+    return file
+
+
+class ScreenListener:
+    """Socket in the data folder at which a screen finds the control.
+
+    The constructor replaces an old socket. It raises OSError if the socket cannot be created.
+    """
+
+    def __init__(self, path: Path) -> None:
+        path.unlink(missing_ok=True)
+        self._path, self._socket = path, socket.socket(socket.AF_UNIX)
+        before = os.umask(0o177)
+        try:
+            self._socket.bind(str(path))
+        finally:
+            os.umask(before)
+        self._socket.listen()
+        self._inode = path.stat().st_ino
+
+    def accept(self) -> Connection:
+        """Wait for a screen and return its connection. Raises OSError."""
+        return Connection(self._socket.accept()[0].detach())
+
+    def close(self) -> None:
+        """Stop listening and delete the socket file if it belongs to this socket. Raises no exception."""
+        with suppress(OSError):
+            if self._path.stat().st_ino == self._inode:
+                self._path.unlink()
+        self._socket.close()

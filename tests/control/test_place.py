@@ -1,0 +1,153 @@
+"""Places of controls in a data folder: one owner each, and no drivers with two controls."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import socket
+import subprocess
+import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+if sys.platform != "linux":
+    pytest.skip("the control is a process only on Linux", allow_module_level=True)
+
+from app.compose.backends.driver_host_process import DriverHostProcess
+from app.compose.control.control_place import ControlPlace, ScreenListener
+from app.compose.machine.machine_files import load_machine
+from core.ports import DriverError
+from drivers.waiting import RealClock
+
+NAMES = ["control.sock", "control-2.sock", "control-3.sock", "control-4.sock"]
+
+
+def sockets(folder: Path) -> list[str]:
+    return sorted(path.name for path in folder.glob("*.sock"))
+
+
+@contextmanager
+def owned(folder: Path) -> Iterator[ScreenListener | None]:
+    """A place and its listener."""
+    place = ControlPlace(folder)
+    listener = place.listen()
+    try:
+        yield listener
+    finally:
+        if listener is not None:
+            listener.close()
+        place.close()
+
+
+def test_each_owner_has_its_own_socket(tmp_path: Path) -> None:
+    with owned(tmp_path), owned(tmp_path):
+        assert sockets(tmp_path) == sorted(NAMES[:2])
+        with owned(tmp_path):
+            assert sockets(tmp_path) == sorted(NAMES[:3])
+        assert sockets(tmp_path) == sorted(NAMES[:2])
+    assert sockets(tmp_path) == []
+
+
+def test_a_place_that_is_free_again_is_the_next_to_be_used(tmp_path: Path) -> None:
+    first = ControlPlace(tmp_path)
+    with owned(tmp_path):
+        first.close()
+        with owned(tmp_path):
+            assert sockets(tmp_path) == sorted(NAMES[:2])
+
+
+def test_an_old_socket_is_replaced(tmp_path: Path) -> None:
+    path = tmp_path / NAMES[0]
+    with socket.socket(socket.AF_UNIX) as left:
+        left.bind(str(path))  # of a control that was killed
+    with owned(tmp_path) as listener, socket.socket(socket.AF_UNIX) as screen:
+        assert listener is not None
+        screen.connect(str(path))
+        listener.accept().close()
+        assert sockets(tmp_path) == NAMES[:1]
+    assert not path.exists()
+
+
+def test_a_control_without_a_free_place_has_no_listener(tmp_path: Path) -> None:
+    places = [ControlPlace(tmp_path) for _ in range(5)]
+    assert [place.drivers is not None for place in places] == [True, True, True, True, False]
+    assert places[4].listen() is None
+    for place in places:
+        place.close()
+
+
+def test_a_place_is_not_used_before_the_drivers_of_its_last_owner_have_ended(tmp_path: Path) -> None:
+    killed = ControlPlace(tmp_path)
+    assert killed.drivers is not None
+    host = os.dup(killed.drivers)  # inherited by a driver host
+    killed.close()
+    with pytest.raises(DriverError):
+        ControlPlace(tmp_path, 0.0)
+    found: list[ControlPlace] = []
+    waiting = threading.Thread(target=lambda: found.append(ControlPlace(tmp_path, 30.0)))
+    waiting.start()
+    assert not found
+    os.close(host)
+    waiting.join(30.0)
+    assert found[0].drivers is not None
+    found[0].close()
+
+
+@pytest.mark.real_time
+def test_a_driver_host_holds_the_lock_until_it_has_ended(tmp_path: Path) -> None:
+    place = ControlPlace(tmp_path)
+    host = DriverHostProcess(load_machine(), RealClock(), place.drivers)
+    place.close()
+    with pytest.raises(DriverError):
+        ControlPlace(tmp_path, 0.0)
+    host.close()
+    ControlPlace(tmp_path, 0.0).close()
+
+
+def test_other_programs_do_not_inherit_the_lock(tmp_path: Path) -> None:
+    place = ControlPlace(tmp_path)
+    with subprocess.Popen(["/bin/cat"], stdin=subprocess.PIPE, close_fds=False) as other:
+        place.close()
+        ControlPlace(tmp_path, 0.0).close()
+        assert other.poll() is None
+        assert other.stdin is not None
+        other.stdin.close()
+
+
+def test_a_folder_that_cannot_be_written_has_no_place(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    place = ControlPlace(tmp_path / "file" / "home")
+    assert place.drivers is None
+    assert place.listen() is None
+    place.close()
+
+
+def test_a_folder_whose_path_is_too_long_for_a_socket_has_its_locks(tmp_path: Path) -> None:
+    place = ControlPlace(tmp_path / ("long" * 30))
+    assert place.drivers is not None
+    assert place.listen() is None
+    place.close()
+
+
+def test_a_control_leaves_the_socket_of_another_one(tmp_path: Path) -> None:
+    path = tmp_path / NAMES[0]
+    first = ScreenListener(path)
+    path.unlink()
+    second = ScreenListener(path)
+    first.close()
+    assert path.is_socket()
+    second.close()
+    assert not path.exists()
+
+
+def test_a_folder_that_has_gone_is_no_trouble_at_the_end(tmp_path: Path) -> None:
+    folder = tmp_path / "home"
+    folder.mkdir()
+    listener = ScreenListener(folder / NAMES[0])
+    shutil.rmtree(folder)
+    listener.close()
+    assert not folder.exists()
