@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from app.compose.control.control_begin import begin_control
 from app.compose.control.control_client import ControlClient, ControlEvents
 from app.compose.control.control_start import StartedControl
+from app.compose.control.live_control import LiveControl
 from app.compose.desk_assembly import DeskEvents, desk_and_parts, desk_of
 from app.compose.desk_services import SUPERVISED, report_ended_thread, start_services
 from app.compose.machine.machine_setup import remember_machine
@@ -123,15 +124,17 @@ def _desk_on_process(
         left = journal.left
         if left is not None:
             client.post(LeftInterrupted(left, logged=journal.left_is_logged))
+    live = LiveControl(client, machine, data_folder())
     events = DeskEvents(client.clock, journal)
     used = DeskControl(
-        client.post,
-        lambda: client.snapshot,
-        client.hands,
-        client.set_input if client.hello.inputs else None,
+        live.post,
+        lambda: live.snapshot,
+        live.hands,
+        live.set_input if client.hello.inputs else None,
         client.hello.warnings,
         client.records,
-        client.open_stop_line,
+        live.open_stop_line,
+        live.restart,
     )
     desk = desk_of(machine, used, events, offsets)
     for right in client.hello.rights:
@@ -140,16 +143,17 @@ def _desk_on_process(
     threads = ThreadWatch(SUPERVISED, partial(report_ended_thread, desk, journal))
     desk.closing.stops += [
         ClosingStep("threads", threads.end),  # threads that end from now on end as intended
-        ClosingStep("control", client.close, CONTROL_CLOSES),
+        ClosingStep("control", live.close, CONTROL_CLOSES),
     ]
-    desk.pages.add_frame_watcher(client.see)
-    client.begin(
+    desk.pages.add_frame_watcher(live.see)
+    live.begin(
         ControlEvents(
             events.hear,
             journal.note,
             partial(report_ended_thread, desk, journal),
             desk.window.wake,
-        )
+        ),
+        desk.warn,
     )
     if left is not None:
         # the interrupted job is loaded then

@@ -324,9 +324,15 @@ class Desk:
         self.clear()
 
     def reset(self) -> None:
-        """Acknowledge an alarm, or cancel an interrupted program after the operator confirms."""
+        """Acknowledge an alarm, or cancel an interrupted program after the operator confirms.
+
+        If the control is silent, start another one where this is possible.
+        """
         state = self.snapshot().state
-        if state in prompt_line.MOVING:
+        if self.control.silence.is_silent and self.control.restart is not None:
+            self.clear()
+            self.control.restart()
+        elif state in prompt_line.MOVING:
             self.say("THE MACHINE IS MOVING. FIRST PRESS PAUSE (FEED HOLD)")
         elif state in prompt_line.INTERRUPTED:
             self.ask(prompt_line.GIVE_UP, self._give_up)

@@ -46,7 +46,7 @@ CONTROL: Entries = {
             "an internal error in TurnDesk; see the log",
         ),
         "PRESS E-STOP: the display is out of date. Close other programs and stop backups and "
-        "updates. Save the log, then exit and restart TurnDesk",
+        "updates. Press R to restart the control, or exit and restart TurnDesk",
         tells=True,
     ),
     "feeder-tripped": hold(

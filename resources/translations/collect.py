@@ -40,6 +40,7 @@ COMPOSED = (
     "desk_assembly.py",
     "desk_services.py",
     "screen_desk.py",
+    *("control_client.py", "control_place.py", "live_control.py"),
     "simulated_backend.py",
     "stored_offsets.py",
     "workshop.py",

@@ -5369,6 +5369,76 @@
       <translation>A la línea</translation>
     </message>
     <message>
+      <location filename="app/compose/control/control_client.py" />
+      <source>the control is running a program with another machine file: start TurnDesk with that machine file</source>
+      <translation>el control ejecuta un programa con otro archivo de máquina: abra TurnDesk con ese archivo de máquina</translation>
+    </message>
+    <message>
+      <location filename="app/compose/control/control_client.py" />
+      <source>the control that is running does not respond: restart the computer</source>
+      <translation>el control que está en marcha no responde: reinicie la computadora</translation>
+    </message>
+    <message>
+      <location filename="app/compose/control/control_client.py" />
+      <source>the control that runs belongs to another version of TurnDesk: wait until it has ended, then start TurnDesk again</source>
+      <translation>el control que está en marcha es de otra versión de TurnDesk: espere a que termine y vuelva a abrir TurnDesk</translation>
+    </message>
+    <message>
+      <location filename="app/compose/control/control_client.py" />
+      <source>the process of the control does not start</source>
+      <translation>el proceso del control no arranca</translation>
+    </message>
+    <message>
+      <location filename="app/compose/control/control_client.py" />
+      <source>the process of the control ended during start-up; see its message above</source>
+      <translation>el proceso del control terminó durante el arranque; vea su mensaje arriba</translation>
+    </message>
+    <message>
+      <location filename="app/compose/control/control_client.py" />
+      <source>the process of the control has ended</source>
+      <translation>el proceso del control terminó</translation>
+    </message>
+    <message>
+      <location filename="app/compose/control/control_place.py" />
+      <source>the drivers of the control that has ended are still running</source>
+      <translation>los controladores de equipo del control que terminó siguen funcionando</translation>
+    </message>
+    <message>
+      <location filename="app/compose/control/live_control.py" />
+      <source>CONTROL HANGS: IT IS ENDED AFTER 5 S. PRESS E-STOP</source>
+      <translation>CONTROL BLOQUEADO: SE TERMINA A LOS 5 S. PULSE EL PARO DE EMERGENCIA</translation>
+    </message>
+    <message>
+      <location filename="app/compose/control/live_control.py" />
+      <source>CONTROL NOT STARTED: {why}. R: TRY AGAIN</source>
+      <translation>EL CONTROL NO ARRANCÓ: {why}. R: REINTENTAR</translation>
+    </message>
+    <message>
+      <location filename="app/compose/control/live_control.py" />
+      <source>THE CONTROL CANNOT BE ENDED. RESTART THE COMPUTER</source>
+      <translation>NO SE PUEDE TERMINAR EL CONTROL. REINICIE LA COMPUTADORA</translation>
+    </message>
+    <message>
+      <location filename="app/compose/control/live_control.py" />
+      <source>THE CONTROL HAS STARTED AGAIN. CHECK TOOL, PART AND POSITION</source>
+      <translation>EL CONTROL ARRANCÓ DE NUEVO. REVISE HERRAMIENTA, PIEZA Y POSICIÓN</translation>
+    </message>
+    <message>
+      <location filename="app/compose/control/live_control.py" />
+      <source>THE CONTROL IS STARTING AGAIN</source>
+      <translation>EL CONTROL ARRANCA DE NUEVO</translation>
+    </message>
+    <message>
+      <location filename="app/compose/control/live_control.py" />
+      <source>THE CONTROL RESPONDS AGAIN. IT WAS NOT RESTARTED</source>
+      <translation>EL CONTROL RESPONDE DE NUEVO. NO SE REINICIÓ</translation>
+    </message>
+    <message>
+      <location filename="app/compose/control/live_control.py" />
+      <source>the control was started again</source>
+      <translation>el control se arrancó de nuevo</translation>
+    </message>
+    <message>
       <location filename="app/compose/desk_assembly.py" />
       <source>CHECK: {what}</source>
       <translation>REVISE: {what}</translation>
@@ -6647,6 +6717,11 @@
       <location filename="app/desk/status/prompt_line.py" />
       <source>CAUSE: {stop}</source>
       <translation>CAUSA: {stop}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/prompt_line.py" />
+      <source>CONTROL NOT RESPONDING. PRESS E-STOP, THEN R TO RESTART IT</source>
+      <translation>EL CONTROL NO RESPONDE. PULSE EL PARO DE EMERGENCIA, LUEGO R PARA REINICIARLO</translation>
     </message>
     <message>
       <location filename="app/desk/status/prompt_line.py" />
@@ -16865,8 +16940,8 @@
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
-      <source>PRESS E-STOP: the display is out of date. Close other programs and stop backups and updates. Save the log, then exit and restart TurnDesk</source>
-      <translation>PULSE EL PARO DE EMERGENCIA: la pantalla no está actualizada. Cierre los demás programas y detenga respaldos y actualizaciones. Guarde la bitácora, luego cierre y vuelva a abrir TurnDesk</translation>
+      <source>PRESS E-STOP: the display is out of date. Close other programs and stop backups and updates. Press R to restart the control, or exit and restart TurnDesk</source>
+      <translation>PULSE EL PARO DE EMERGENCIA: la pantalla no está actualizada. Cierre los demás programas y detenga respaldos y actualizaciones. Pulse R para reiniciar el control, o cierre y vuelva a abrir TurnDesk</translation>
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />

@@ -16,7 +16,7 @@ from pathlib import Path
 import pytest
 
 from app.compose.control import control_client
-from app.compose.control.control_client import ControlClient, ControlEvents, find_control
+from app.compose.control.control_client import ControlClient, ControlEvents, ControlHands, find_control
 from app.compose.control.control_messages import (
     BUSY,
     VERSION,
@@ -70,7 +70,18 @@ class Peer:
     def greet(self, noted: InterruptedJob | None = None) -> None:
         """Hello, and the memory behind it."""
         hello = Hello(
-            self.version, self.machine, 0.0, (), (), RECORDED, "", True, False, self.snapshot, noted
+            self.version,
+            0,  # no process that could be ended
+            self.machine,
+            0.0,
+            (),
+            (),
+            RECORDED,
+            "",
+            True,
+            False,
+            self.snapshot,
+            noted,
         )
         self.end.send(hello)
         send_file(self.end, self.memory.file)
@@ -199,8 +210,7 @@ def test_what_cannot_be_pickled_keeps_nothing_else_from_the_control(pair: Pair) 
 
 
 def test_hands_and_signs_of_life_go_with_their_time(pair: Pair, idle: Snapshot) -> None:
-    assert pair.client.hands is not None
-    pair.client.hands.press_left()
+    ControlHands(pair.client.hand).press_left()
     hand = pair.peer.next(Hand)
     assert isinstance(hand, Hand)
     assert hand[:2] == ("press_left", ())

@@ -91,6 +91,8 @@ def test_a_place_is_not_used_before_the_drivers_of_its_last_owner_have_ended(tmp
     waiting = threading.Thread(target=lambda: found.append(ControlPlace(tmp_path, 30.0)))
     waiting.start()
     assert not found
+    assert sockets(tmp_path) == []
+    assert not (tmp_path / "control-2.lock").exists()  # it waits for the first place
     os.close(host)
     waiting.join(30.0)
     assert found[0].drivers is not None

@@ -15,7 +15,7 @@ from pathlib import Path
 
 import pytest
 
-from app.compose.control.control_client import ControlClient, ControlEvents, find_control
+from app.compose.control.control_client import ControlClient, ControlEvents, ControlHands, find_control
 from app.compose.control.control_start import socket_paths, start_control
 from app.compose.control.left_note import NAME
 from app.desk.data_folder import HOME
@@ -154,9 +154,8 @@ def test_a_control_that_stood_still_goes_on(folder: Path) -> None:
         screen.client.post(EnableDrives())
         screen.until(State.IDLE)
         process.send_signal(signal.SIGSTOP)
-        assert screen.client.hands is not None
-        screen.client.hands.press_left()
-        screen.client.hands.press_right()
+        ControlHands(screen.client.hand).press_left()
+        ControlHands(screen.client.hand).press_right()
         screen.client.post(CycleStart())
         for _ in range(3000):  # more than the socket holds: nobody waits
             screen.client.post(SetSwitch("optional_stop", False))

@@ -71,6 +71,7 @@ NO_CHANGE = {
     "extras/quality/shift_command.py": "a report",
     "cli/trace_command.py": "setpoints, to a file of whoever asks",
     "compose/control/control_place.py": "the socket of a control",
+    "compose/control/live_control.py": "inputs of a machine that is simulated",
     "compose/control/control_server.py": "inputs of a machine that is simulated",
     "compose/control/left_note.py": "the job that is interrupted",
     "compose/demo_store.py": "a store for trying",

@@ -13,7 +13,14 @@ from app.desk.programs.program_folder import ProgramFolders
 from app.desk.programs.program_loading import LoadingSteps, Phase, ProgramLoader
 from app.desk.state.desk_control import DeskControl
 from app.desk.status.machine_status import Tone
-from app.desk.status.prompt_line import CONTROL_SILENT, GIVE_UP, ONE_HAND, ONE_PALM, RESTORING
+from app.desk.status.prompt_line import (
+    CONTROL_SILENT,
+    GIVE_UP,
+    ONE_HAND,
+    ONE_PALM,
+    RESTART_CONTROL,
+    RESTORING,
+)
 from app.desk.status.standing_prompt import prompt, time_left
 from core.executor.commands import CycleStart, EnableDrives, FeedHold, FeedOverride, Reset, SetSwitch
 from core.executor.snapshot import Alarm, Event, State
@@ -301,6 +308,42 @@ def test_a_control_that_has_died_is_told_and_its_figures_are_not_believed(
     assert prompt(desk, snapshot, loaded) == CONTROL_SILENT
     machine.alive = True
     assert desk.look()[1].tone is Tone.RUN
+
+
+def test_reset_restarts_a_silent_control_and_nothing_else(machine: FakeMachine, desk: Desk) -> None:
+    restarts = list[int]()
+    desk.control.restart = lambda: restarts.append(1)
+    seconds = [100.0]
+    desk.hands.clock = lambda: seconds[0]
+    at(machine, State.RUN)
+    desk.look()
+    desk.reset()
+    assert restarts == []  # it responds
+    machine.alive = False
+    desk.look()
+    seconds[0] += 1.1
+    snapshot, _, loaded = desk.look()
+    assert prompt(desk, snapshot, loaded) == RESTART_CONTROL
+    posted = list(machine.posted)
+    desk.reset()
+    assert restarts == [1]
+    assert machine.posted == posted
+
+
+def test_reset_of_a_silent_control_that_cannot_be_restarted_is_the_usual_one(
+    machine: FakeMachine, desk: Desk
+) -> None:
+    seconds = [100.0]
+    desk.hands.clock = lambda: seconds[0]
+    at(machine, State.FAULT)
+    desk.look()
+    machine.alive = False
+    desk.look()
+    seconds[0] += 1.1
+    snapshot, _, loaded = desk.look()
+    assert prompt(desk, snapshot, loaded) == CONTROL_SILENT
+    desk.reset()
+    assert machine.posted[-1] == Reset()
 
 
 def test_a_screen_that_was_away_does_not_blame_the_control(desk: Desk) -> None:

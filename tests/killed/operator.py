@@ -1,7 +1,8 @@
 """An operator in a process of his own: the real window, driven by keys, and he tells what he sees.
 
-``python -m tests.killed.operator MACHINE PROGRAM [--again|--idle]``: types tool 9's offset, makes parts
-until he is killed. ``--again``: goes on with a program that the control has kept. ``--idle``: makes none.
+``python -m tests.killed.operator MACHINE PROGRAM [--again|--idle|--reset]``: types tool 9's offset, makes
+parts until he is killed. ``--again``: goes on with a program that the control has kept.
+``--idle``: makes none. ``--reset``: presses R when the control is lost.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from PySide6.QtCore import Qt, QTimer
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QWidget
 
+from app.desk.status.prompt_line import RESTART_CONTROL
 from app.screen.run_screen import run_screen
 from app.screen.window.main_window import MainWindow
 from app.screen.window.window_frame import Frame
@@ -29,6 +31,7 @@ class Operator:
 
     def __init__(self, words: Sequence[str]) -> None:
         self._again, self._idle = "--again" in words, "--idle" in words
+        self._resets = "--reset" in words
         self._steps = self._day()
         self._told: dict[str, object] = {}
 
@@ -47,7 +50,9 @@ class Operator:
         else:
             yield from self._switch_on()
         while not self._idle:
-            if self._asked:
+            if self._resets and self._lost:
+                yield from self._reset()
+            elif self._asked:
                 self._key(Key.Key_Y)  # he has read which job was interrupted, and means to begin anew
                 yield from self._wait(1.2)  # an answer is no start: he looks before his hands come down
             elif self._state is State.IDLE and self._checked:
@@ -99,6 +104,16 @@ class Operator:
         self._key(Key.Key_Escape)
         while self._frame.page is not self._frame.automatic or not self._ready:
             yield False
+
+    def _reset(self) -> Iterator[bool]:
+        self._key(Key.Key_R)
+        while self._state is not State.DISABLED:
+            yield False
+        yield from self._switch_on()
+
+    @property
+    def _lost(self) -> bool:
+        return self._frame.prompt.text.startswith(RESTART_CONTROL)
 
     @property
     def _ready(self) -> bool:

@@ -159,6 +159,24 @@ def test_a_killed_control_is_an_alarm_and_the_screen_stays(files: tuple[str, str
         until(lambda: desk.family() == {desk.popen.pid}, desk.family)  # its driver host stops what is left
 
 
+def test_reset_starts_another_control_from_the_window(files: tuple[str, str], tmp_path: Path) -> None:
+    home = tmp_path / "home"
+    with process(home, OPERATOR, *files, "--reset") as desk:
+        cutting(desk, 1)
+        killed, host = desk.control(), desk.host()
+        os.kill(killed, signal.SIGKILL)
+        until(lambda: desk.says("state", "ALARM"), lambda: desk.lines[-3:])
+        until(lambda: desk.says("state", "DRIVES OFF"), lambda: desk.lines[-3:])
+        assert desk.lines[-1]["parts"] == 0  # of this control
+        assert {killed, host}.isdisjoint({desk.control(), desk.host()})
+        cutting(desk, 1)
+        desk.popen.terminate()
+        until(lambda: not desk.family(), desk.family)
+    with Store.open(home, read_only=True) as store:
+        kinds = [event.kind for event in store.events.read_events()]
+        assert kinds.count("part") == store.runs.count_parts("part.nc") >= 2
+
+
 def test_a_killed_screen_that_does_not_come_back_is_closed_in_order(tmp_path: Path) -> None:
     machine, program = tmp_path / "lathe.toml", tmp_path / "part.nc"
     machine.write_text(resources.machine_file("gt75.toml"))

@@ -13,7 +13,7 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from multiprocessing.connection import Connection
 from pathlib import Path
-from socket import AF_UNIX, SOCK_SEQPACKET, socket, socketpair
+from socket import AF_UNIX, socket
 
 from app.compose.control.control_messages import (
     BUSY,
@@ -36,6 +36,7 @@ from app.compose.control.control_messages import (
 )
 from app.compose.control.control_start import StartedControl
 from app.compose.control.passed_files import SharedMemory, receive_file, send_file
+from app.compose.control.process_handle import ProcessHandle
 from app.desk.data_folder import RECORDS
 from core.executor.commands import Command, GiveProof, LoadJob
 from core.executor.raised_alarm import Attempt, ReportedAttempt, make_alarm
@@ -83,17 +84,24 @@ class ControlEvents:
 class ControlClient:
     """Connection to the control process. ``snapshot`` is the newest snapshot, and ``post`` never blocks."""
 
-    def __init__(self, started: StartedControl, folder: Path) -> None:
+    def __init__(self, started: StartedControl, folder: Path, records: ControlRecords | None = None) -> None:
+        """Wait for the first message. ``records`` of an earlier control continue with the data of this one.
+
+        Raises DriverError if the control reports an error, does not respond or has another version.
+        """
         self._connection, self.process = connection, process = started
         hello = _hello(connection, STARTS_IN if process is not None else ANSWERS_IN)
         self.hello = hello
         self.attached = process is None  # connected to a control that another screen has started
         memory = SharedMemory(receive_file(connection))
         ring = Ring.of(hello.recorded, memory.view)
-        self.records = ControlRecords(ring, folder / RECORDS, hello.trouble)
+        self.records = records or ControlRecords(ring, folder / RECORDS, hello.trouble)
+        self.records.ring, self.records.trouble = ring, hello.trouble
+        self.handle = ProcessHandle(hello.process)
         self.clock = RealClock(hello.zero)
         self.snapshot: Snapshot = hello.snapshot
-        self.hands = ControlHands(self) if hello.station else None
+        self.heard_at = time.monotonic()  # s, time of the last message
+        self.is_lost = False  # the connection has ended although the screen has not closed it
         self._outbox: queue.SimpleQueue[object] = queue.SimpleQueue()
         self._closed = threading.Event()
         self._closing = False  # closed by this screen
@@ -132,11 +140,14 @@ class ControlClient:
         """Operate the simulated operator station."""
         self._outbox.put(Hand(name, values, self.clock.now()))
 
-    def open_stop_line(self) -> socket | None:
-        """Return a socket through which stop keys reach the control without this process."""
-        ours, theirs = socketpair(AF_UNIX, SOCK_SEQPACKET)
-        self._outbox.put(theirs)
-        return ours
+    def pass_line(self, line: socket) -> None:
+        """Pass a socket to the control, which receives stop keys from it, and close it here."""
+        self._outbox.put(line)
+
+    @property
+    def silent_for(self) -> float:
+        """Seconds since the last message of the control."""
+        return time.monotonic() - self.heard_at
 
     def set_input(self, name: str, on: bool) -> None:
         """Switch an input of a simulated machine."""
@@ -145,7 +156,7 @@ class ControlClient:
     def see(self, snapshot: Snapshot) -> None:
         """Report to the control that the screen handles its keys; called once per frame."""
         now = self.clock.now()
-        if now >= self._next_alive:
+        if now >= self._next_alive and not self.is_lost:
             self._next_alive = now + ALIVE_EVERY
             self._outbox.put(Alive())
         if self._kept and snapshot.state not in CYCLE:
@@ -166,10 +177,14 @@ class ControlClient:
                 while self._connection.poll(max(until - time.monotonic(), 0.0)):
                     self._connection.recv()  # until its process ends and closes the socket
 
+    def ask_to_end(self) -> None:
+        """Ask the control to stop the machine and to end, without waiting for it."""
+        self._outbox.put(Close())
+
     def close(self) -> None:
         """Stop the machine, close its drivers and wait for the end of the process."""
         self._closing = True
-        self._outbox.put(Close())
+        self.ask_to_end()
         self._closed.wait(CLOSES_IN)
         if self.process is not None:
             try:
@@ -178,10 +193,16 @@ class ControlClient:
                 _log.error("the process of the control does not end; it is killed")
                 self.process.kill()
                 self.process.wait(ENDS)
+        self.forget()
+
+    def forget(self) -> None:
+        """End the threads and the connection of a control whose process has ended."""
+        self._closing = True
         self._outbox.put(None)
         for thread in self._threads:
             thread.join(ENDS)
         self._connection.close()
+        self.handle.close()
 
     # --- threads ----------------------------------------------------------------------------------------
 
@@ -206,6 +227,7 @@ class ControlClient:
         try:
             while True:
                 message = self._connection.recv()
+                self.heard_at = time.monotonic()
                 with ReportedAttempt(_not_taken):
                     self._take(message, self._events)
         except _NO_MESSAGE:
@@ -241,19 +263,23 @@ class ControlClient:
         last = self.snapshot
         alarm = make_alarm("control-silent", why, last.line, last.t)
         self.snapshot = replace(last, state=State.FAULT, alarms=(*last.alarms, alarm))
+        self.is_lost = True
         events.event(Event(last.t, "alarm", alarm.text, alarm.line, alarm))
         events.stirs()
 
 
 class ControlHands(PostedHands):
-    """The simulated operator station of the control; methods can be called from any thread."""
+    """The simulated operator station of the control; methods can be called from any thread.
 
-    def __init__(self, client: ControlClient) -> None:
-        self._client = client
+    ``hand`` sends the name of a method and its values to the station.
+    """
+
+    def __init__(self, hand: Callable[..., None]) -> None:
+        self._hand = hand
 
     def post(self, name: str, *values: object) -> None:
         """Call the method with this name at the station."""
-        self._client.hand(name, *values)
+        self._hand(name, *values)
 
 
 class ControlRecords(Recordings):

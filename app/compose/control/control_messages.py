@@ -18,7 +18,7 @@ from core.executor.snapshot import Event, InterruptedJob, Snapshot
 from core.machine.machine_model import Machine
 from core.records.record_ring import Recorded
 
-VERSION = 2  # of these messages
+VERSION = 3  # of these messages
 BUSY = "busy"  # reason for rejecting a second screen, never shown to the user
 STALE = 0.5  # s after which a key press that starts motion expires
 _CREDENTIALS = struct.Struct("3i")  # process, user, group
@@ -74,6 +74,7 @@ class Hello(NamedTuple):
     """First message of the control. The file descriptor of the scope's shared memory follows it."""
 
     version: int
+    process: int  # number of its process
     machine: Machine  # machine of the control
     zero: float  # zero of its clock, in s of the computer's monotonic clock
     warnings: tuple[str, ...]

@@ -43,8 +43,13 @@ class ControlPlace:
                     self._path = path
                     break
         if self._path is not None:
-            with suppress(OSError):
+            try:
                 self.drivers = _locked_later(folder / f"{self._path.name}-drivers.lock", drivers_end)
+            except OSError:
+                self.drivers = None
+            except DriverError:
+                self.close()
+                raise
 
     def listen(self) -> ScreenListener | None:
         """Return a listener at the socket of the place, which replaces an old one.

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import gc
 import logging
+import os
 import queue
 import threading
 from collections import deque
@@ -336,6 +337,7 @@ class ControlServer:
         connected, recorder = self._connected, self.recorder
         return Hello(
             VERSION,
+            os.getpid(),
             self._machine,
             self._clock.zero,
             tuple(connected.ports.warnings),

@@ -46,8 +46,11 @@ def socket_paths(folder: Path) -> list[Path]:
     return paths if all(len(os.fsencode(path)) < _PATH_LENGTH for path in paths) else []
 
 
-def start_control(machine: Machine, folder: Path) -> StartedControl:
-    """Start the control process for this machine and data folder, without waiting for it."""
+def start_control(machine: Machine, folder: Path, zero: float | None = None) -> StartedControl:
+    """Start the control process for this machine and data folder, without waiting for it.
+
+    ``zero`` is the zero of its clock, in s of the computer's monotonic clock. None means now.
+    """
     ours, theirs = socket.socketpair()
     with theirs:
         command = [
@@ -55,7 +58,7 @@ def start_control(machine: Machine, folder: Path) -> StartedControl:
             "-m",
             "app.compose.control.control_process",
             str(theirs.fileno()),
-            repr(time.monotonic()),
+            repr(time.monotonic() if zero is None else zero),
             str(folder),
         ]
         # A separate session, so that Ctrl-C reaches only the screen, which then ends the control properly.

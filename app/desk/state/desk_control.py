@@ -22,7 +22,8 @@ class DeskControl:
 
     ``panel`` is None if the machine has its own operator station. ``set_input`` switches an input of a
     simulated machine. ``recordings`` contains the last minutes of samples, or is None without a recorder.
-    ``open_stop_line`` opens a connection that sends stop keys to the control without the screen.
+    ``open_stop_line`` opens a connection that sends stop keys to the control without the screen. ``restart``
+    starts another control in place of one that is silent, or is None if this is not possible.
     """
 
     post: Callable[[Command], None]
@@ -32,4 +33,5 @@ class DeskControl:
     warnings: Sequence[str] = ()
     recordings: Recordings | None = None
     open_stop_line: OpenLine = lambda: None
+    restart: Callable[[], object] | None = None
     silence: SilenceWatch = field(default_factory=SilenceWatch)

@@ -23,7 +23,7 @@ def prompt(desk: Desk, snapshot: Snapshot, loaded: Loaded, page: str = "") -> st
     """
     desk.answers.expire(snapshot)
     if desk.control.silence.is_silent:
-        return prompt_line.CONTROL_SILENT
+        return prompt_line.CONTROL_SILENT if desk.control.restart is None else prompt_line.RESTART_CONTROL
     if desk.window.keyboard_away and snapshot.state in prompt_line.MOVING:
         return prompt_line.KEYBOARD_AWAY
     announced = prompt_line.announced(snapshot, starts_here=desk.window.starts_here)

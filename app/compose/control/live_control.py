@@ -1,0 +1,198 @@
+"""The control that the screen uses, and its replacement by another one after it has ended or hangs."""
+
+from __future__ import annotations
+
+import logging
+import subprocess
+import threading
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import replace
+from pathlib import Path
+from socket import AF_UNIX, SOCK_SEQPACKET, socket, socketpair
+
+from app.compose.control.control_client import ControlClient, ControlEvents, ControlHands
+from app.compose.control.control_start import start_control
+from app.compose.control.posted_state import PostedState
+from app.desk.translation import tr
+from core.executor.commands import Command, Reset
+from core.executor.raised_alarm import ReportedAttempt
+from core.executor.snapshot import Event, InterruptedJob, Snapshot
+from core.machine.machine_model import Machine
+from core.message import Message
+from core.ports import DriverError
+
+_log = logging.getLogger(__name__)
+# s without a message after which a control is ended; no setpoint queue is longer, so the axes are at rest,
+# and a driver host has switched spindle and outputs off
+HANGS = 5.0
+ENDS_IN = 3.0  # s for a control that can still close its drivers in order
+DIES_IN = 5.0  # s between SIGKILL and the end of the process
+_LOOK = 0.1  # =
+Say = Callable[[str], None]
+
+
+class LiveControl:
+    """The control process of the screen. ``restart`` replaces it after it has ended or does not respond.
+
+    There are never two controls of one machine: the old process has ended before another one starts, and
+    that one waits for the end of the old driver host (``control_place.py``). Methods can be called from any
+    thread and do not wait, except ``close``.
+    """
+
+    def __init__(self, client: ControlClient, machine: Machine, folder: Path) -> None:
+        self._client, self._machine, self._folder = client, machine, folder
+        self._state = PostedState(client.hello.noted)
+        self.hands = ControlHands(self.hand) if client.hello.station else None
+        self._line: socket | None = None  # end of the control of the stop keys' socket
+        self._lock = threading.Lock()  # locked briefly while the client is replaced
+        self._worker: threading.Thread | None = None
+        self._closing = threading.Event()
+        self._events: ControlEvents | None = None
+        self._say: Say = _log.info
+
+    @property
+    def snapshot(self) -> Snapshot:
+        """The newest snapshot."""
+        return self._client.snapshot
+
+    @property
+    def client(self) -> ControlClient:
+        """The connection to the present control."""
+        return self._client
+
+    def begin(self, events: ControlEvents, say: Say) -> None:
+        """Start to receive and send messages. ``say`` shows the operator the course of a restart."""
+        self._events = replace(events, note=self._note)
+        self._noted, self._say = events.note, say
+        self._client.begin(self._events)
+
+    def post(self, command: Command) -> None:
+        """Send a command to the control. Reset starts another control if the present one has ended."""
+        if isinstance(command, Reset) and self._client.is_lost:
+            self.restart()
+            return
+        with self._lock:
+            self._state.see(command)
+            self._client.post(command)
+
+    def hand(self, name: str, *values: object) -> None:
+        """Operate the simulated operator station."""
+        with self._lock:
+            self._state.see_hand(name, values)
+            self._client.hand(name, *values)
+
+    def set_input(self, name: str, on: bool) -> None:
+        """Switch an input of a simulated machine."""
+        self._client.set_input(name, on)
+
+    def see(self, snapshot: Snapshot) -> None:
+        """Report to the control that the screen handles its keys; called once per frame."""
+        self._client.see(snapshot)
+
+    def open_stop_line(self) -> socket | None:
+        """Return a socket through which stop keys reach the present control, without this process."""
+        ours, theirs = socketpair(AF_UNIX, SOCK_SEQPACKET)
+        with self._lock:
+            if self._line is not None:
+                self._line.close()
+            self._line = theirs
+            self._client.pass_line(theirs.dup())
+        return ours
+
+    def close(self) -> None:
+        """Stop the machine, close its drivers and wait for the end of the process."""
+        self._closing.set()
+        worker = self._worker
+        if worker is not None:
+            worker.join(HANGS + ENDS_IN + DIES_IN)
+        self._client.close()
+        if self._line is not None:
+            self._line.close()
+
+    # --- replacement --------------------------------------------------------------------------------------
+
+    def restart(self) -> None:
+        """Start another control in place of one that has ended or is silent, in a separate thread.
+
+        A restart in progress continues.
+        """
+        with self._lock:
+            if not self._closing.is_set() and not self.restarting:
+                self._worker = threading.Thread(target=self._restart, name="control-restart", daemon=True)
+                self._worker.start()
+
+    @property
+    def restarting(self) -> bool:
+        """Whether a restart is in progress."""
+        return self._worker is not None and self._worker.is_alive()
+
+    def _restart(self) -> None:
+        old = self._client
+        with ReportedAttempt(self._failed):
+            if (old.is_lost or self._is_silent(old)) and self._has_ended(old):
+                self._start(old)
+
+    def _is_silent(self, client: ControlClient) -> bool:
+        """Wait until a silent control certainly moves nothing, and return True then.
+
+        Return False if the control responds again, or if the screen closes.
+        """
+        self._say(tr("CONTROL HANGS: IT IS ENDED AFTER 5 S. PRESS E-STOP"))
+        heard = client.heard_at
+        while client.silent_for < HANGS and not client.is_lost:
+            if client.heard_at != heard:
+                self._say(tr("THE CONTROL RESPONDS AGAIN. IT WAS NOT RESTARTED"))
+                return False
+            if self._closing.wait(_LOOK):
+                return False
+        return True
+
+    def _has_ended(self, client: ControlClient) -> bool:
+        """Ask the process to end, or kill it; return whether it has ended."""
+        client.ask_to_end()
+        ended = client.handle.wait(ENDS_IN) or client.handle.kill(DIES_IN)
+        if ended and client.process is not None:
+            with suppress(subprocess.TimeoutExpired):
+                client.process.wait(DIES_IN)
+        if not ended:
+            self._say(tr("THE CONTROL CANNOT BE ENDED. RESTART THE COMPUTER"))
+        return ended
+
+    def _start(self, old: ControlClient) -> None:
+        assert self._events is not None
+        if self._closing.is_set():
+            return
+        self._say(tr("THE CONTROL IS STARTING AGAIN"))
+        started = start_control(self._machine, self._folder, old.clock.zero)
+        try:
+            new = ControlClient(started, self._folder, old.records)
+        except DriverError:
+            started.abandon()
+            raise
+        with self._lock:
+            self._pass_state(new, old.snapshot)
+            self._client = new
+        old.forget()
+        new.begin(self._events)
+        self._events.event(Event(new.clock.now(), "warning", Message("the control was started again")))
+        self._say(tr("THE CONTROL HAS STARTED AGAIN. CHECK TOOL, PART AND POSITION"))
+        self._events.stirs()
+
+    def _pass_state(self, new: ControlClient, last: Snapshot) -> None:
+        """Give another control the program and the values that the screen shows."""
+        for name, values in self._state.hands():
+            new.hand(name, *values)
+        for command in self._state.commands(last):
+            new.post(command)
+        if self._line is not None:
+            new.pass_line(self._line.dup())
+
+    def _note(self, job: InterruptedJob | None) -> None:
+        self._state.interrupted = job
+        self._noted(job)
+
+    def _failed(self, error: BaseException) -> None:
+        _log.error("the control was not started again", exc_info=error)
+        why = error.fault if isinstance(error, DriverError) else str(error)
+        self._say(tr(Message("CONTROL NOT STARTED: {why}. R: TRY AGAIN", why=why)))

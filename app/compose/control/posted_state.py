@@ -1,0 +1,86 @@
+"""State that the screen has posted to the control, for the control that replaces it."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from core.executor import commands
+from core.executor.commands import Command, GiveProof, LoadJob, Prepare, Renew, SetSwitch
+from core.executor.job import Job, Proof
+from core.executor.snapshot import InterruptedJob, Snapshot, Starts
+
+Hand = tuple[str, tuple[object, ...]]
+# Commands that set one value: the last of each kind is posted again.
+_VALUES: Final = (
+    commands.UseOffsets,
+    commands.SpindleLimit,
+    commands.FeedOverride,
+    commands.BarNextPart,
+)
+# Switches that only make a run stop earlier or not count. Cycle repeat starts parts, so it is off again.
+_SWITCHES = ("single_block", "optional_stop", "no_count")
+# Controls of the simulated station that remain where the operator has set them, with the control they set.
+_STATION: Final = {
+    "press_estop": "estop",
+    "release_estop": "estop",
+    "set_spindle_auto": "spindle_auto",
+    "set_spindle_pot": "spindle_pot",
+    "set_feed_pot": "feed_pot",
+}
+
+
+class PostedState:
+    """The loaded program, the operator's values and the controls of the simulated station."""
+
+    def __init__(self, interrupted: InterruptedJob | None) -> None:
+        self.interrupted = interrupted  # the job that the end of the control would interrupt
+        self._job: Job | None = None
+        self._proof: Proof | None = None
+        self._renewal: Renew | None = None  # a change of offsets that has no new job yet
+        self._starts = Starts.PROGRAM
+        self._values: dict[type[Command], Command] = {}
+        self._station: dict[str, Hand] = {}
+
+    def see(self, command: Command) -> None:
+        """Note a command that was posted."""
+        match command:
+            case LoadJob(job, proof) | Renew(Job() as job, proof):
+                self._job, self._proof, self._renewal = job, proof, None
+            case Renew():
+                self._renewal = command
+            case GiveProof(proof):
+                self._proof = proof
+            case Prepare():
+                self._starts = command.starts
+            case _ if isinstance(command, _VALUES):
+                self._values[type(command)] = command
+
+    def see_hand(self, name: str, values: tuple[object, ...]) -> None:
+        """Note an action at the simulated station."""
+        if name in _STATION:
+            self._station[_STATION[name]] = name, values
+
+    def commands(self, last: Snapshot) -> list[Command]:
+        """Return the commands that bring another control to this state; none of them starts anything.
+
+        ``last`` is the last snapshot of the control before.
+        """
+        found = list[Command]()
+        if self.interrupted is not None:
+            found.append(commands.LeftInterrupted(self.interrupted, logged=True))
+        found += self._values.values()
+        found += [SetSwitch(name, on=True) for name in _SWITCHES if getattr(last, name)]
+        if self._job is not None:
+            proof = self._proof
+            known = proof is not None and proof.digest == self._job.digest
+            found.append(LoadJob(self._job, proof if known else None))
+            found.append(commands.PartsMade(last.made))
+        if self._renewal is not None:
+            found.append(self._renewal)
+        if self._starts is not Starts.PROGRAM:  # a line or a restart must be prepared again
+            found.append(Prepare(Starts.LINE))
+        return found
+
+    def hands(self) -> list[Hand]:
+        """Return the actions that bring the simulated station of another control to this state."""
+        return list(self._station.values())

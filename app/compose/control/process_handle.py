@@ -1,0 +1,41 @@
+"""Handle of a process of this computer that may have been started by another process."""
+
+from __future__ import annotations
+
+import errno
+import os
+import select
+import signal
+from contextlib import suppress
+
+
+class ProcessHandle:
+    """The process with this number, also after the system has given its number to another process."""
+
+    def __init__(self, number: int) -> None:
+        self._file: int | None = None
+        self._has_ended = False
+        try:
+            self._file = os.pidfd_open(number)
+        except OSError as error:
+            self._has_ended = error.errno == errno.ESRCH
+
+    def kill(self, seconds: float) -> bool:
+        """Kill the process with SIGKILL and wait for its end; return whether it has ended in time."""
+        if self._file is None:
+            return self._has_ended
+        with suppress(OSError):
+            signal.pidfd_send_signal(self._file, signal.SIGKILL)
+        return self.wait(seconds)
+
+    def wait(self, seconds: float) -> bool:
+        """Wait for the end of the process for ``seconds`` at most; return whether it has ended."""
+        if self._file is None:
+            return self._has_ended
+        return bool(select.select([self._file], [], [], seconds)[0])
+
+    def close(self) -> None:
+        """Release the handle."""
+        if self._file is not None:
+            os.close(self._file)
+            self._file = None

@@ -1,0 +1,142 @@
+"""What another control gets of the state that the screen has posted, and what it does not get."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from app.compose.control.posted_state import PostedState
+from core.executor.commands import (
+    BarNextPart,
+    Command,
+    ConfirmStart,
+    CycleStart,
+    EnableDrives,
+    FeedOverride,
+    GiveClearance,
+    GiveProof,
+    Home,
+    Jog,
+    LeftInterrupted,
+    LoadJob,
+    PartsMade,
+    Prepare,
+    Renew,
+    Reset,
+    SetSwitch,
+    SpindleLimit,
+    UseOffsets,
+)
+from core.executor.job import Proof
+from core.executor.snapshot import Snapshot, Starts, State
+from tests.control.bench import LONG, SHORT, job_of, one_button
+from tests.interrupted import broken_off
+
+LAST = Snapshot(state=State.RUN, made=17)
+FIRST, SECOND = job_of(SHORT, one_button()), job_of(LONG, one_button())
+
+
+def after(*posted: Command, last: Snapshot = LAST) -> list[Command]:
+    state = PostedState(None)
+    for command in posted:
+        state.see(command)
+    return state.commands(last)
+
+
+def test_a_control_without_a_program_gets_nothing() -> None:
+    assert after() == []
+
+
+def test_the_program_comes_with_its_proof_and_its_parts() -> None:
+    proof = Proof(FIRST.digest, ())
+    assert after(LoadJob(FIRST), GiveProof(proof)) == [LoadJob(FIRST, proof), PartsMade(17)]
+
+
+def test_a_proof_of_another_program_is_left_out() -> None:
+    old = Proof(FIRST.digest, ())
+    assert after(LoadJob(FIRST, old), LoadJob(SECOND)) == [LoadJob(SECOND), PartsMade(17)]
+    assert after(LoadJob(SECOND), GiveProof(old)) == [LoadJob(SECOND), PartsMade(17)]
+
+
+def test_changed_offsets_are_those_of_the_program() -> None:
+    proof = Proof(SECOND.digest, ())
+    assert after(LoadJob(FIRST), Renew(), Renew(SECOND, proof)) == [LoadJob(SECOND, proof), PartsMade(17)]
+
+
+@pytest.mark.parametrize("announced", [Renew(), Renew(trouble="no proof")])
+def test_announced_offsets_still_prevent_a_start(announced: Renew) -> None:
+    assert after(LoadJob(FIRST), announced) == [LoadJob(FIRST), PartsMade(17), announced]
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        CycleStart(),
+        EnableDrives(),
+        Home(),
+        Jog("X", 1.0, 0.3),
+        Reset(),
+        ConfirmStart("now"),
+        GiveClearance(()),
+        Prepare(Starts.PROGRAM),
+    ],
+)
+def test_what_moves_starts_or_permits_a_start_is_not_repeated(command: Command) -> None:
+    assert after(command) == []
+
+
+@pytest.mark.parametrize("starts", [Starts.LINE, Starts.RESTART])
+def test_a_prepared_line_or_restart_must_be_prepared_again(starts: Starts) -> None:
+    prepared = Prepare(starts, FIRST, Proof(FIRST.digest, ()))
+    assert after(prepared) == [Prepare(Starts.LINE)]
+    assert after(prepared, Prepare(Starts.PROGRAM)) == []
+
+
+@pytest.mark.parametrize(
+    ("first", "last"),
+    [
+        (SpindleLimit(3000.0), SpindleLimit(2000.0)),
+        (FeedOverride(1.2), FeedOverride(0.5)),
+        (BarNextPart("tool 3"), BarNextPart("")),
+        (UseOffsets({}, {}), UseOffsets({}, {})),
+    ],
+)
+def test_the_last_of_each_value_is_repeated(first: Command, last: Command) -> None:
+    assert after(first, last) == [last]
+
+
+def test_switches_are_as_last_shown_except_cycle_repeat() -> None:
+    last = replace(LAST, single_block=True, optional_stop=True, no_count=True, cycle_repeat=True)
+    assert after(SetSwitch("cycle_repeat", on=True), last=last) == [
+        SetSwitch(name, on=True) for name in ("single_block", "optional_stop", "no_count")
+    ]
+    assert after(SetSwitch("single_block", on=True)) == []  # the operator has turned it off since
+
+
+def test_an_interrupted_job_is_reported_once_more() -> None:
+    state = PostedState(broken_off())
+    assert state.commands(LAST) == [LeftInterrupted(broken_off(), logged=True)]
+    state.interrupted = None
+    assert state.commands(LAST) == []
+
+
+def test_the_station_remains_as_it_was_set_without_its_presses() -> None:
+    state = PostedState(None)
+    for name, values in (
+        ("press_estop", ()),
+        ("press_left", ()),
+        ("press_hold", ()),
+        ("turn_handwheel", (5,)),
+        ("set_feed_pot", (0.7,)),
+        ("set_feed_pot", (0.5,)),
+        ("set_spindle_auto", (False,)),
+    ):
+        state.see_hand(name, values)
+    assert state.hands() == [
+        ("press_estop", ()),
+        ("set_feed_pot", (0.5,)),
+        ("set_spindle_auto", (False,)),
+    ]
+    state.see_hand("release_estop", ())
+    assert state.hands()[0] == ("release_estop", ())

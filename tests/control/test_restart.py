@@ -1,0 +1,299 @@
+"""Reset replaces a control that was killed or hangs: real processes, without a window."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import pytest
+
+from app.compose.control import control_client, live_control
+from app.compose.control.control_client import ControlClient, ControlEvents
+from app.compose.control.control_start import start_control
+from app.compose.control.live_control import LiveControl
+from app.compose.control.process_handle import ProcessHandle
+from app.desk.data_folder import HOME
+from app.desk.stop_keys.stop_records import Stop, StopKind
+from core.executor.commands import (
+    Clearance,
+    Command,
+    CycleStart,
+    EnableDrives,
+    GiveClearance,
+    LoadJob,
+    Reset,
+    SetSwitch,
+)
+from core.executor.job import Job, Proof
+from core.executor.snapshot import Event, InterruptedJob, State
+from core.machine.machine_model import Machine
+from tests.control.bench import LONG, job_of, one_button
+from tests.killed.bench import until
+
+pytestmark = [
+    pytest.mark.skipif(not sys.platform.startswith("linux"), reason="looks for processes in /proc"),
+    pytest.mark.real_time,
+]
+MACHINE = one_button()
+
+
+@dataclass
+class Desk:
+    """A screen without a window, and what its control has said."""
+
+    live: LiveControl
+    events: list[Event] = field(default_factory=list)
+    notes: list[InterruptedJob | None] = field(default_factory=list)
+    said: list[str] = field(default_factory=list)
+
+    def begin(self) -> None:
+        heard = ControlEvents(self.events.append, self.notes.append, lambda _: None)
+        self.live.begin(heard, self.said.append)
+
+    @property
+    def process(self) -> int:
+        return self.live.client.hello.process
+
+    @property
+    def alarms(self) -> list[str]:
+        return [event.alarm.code for event in self.events if event.alarm is not None]
+
+    def until(self, *states: State) -> None:
+        self.wait(lambda: self.live.snapshot.state in states)
+
+    def wait(self, ready: Callable[[], bool]) -> None:
+        def look() -> bool:
+            self.live.see(self.live.snapshot)
+            return ready()
+
+        until(look, lambda: (self.live.snapshot, self.said))
+
+    def post(self, *commands: Command) -> None:
+        for command in commands:
+            self.live.post(command)
+
+    def run(self) -> Job:
+        job = job_of(LONG, MACHINE)
+        self.post(EnableDrives())
+        self.until(State.IDLE)
+        self.post(LoadJob(job, Proof(job.digest, ())))
+        self.wait(lambda: self.live.snapshot.program == "part.nc")
+        shot = self.live.snapshot
+        self.post(GiveClearance((Clearance(job.digest, shot.demand, shot.begun),)), CycleStart())
+        self.until(State.RUN)
+        self.wait(lambda: bool(self.notes))
+        return job
+
+
+@contextmanager
+def desk(folder: Path, machine: Machine = MACHINE) -> Iterator[Desk]:
+    made = Desk(LiveControl(ControlClient(start_control(machine, folder), folder), machine, folder))
+    seen = [made.live.client]
+    try:
+        made.begin()
+        yield made
+    finally:
+        seen.append(made.live.client)
+        with suppress(ProcessLookupError):
+            os.kill(made.process, signal.SIGCONT)
+        made.live.close()
+        assert all(client.handle.wait(0.0) or client.process is not None for client in seen)
+        assert all(client.process is None or client.process.poll() is not None for client in seen)
+
+
+@pytest.fixture(autouse=True)
+def quick(monkeypatch: pytest.MonkeyPatch) -> None:
+    """An operator who waits less long for a control that hangs."""
+    monkeypatch.setattr(live_control, "HANGS", 1.0)
+    monkeypatch.setattr(live_control, "ENDS_IN", 0.5)
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv(HOME, str(tmp_path))
+    return tmp_path
+
+
+def test_reset_replaces_a_killed_control_with_its_program_and_starts_nothing(folder: Path) -> None:
+    with desk(folder) as screen:
+        job = screen.run()
+        screen.post(SetSwitch("optional_stop", True))
+        screen.wait(lambda: screen.live.snapshot.optional_stop)
+        killed, time = screen.process, screen.live.snapshot.t
+        os.kill(killed, signal.SIGKILL)
+        screen.until(State.FAULT)
+        assert screen.alarms == ["control-silent"]
+        screen.post(Reset())
+        screen.wait(lambda: screen.process != killed and screen.live.snapshot.job == job.digest)
+        shot = screen.live.snapshot
+        assert shot.state is State.DISABLED
+        assert shot.optional_stop
+        assert shot.interrupted is not None
+        assert shot.rpm_command == 0.0
+        assert shot.t > time  # the same clock
+        screen.post(EnableDrives())
+        screen.until(State.IDLE)
+        assert [event.kind for event in screen.events].count("start") == 1
+
+
+def test_reset_ends_a_control_that_hangs_and_replaces_it(folder: Path) -> None:
+    with desk(folder) as screen:
+        screen.run()
+        hanging = screen.process
+        os.kill(hanging, signal.SIGSTOP)
+        screen.wait(lambda: screen.live.client.silent_for > 0.5)
+        screen.live.restart()
+        screen.live.restart()  # pressed twice
+        screen.wait(lambda: screen.process != hanging and screen.live.snapshot.program == "part.nc")
+        with pytest.raises(ProcessLookupError):
+            os.kill(hanging, 0)
+        assert screen.alarms == ["control-silent"]
+        assert screen.live.snapshot.state is State.DISABLED
+
+
+def test_a_control_that_responds_again_is_not_ended(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(live_control, "HANGS", 600.0)
+    with desk(folder) as screen:
+        screen.run()
+        process = screen.process
+        os.kill(process, signal.SIGSTOP)
+        screen.live.restart()
+        screen.wait(lambda: len(screen.said) == 1)
+        os.kill(process, signal.SIGCONT)
+        screen.wait(lambda: len(screen.said) == 2)
+        assert screen.process == process
+        screen.post(Reset())
+        screen.until(State.IDLE, State.HOLD)
+        assert "control-silent" not in screen.alarms
+
+
+def test_a_control_that_does_not_start_can_be_started_again(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with desk(folder) as screen:
+        killed = screen.process
+        os.kill(killed, signal.SIGKILL)
+        screen.until(State.FAULT)
+        with monkeypatch.context() as patch:
+            patch.setattr(sys, "executable", "/bin/false")
+            screen.post(Reset())
+            screen.wait(lambda: len(screen.said) == 2)
+        assert screen.live.snapshot.state is State.FAULT
+        screen.wait(lambda: not screen.live.restarting)
+        screen.post(Reset())
+        screen.until(State.DISABLED)
+        assert screen.process != killed
+
+
+def test_no_control_is_started_after_the_screen_is_closed(folder: Path) -> None:
+    with desk(folder) as screen:
+        os.kill(screen.process, signal.SIGKILL)
+        screen.until(State.FAULT)
+        screen.live.close()
+        screen.post(Reset())
+        assert not screen.live.restarting
+
+
+def test_a_process_that_does_not_end_is_not_joined_by_another(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with desk(folder) as screen:
+        process = screen.process
+        monkeypatch.setattr(screen.live.client.handle, "kill", lambda _seconds: False)
+        os.kill(process, signal.SIGSTOP)
+        screen.wait(lambda: screen.live.client.silent_for > 1.0)
+        screen.live.restart()
+        screen.wait(lambda: not screen.live.restarting)
+        assert screen.process == process
+        assert len(screen.said) == 2
+
+
+def test_the_estop_and_the_stop_keys_act_on_the_new_control(folder: Path) -> None:
+    with desk(folder) as screen:
+        line = screen.live.open_stop_line()
+        assert line is not None
+        assert screen.live.hands is not None
+        screen.live.hands.press_estop()
+        screen.until(State.ESTOP)
+        killed = screen.process
+        os.kill(killed, signal.SIGKILL)
+        screen.until(State.FAULT)
+        screen.post(Reset())
+        screen.wait(lambda: screen.process != killed)
+        screen.until(State.ESTOP)  # still pressed
+        screen.live.hands.release_estop()
+        screen.until(State.DISABLED)
+        line.send(Stop(StopKind.ESTOP, 1).packed())
+        screen.until(State.ESTOP)
+        line.close()
+
+
+def test_the_driver_host_of_a_killed_control_ends_before_another_begins(folder: Path) -> None:
+    machine = replace(MACHINE, hardware=replace(MACHINE.hardware, feeder=True))
+    with desk(folder, machine) as screen:
+        screen.run()
+        killed = screen.process
+        (host,) = children(killed)
+        os.kill(host, signal.SIGSTOP)
+        os.kill(killed, signal.SIGKILL)
+        screen.until(State.FAULT)
+        screen.post(Reset())
+        screen.wait(lambda: len(screen.said) == 1)
+        ended = ProcessHandle(host)
+        screen.wait(lambda: any(is_at_place(pid) for pid in children(os.getpid())))
+        (new,) = (pid for pid in children(os.getpid()) if is_at_place(pid))
+        assert not children(new)  # it waits for the driver host
+        assert not ended.wait(0.0)
+        os.kill(host, signal.SIGCONT)
+        screen.wait(lambda: bool(children(new)))
+        assert ended.wait(0.0)
+        screen.until(State.DISABLED)
+        assert screen.process == new
+        ended.close()
+
+
+def is_at_place(pid: int) -> bool:
+    """Whether the process owns a place in the data folder."""
+    with suppress(OSError):
+        return any(os.readlink(path).endswith("control.lock") for path in Path(f"/proc/{pid}/fd").iterdir())
+    return False
+
+
+def children(pid: int) -> list[int]:
+    """The child processes of all threads of a process."""
+    found = list[int]()
+    for path in Path(f"/proc/{pid}/task").glob("*/children"):
+        found += map(int, path.read_text().split())
+    return found
+
+
+def test_a_control_of_another_screen_is_replaced_too(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    started = start_control(MACHINE, folder)
+    first = ControlClient(started, folder)
+    assert started.process is not None
+    path = folder / "control.sock"
+    until(path.is_socket, lambda: "")
+    first.leave(close=False)
+    found: list[ControlClient] = []
+
+    def look() -> bool:
+        client = control_client.find_control(MACHINE, folder, path)
+        found.extend([client] if client is not None else [])
+        return bool(found)
+
+    until(look, lambda: "")
+    screen = Desk(LiveControl(found[0], MACHINE, folder))
+    screen.begin()
+    os.kill(screen.process, signal.SIGSTOP)
+    screen.wait(lambda: screen.live.client.silent_for > 1.0)
+    screen.live.restart()
+    hanging = started.process.pid
+    screen.wait(lambda: screen.process != hanging)
+    assert started.process.wait(30.0) == -signal.SIGKILL
+    screen.until(State.DISABLED)
+    screen.live.close()
