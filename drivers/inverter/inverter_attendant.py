@@ -212,6 +212,7 @@ class Attendant:
         self._comm_loss, self._highest, self._step = comm_loss, highest, step
         self._want = 0.0
         self._told: float | None = None  # None: no command since the line was opened.
+        self._stops = self._stopped = 0  # Number of commanded stops, and of those that the inverter has.
         self._obedience = Obedience(self._step)
         self._family: Family | None = None
         self._retry = 0.0
@@ -231,6 +232,8 @@ class Attendant:
 
     @want.setter
     def want(self, hz: float) -> None:
+        if hz == 0.0 and self._want != 0.0:
+            self._stops += 1  # The stop is sent even if a start follows before the next exchange.
         self._want = hz
 
     @property
@@ -316,14 +319,21 @@ class Attendant:
 
     def _prepare(self) -> None:
         self._family = self._open()
-        self._family.hurry = self._stop_waits
-        self._told = None
-        self._family.stop()
-        self._told = 0.0
+        self._family.hurry = lambda: self._stop_waits() or self._has_unsent_stop()
+        self._stop_now()
         self.warnings = tuple(self._family.prepare(self._comm_loss, self._highest))
 
     def _stop_waits(self) -> bool:
         return self.want == 0.0 and self._told != 0.0
+
+    def _has_unsent_stop(self) -> bool:
+        return self._stops != self._stopped
+
+    def _stop_now(self) -> None:
+        """Stop the inverter; the stop counts when the inverter has confirmed it. Raises DriverError."""
+        stops, self._told = self._stops, None
+        self._familiar.stop()
+        self._told, self._stopped = 0.0, stops
 
     def _reopen(self) -> None:
         now = self._clock.now()
@@ -343,8 +353,7 @@ class Attendant:
 
     def _clear_now(self) -> None:
         """Stop and reset a trip; a trip that remains is reported by the next poll."""
-        self._familiar.stop()
-        self._told = 0.0
+        self._stop_now()
         self._obedience = Obedience(self._step)
         tripped = self.seen is None or bool(self.seen.look.trip)
         self._reset = False
@@ -356,12 +365,14 @@ class Attendant:
         want, look = self.want, self.seen.look if self.seen else None
         # A stop is repeated until standstill.
         turns = want == 0.0 and look is not None and (look.run or look.output > STANDS)
-        if want == self._told and not turns:
+        missing = self._has_unsent_stop()
+        if want == self._told and not turns and not missing:
             return
-        self._obedience.command(self._clock.now(), want, look)
-        if want == 0.0:
-            self._familiar.stop()
-        else:
+        if want == 0.0 or missing:
+            self._obedience.command(self._clock.now(), 0.0, look)
+            self._stop_now()
+        if want != 0.0:
+            self._obedience.command(self._clock.now(), want, look)
             self._told = None  # From the first frame on, a stop must be sent and has priority.
             self._familiar.command(want)
         self._told, self._answered = want, self._clock.now()

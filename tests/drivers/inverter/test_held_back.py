@@ -171,3 +171,70 @@ def test_a_direction_that_may_have_been_heard_is_said_again() -> None:
     one.run(4.0)
     assert seen.runs == 3  # two repetitions, and the new direction
     assert one.rpm == pytest.approx(1200.0, abs=1.0)
+
+
+# --- a stop that is followed by a start before the next frame -----------------------------------------------
+
+
+def frames_of(one: Bench, seconds: float) -> list[bytes]:
+    """The frames that are sent from now on."""
+    seen = Interrupted(one, lambda _: False, lambda _: None)
+    seen.come = True
+    one.run(seconds)
+    return seen.after
+
+
+@pytest.mark.parametrize("rpm", [1200.0, 600.0, -1200.0])
+def test_a_stop_before_a_start_is_sent_first(turning: Bench, rpm: float) -> None:
+    stops = turning.inverter.stops
+    turning.spindle.run(0.0)
+    turning.spindle.run(rpm)
+    runs = [is_run(frame) for frame in frames_of(turning, 3.0)]
+    assert stops < turning.inverter.stops <= stops + 2  # a Hitachi needs two frames
+    assert True in runs
+    assert not runs[0]
+    assert turning.rpm == pytest.approx(rpm, abs=1.0)
+    assert turning.spindle.fault() == ""
+
+
+@pytest.mark.parametrize("pairs", [2, 5])
+def test_many_stops_before_one_frame_are_one_stop(turning: Bench, pairs: int) -> None:
+    stops = turning.inverter.stops
+    for _ in range(pairs):
+        turning.spindle.run(0.0)
+        turning.spindle.run(1200.0)
+    turning.run(3.0)
+    assert stops < turning.inverter.stops <= stops + 2  # a Hitachi needs two frames
+    assert turning.rpm == pytest.approx(1200.0, abs=1.0)
+
+
+def test_a_stop_that_is_not_answered_is_sent_again_before_the_start(turning: Bench) -> None:
+    turning.spindle.run(0.0)
+    turning.spindle.run(1200.0)
+    turning.wire.loses = 1
+    stops = turning.inverter.stops
+    runs = [is_run(frame) for frame in frames_of(turning, 3.0)]
+    assert turning.inverter.stops > stops
+    assert runs[:2] == [False, False]
+    assert turning.rpm == pytest.approx(1200.0, abs=1.0)
+
+
+def test_a_run_command_of_before_a_stop_is_held_back_although_a_start_follows(stand: Bench) -> None:
+    def stop_and_reverse(one: Bench) -> None:
+        one.spindle.run(0.0)
+        one.spindle.run(-600.0)
+
+    seen = Interrupted(stand, is_setpoint, stop_and_reverse)
+    stops = stand.inverter.stops
+    stand.spindle.run(1200.0)
+    stand.run(3.0)
+    assert not is_run(seen.after[0])
+    assert stand.inverter.stops > stops
+    assert stand.rpm == pytest.approx(-600.0, abs=1.0)
+
+
+def test_a_change_of_speed_is_no_stop(turning: Bench) -> None:
+    stops = turning.inverter.stops
+    turning.spindle.run(600.0)
+    turning.run(2.0)
+    assert turning.inverter.stops == stops
