@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 import gc
 import os
+from contextlib import suppress
 
 _CURRENT, _FUTURE, _ON_FAULT = 1, 2, 4  # MCL_CURRENT, MCL_FUTURE and MCL_ONFAULT of mlockall(2)
 
@@ -19,6 +20,17 @@ def ask_real_time(policy: str, priority: int) -> str:
     except (OSError, AttributeError) as error:
         return _cause(error)
     return ""
+
+
+def lower_thread(priority: int) -> None:
+    """Give the calling thread this lower priority, if its process has a real-time policy.
+
+    A refusal has no effect, because the thread then has the priority of its process.
+    """
+    with suppress(OSError, AttributeError):
+        policy = os.sched_getscheduler(0)
+        if policy in {os.SCHED_RR, os.SCHED_FIFO}:
+            os.sched_setscheduler(0, policy, os.sched_param(priority))
 
 
 def lock_memory(*, only_used: bool = False) -> tuple[str, int]:

@@ -18,6 +18,7 @@ import pytest
 from app.compose.control.control_client import ControlClient, ControlEvents, ControlHands, find_control
 from app.compose.control.control_start import socket_paths, start_control
 from app.compose.control.left_note import NAME
+from app.compose.control.rights import PRIORITY, READING
 from app.desk.data_folder import HOME
 from core.executor.commands import (
     Clearance,
@@ -225,6 +226,19 @@ def test_the_place_of_a_killed_control_is_used_by_the_next(folder: Path) -> None
     with desk(folder):
         until(lambda: _listens(path))
         assert not socket_paths(folder)[1].exists()
+
+
+def test_only_the_reading_thread_has_the_lowest_priority(folder: Path) -> None:
+    with desk(folder) as (screen, process):
+        screen.client.post(EnableDrives())
+        screen.until(State.IDLE)
+        if os.sched_getscheduler(process.pid) != os.SCHED_RR:
+            pytest.skip("the system grants no real-time priority")
+        threads = [int(path.name) for path in Path(f"/proc/{process.pid}/task").iterdir()]
+        priorities = [os.sched_getparam(thread).sched_priority for thread in threads]
+        assert priorities.count(READING) == 1
+        assert set(priorities) <= {READING, PRIORITY, 0}  # 0: threads of numpy
+        assert os.sched_getparam(process.pid).sched_priority == PRIORITY
 
 
 def test_two_folders_have_two_controls(folder: Path) -> None:

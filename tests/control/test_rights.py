@@ -10,7 +10,8 @@ from pathlib import Path
 import pytest
 
 from app.compose.control import rights
-from app.compose.control.rights import NICE, PRIORITY, acquire_rights, check_rights
+from app.compose.control.rights import NICE, PRIORITY, READING, acquire_rights, check_rights
+from drivers.process_rights import lower_thread
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="rights of Linux")
 REFUSED = PermissionError(errno.EPERM, os.strerror(errno.EPERM))
@@ -87,6 +88,33 @@ def test_looking_gives_everything_back(monkeypatch: pytest.MonkeyPatch, grants: 
     found = check_rights()
     assert bool(found[0].missing) is not grants
     assert system.asked[-2:] == [(os.SCHED_OTHER, 0), 0]
+
+
+@pytest.mark.parametrize("policy", [os.SCHED_RR, os.SCHED_FIFO])
+def test_a_thread_of_a_real_time_process_has_a_lower_priority(
+    monkeypatch: pytest.MonkeyPatch, policy: int
+) -> None:
+    system = System(monkeypatch, grants=True)
+    monkeypatch.setattr(os, "sched_getscheduler", lambda _: policy)
+    lower_thread(READING)
+    assert system.asked == [(policy, 1)]
+    assert READING < PRIORITY
+
+
+def test_a_thread_without_real_time_priority_remains_as_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    system = System(monkeypatch, grants=True)
+    lower_thread(READING)
+    assert system.asked == []
+    monkeypatch.delattr(os, "sched_getscheduler")
+    lower_thread(READING)
+    assert system.asked == []
+
+
+def test_a_refused_lower_priority_is_no_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    system = System(monkeypatch, grants=False)
+    monkeypatch.setattr(os, "sched_getscheduler", lambda _: os.SCHED_RR)
+    lower_thread(READING)
+    assert system.asked == [(os.SCHED_RR, 1)]
 
 
 def test_a_system_without_these_calls_refuses_them(monkeypatch: pytest.MonkeyPatch) -> None:

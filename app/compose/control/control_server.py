@@ -43,7 +43,7 @@ from app.compose.control.control_messages import (
 )
 from app.compose.control.left_note import remove_note, save_events, save_note
 from app.compose.control.passed_files import SharedMemory, obey_line, receive_file, send_file
-from app.compose.control.rights import Right
+from app.compose.control.rights import READING, Right
 from app.compose.extra import extras
 from app.desk.stop_keys.stop_records import Stop, StopKind
 from core.closing import ClosingStep, close_in_order
@@ -69,6 +69,7 @@ from core.machine.machine_model import Machine
 from core.message import Message
 from core.ports import DriverError
 from core.store.store_rows import EventRow, utc
+from drivers.process_rights import lower_thread
 from drivers.waiting import RealClock
 
 _log = logging.getLogger(__name__)
@@ -387,8 +388,11 @@ class ControlServer:
     def _carry_out(self) -> None:
         """Send commands to the executor in order, in a separate thread, because reading a program takes time.
 
-        A stop overtakes them. Commands that start something and were sent before the stop are dropped.
+        A stop overtakes them. Commands that start something and were sent before the stop are dropped. With
+        a real-time policy, the thread has the lowest priority, so that reading never delays a tick by a time
+        slice.
         """
+        lower_thread(READING)
         while not self.closing.is_set():
             command, at = self._posts.get()
             if not (isinstance(command, STARTS) and at <= self._stopped_at):

@@ -13,6 +13,7 @@ from drivers.process_rights import ask_real_time, lock_memory
 
 OWN_PROCESS = sys.platform == "linux"  # on other systems the control runs in a thread of the screen's process
 PRIORITY = 40  # priority of SCHED_RR, below that of the driver host, whose bus has a shorter period
+READING = 1  # priority of the thread that reads programs, below that of the executor
 NICE = -10
 _AUTOGROUP = Path("/proc/sys/kernel/sched_autogroup_enabled")
 
