@@ -14,6 +14,7 @@ from app.compose.extra import drawing_endings
 from app.compose.machine.accepted_machine import file_changes, guarded
 from app.compose.machine.machine_setup import read_machine, remember_machine
 from app.compose.runs.journal import Journal
+from app.compose.runs.receipt import Receipt
 from app.compose.stored_offsets import Offsets, book_of, shapes_at_hand
 from app.compose.workshop import samples, thumbnails, workshop
 from app.desk.command_errors import as_command_error
@@ -142,12 +143,17 @@ class DeskEvents:
         self.desk: Desk | None = None
         self._clock = clock
 
-    def hear(self, event: Event) -> None:
+    def hear(self, event: Event, receipt: Receipt | None = None) -> None:
+        """Pass on an event, unless an earlier screen has stored it; ``receipt`` is confirmed then."""
+        if receipt is not None and (self.journal is None or self.journal.has_stored(receipt.origin)):
+            receipt.confirm()
+            if self.journal is not None:
+                return
         event = self._record(event)
         if self.desk is not None:
             self.desk.hear(event)
         if self.journal is not None:
-            self.journal.hear(event)
+            self.journal.hear(event, receipt)
 
     def say(self, kind: str, text: str) -> None:
         """Report an event with the present time."""

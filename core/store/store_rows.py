@@ -287,6 +287,13 @@ class VersionRow(NamedTuple):
     who: str = ""
 
 
+class EventOrigin(NamedTuple):
+    """Identity of the control process that reported an event, and the number of the event there."""
+
+    control: str
+    number: int
+
+
 class EventRow(NamedTuple):
     """One entry of the event log.
 

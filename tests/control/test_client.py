@@ -36,12 +36,14 @@ from app.compose.control.control_messages import (
 )
 from app.compose.control.control_start import StartedControl, socket_paths, start_control
 from app.compose.control.passed_files import SharedMemory, send_file
+from app.compose.runs.receipt import Receipt
 from core.executor.commands import GiveProof, LoadJob, SetSwitch
 from core.executor.job import Proof
 from core.executor.snapshot import Event, InterruptedJob, Snapshot, State
 from core.machine.machine_model import Machine
 from core.ports import DriverError
 from core.records.record_ring import Recorded
+from core.store.store_rows import EventOrigin
 from tests.control.bench import PATIENCE, SHORT, job_of, one_button, until
 from tests.executor.rig import Rig
 from tests.interrupted import broken_off
@@ -72,6 +74,7 @@ class Peer:
         hello = Hello(
             self.version,
             0,  # no process that could be ended
+            "a control",
             self.machine,
             0.0,
             (),
@@ -107,16 +110,20 @@ class Ear:
     """Everything that the client tells."""
 
     events: list[Event] = field(default_factory=list)
+    origins: list[EventOrigin] = field(default_factory=list)
     notes: list[InterruptedJob | None] = field(default_factory=list)
     ended: list[str] = field(default_factory=list)
     stirs: list[int] = field(default_factory=list)
     fails: bool = False
 
-    def hear(self, event: Event) -> None:
+    def hear(self, event: Event, receipt: Receipt | None) -> None:
         """An event, which cannot be kept while this fails."""
         if self.fails:
             raise ValueError
         self.events.append(event)
+        if receipt is not None:
+            self.origins.append(receipt.origin)
+            receipt.confirm()
 
     def note(self, job: InterruptedJob | None) -> None:
         """What is interrupted."""
@@ -174,6 +181,7 @@ def test_events_are_acknowledged_and_notes_are_handed_on(pair: Pair) -> None:
     job = broken_off()
     pair.peer.end.send(Happened(3, Event(1.0, "part", "part 1")))
     assert pair.peer.next(Heard) == Heard(3)
+    assert pair.ear.origins == [EventOrigin("a control", 3)]
     pair.peer.end.send(Noted(job))
     pair.peer.end.send(ThreadEnded("recorder"))
     pair.mark()

@@ -19,6 +19,7 @@ from app.compose.control.control_client import ControlClient, ControlEvents, Con
 from app.compose.control.control_start import socket_paths, start_control
 from app.compose.control.left_note import NAME
 from app.compose.control.rights import PRIORITY, READING
+from app.compose.runs.receipt import Receipt
 from app.desk.data_folder import HOME
 from core.executor.commands import (
     Clearance,
@@ -46,7 +47,12 @@ class Desk:
     def __init__(self, client: ControlClient) -> None:
         self.client = client
         self.events = list[Event]()
-        client.begin(ControlEvents(self.events.append, lambda _: None, lambda _: None))
+        client.begin(ControlEvents(self.hear, lambda _: None, lambda _: None))
+
+    def hear(self, event: Event, receipt: Receipt | None) -> None:
+        self.events.append(event)
+        if receipt is not None:
+            receipt.confirm()
 
     @property
     def state(self) -> State:

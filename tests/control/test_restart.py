@@ -52,7 +52,7 @@ class Desk:
     said: list[str] = field(default_factory=list)
 
     def begin(self) -> None:
-        heard = ControlEvents(self.events.append, self.notes.append, lambda _: None)
+        heard = ControlEvents(lambda event, _: self.events.append(event), self.notes.append, lambda _: None)
         self.live.begin(heard, self.said.append)
 
     @property

@@ -14,6 +14,7 @@ from app.compose.control.control_server import REST_LOOKS, SILENT_LOOKS, STOPPED
 from app.compose.control.left_note import (
     EVENTS,
     NAME,
+    LeftEvents,
     remove_note,
     save_events,
     save_note,
@@ -24,7 +25,7 @@ from app.compose.runs.journal import Journal
 from core.executor.commands import BarNextPart, SetSwitch
 from core.executor.snapshot import ACTIVE, Event, InterruptedJob, State
 from core.store.store import Store
-from core.store.store_rows import EventRow
+from core.store.store_rows import EventOrigin, EventRow
 from tests.control.bench import SHORT, Bench, control, one_button, until
 from tests.interrupted import broken_off
 
@@ -360,13 +361,14 @@ def test_events_that_no_screen_has_kept_outlive_the_control(tmp_path: Path) -> N
         screen.lose()
         bench.until(State.IDLE)
         parts = bench.shot.parts
-    program, rows = take_events(tmp_path)
+    left = take_events(tmp_path)
+    program, rows, _ = left
     assert (program, parts) == ("part.nc", 1)
     assert [row.kind for row in rows].count("part") == 1
     assert "load" not in {row.kind for row in rows}
     assert rows[0].at < rows[-1].at
-    assert take_events(tmp_path) == ("", ())
-    save_events(tmp_path, program, rows)
+    assert take_events(tmp_path) == LeftEvents()
+    save_events(tmp_path, left)
     for _ in range(2):
         Journal(tmp_path).close()
     with Store.open(tmp_path, read_only=True) as store:
@@ -394,7 +396,8 @@ def test_the_note_of_a_control_without_a_screen_is_newer_than_the_store(
 
 def test_a_store_that_cannot_be_opened_leaves_the_note_to_the_next_start(tmp_path: Path) -> None:
     save_note(tmp_path, broken_off())
-    save_events(tmp_path, "part.nc", [EventRow("2026-05-04T09:30:00.000Z", "part", "part 1")])
+    row = EventRow("2026-05-04T09:30:00.000Z", "part", "part 1")
+    save_events(tmp_path, LeftEvents("part.nc", (row,), (EventOrigin("control", 5),)))
     with Store.open(tmp_path):  # by another TurnDesk
         journal = Journal(tmp_path)
         assert journal.left is None
@@ -406,6 +409,24 @@ def test_a_store_that_cannot_be_opened_leaves_the_note_to_the_next_start(tmp_pat
         assert store.runs.count_parts("part.nc") == 1
 
 
+def test_left_events_that_a_screen_has_stored_are_not_stored_again(tmp_path: Path) -> None:
+    row = EventRow("2026-05-04T09:30:00.000Z", "part", "part")
+    origins = tuple(EventOrigin("control", number) for number in (5, 6, 7))
+    with Store.open(tmp_path) as store:
+        store.runs.record_event(row, "part.nc", origins[1])  # and was killed before it confirmed it
+    save_events(tmp_path, LeftEvents("part.nc", (row, row, row), origins))
+    journal = Journal(tmp_path)
+    journal.close()
+    with Store.open(tmp_path, read_only=True) as store:
+        assert store.runs.count_parts("part.nc") == 2
+        assert store.runs.read_last_origin() == origins[2]
+    other = tuple(EventOrigin("another", number) for number in (1, 2, 3))
+    save_events(tmp_path, LeftEvents("part.nc", (row, row, row), other))
+    Journal(tmp_path).close()
+    with Store.open(tmp_path, read_only=True) as store:
+        assert store.runs.count_parts("part.nc") == 5
+
+
 def test_events_that_a_screen_has_kept_are_not_left(bench: Bench, tmp_path: Path) -> None:
     screen = bench.screen()
     screen.meet()
@@ -415,13 +436,16 @@ def test_events_that_a_screen_has_kept_are_not_left(bench: Bench, tmp_path: Path
     until(lambda: not bench.server.outbox.unheard)
     screen.lose()
     bench.close()
-    assert take_events(tmp_path) == ("", ())
+    assert take_events(tmp_path) == LeftEvents()
 
 
-@pytest.mark.parametrize("data", [b"", b"{", b"\xff", b"[]", b"3", b'["a", [[1]]]', b'["a", 3]'])
+@pytest.mark.parametrize(
+    "data",
+    [b"", b"{", b"\xff", b"[]", b"3", b'["a", [[1]]]', b'["a", 3]', b'["a", [["2", "part", "", 1, "", ""]]]'],
+)
 def test_damaged_events_are_none(tmp_path: Path, data: bytes) -> None:
     (tmp_path / EVENTS).write_bytes(data)
-    assert take_events(tmp_path) == ("", ())
+    assert take_events(tmp_path) == LeftEvents()
     assert not (tmp_path / EVENTS).exists()
 
 

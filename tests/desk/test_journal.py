@@ -3,20 +3,27 @@
 from __future__ import annotations
 
 import os
+import sqlite3
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
+from types import SimpleNamespace
 from typing import NoReturn
 
 import pytest
 
+from app.compose.desk_assembly import DeskEvents
 from app.compose.runs.journal import UNDER_WAY, Journal
+from app.compose.runs.receipt import Receipt
 from app.desk.persistence import Persistence
 from app.offsets.offset_values import not_set
 from core.executor.snapshot import Event, plain
+from core.store.production.run_records import ORIGIN
 from core.store.store import Store
 from core.store.store_errors import Cause, StoreError
 from core.store.store_file import FILE_NAME
-from core.store.store_rows import Kind
+from core.store.store_rows import EventOrigin, Kind
+from drivers.waiting import StepClock
 from tests.interrupted import broken_off
 from tests.texts import begins, pattern, shows
 
@@ -105,6 +112,82 @@ def test_without_a_store_nothing_is_backed_up_or_restored(tmp_path: Path) -> Non
     assert journal.read_setting("a") is None
     assert journal.runs.count_parts("pin.nc") == 0
     journal.close()
+
+
+# --- events of a control process ----------------------------------------------------------------------------
+
+
+def part(number: int, confirmed: list[int], control: str = "control") -> tuple[Event, Receipt]:
+    """A finished part, and the receipt of its event."""
+    receipt = Receipt(EventOrigin(control, number), partial(confirmed.append, number))
+    return Event(float(number), "part", f"part {number}"), receipt
+
+
+def test_an_event_is_confirmed_when_it_is_on_the_disk(journal: Journal, tmp_path: Path) -> None:
+    confirmed = list[int]()
+    journal.hear(Event(0.0, "load", "pin.nc"))
+    with sqlite3.connect(tmp_path / "home" / FILE_NAME, timeout=30.0) as other:
+        other.execute("BEGIN IMMEDIATE")  # nothing else can be written meanwhile
+        journal.hear(*part(1, confirmed))
+        assert confirmed == []
+        other.rollback()
+    journal.hear(*part(2, confirmed))
+    journal.save_version("pin.nc", b"M30", "so that all is written")
+    journal.close()
+    assert confirmed[-1] == 2
+    with Store.open(tmp_path / "home", read_only=True) as store:
+        assert store.runs.count_parts("pin.nc") == 2
+        assert store.runs.read_last_origin() == EventOrigin("control", 2)
+
+
+def test_an_event_that_an_earlier_screen_has_stored_is_not_counted_again(
+    journal: Journal, tmp_path: Path
+) -> None:
+    journal.hear(Event(0.0, "load", "pin.nc"))
+    journal.hear(*part(1, []))
+    journal.hear(*part(2, []))
+    journal.close()  # killed before the control has received the confirmations
+    again, confirmed, desk = Journal(tmp_path / "home", goes_on=True), list[int](), list[Event]()
+    again.hear(Event(0.0, "load", "pin.nc"))
+    events = DeskEvents(StepClock(), again)
+    events.desk = SimpleNamespace(hear=desk.append)  # type: ignore[assignment]
+    for number in (1, 2, 3):
+        events.hear(*part(number, confirmed))
+    again.save_version("pin.nc", b"M30", "so that all is written")
+    again.close()
+    assert confirmed == [1, 2, 3]
+    assert [event.t for event in desk] == [3.0]
+    with Store.open(tmp_path / "home", read_only=True) as store:
+        assert store.runs.count_parts("pin.nc") == 3
+
+
+def test_the_events_of_another_control_have_their_own_numbers(journal: Journal, tmp_path: Path) -> None:
+    journal.hear(Event(0.0, "load", "pin.nc"))
+    journal.hear(*part(7, []))
+    journal.close()
+    again = Journal(tmp_path / "home")
+    assert again.has_stored(EventOrigin("control", 7))
+    assert not again.has_stored(EventOrigin("control", 8))
+    assert not again.has_stored(EventOrigin("another", 1))
+    again.close()
+
+
+def test_events_without_a_store_are_not_confirmed(tmp_path: Path) -> None:
+    (tmp_path / "home").write_text("a file where the folder should be")
+    journal, confirmed = Journal(tmp_path / "home"), list[int]()
+    journal.hear(*part(1, confirmed))
+    journal.close()
+    assert confirmed == []
+
+
+@pytest.mark.parametrize("value", [3, ["a"], ["a", "b"], [1, 2], {"a": 1}])
+def test_a_damaged_origin_is_none(journal: Journal, tmp_path: Path, value: object) -> None:
+    journal.save_setting(ORIGIN, value)
+    journal.close()
+    again = Journal(tmp_path / "home")
+    assert not again.has_stored(EventOrigin("a", 1))
+    assert again.trouble == ""
+    again.close()
 
 
 # --- a store that was away at the start --------------------------------------------------------------------

@@ -11,6 +11,7 @@ import time
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import partial
 from multiprocessing.connection import Connection
 from pathlib import Path
 from socket import AF_UNIX, socket
@@ -37,6 +38,7 @@ from app.compose.control.control_messages import (
 from app.compose.control.control_start import StartedControl
 from app.compose.control.passed_files import SharedMemory, receive_file, send_file
 from app.compose.control.process_handle import ProcessHandle
+from app.compose.runs.receipt import Receipt
 from app.desk.data_folder import RECORDS
 from core.executor.commands import Command, GiveProof, LoadJob
 from core.executor.raised_alarm import Attempt, ReportedAttempt, make_alarm
@@ -46,6 +48,7 @@ from core.message import Message
 from core.ports import DriverError
 from core.records.record_ring import Ring
 from core.records.recordings import Recordings
+from core.store.store_rows import EventOrigin
 from drivers.operator_station import PostedHands
 from drivers.waiting import RealClock
 
@@ -75,7 +78,7 @@ CLOSES_IN = 20.0  # s, for drives that are switching on; then the machine is hal
 class ControlEvents:
     """Functions called in the client's thread for messages of the control."""
 
-    event: Callable[[Event], None]
+    event: Callable[[Event, Receipt | None], None]
     note: Callable[[InterruptedJob | None], None]
     thread_ended: Callable[[str], None]
     stirs: Callable[[], None] = lambda: None
@@ -246,8 +249,8 @@ class ControlClient:
                         events.stirs()
             case Happened(number, event):
                 self.records.hear(event)
-                events.event(event)
-                self._outbox.put(Heard(number))
+                origin = EventOrigin(self.hello.identity, number)
+                events.event(event, Receipt(origin, partial(self._outbox.put, Heard(number))))
             case Noted(job):
                 events.note(job)
             case ThreadEnded(name):
@@ -264,7 +267,7 @@ class ControlClient:
         alarm = make_alarm("control-silent", why, last.line, last.t)
         self.snapshot = replace(last, state=State.FAULT, alarms=(*last.alarms, alarm))
         self.is_lost = True
-        events.event(Event(last.t, "alarm", alarm.text, alarm.line, alarm))
+        events.event(Event(last.t, "alarm", alarm.text, alarm.line, alarm), None)
         events.stirs()
 
 

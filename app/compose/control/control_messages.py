@@ -75,6 +75,7 @@ class Hello(NamedTuple):
 
     version: int
     process: int  # number of its process
+    identity: str  # differs from that of each other control; numbers of events belong to it
     machine: Machine  # machine of the control
     zero: float  # zero of its clock, in s of the computer's monotonic clock
     warnings: tuple[str, ...]

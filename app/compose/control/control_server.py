@@ -20,6 +20,7 @@ from multiprocessing.connection import Connection
 from multiprocessing.reduction import ForkingPickler
 from pathlib import Path
 from socket import AF_UNIX, SHUT_RDWR, SOCK_STREAM, fromfd
+from uuid import uuid4
 
 from app.compose.backends.connection import connect
 from app.compose.control.control_messages import (
@@ -41,7 +42,7 @@ from app.compose.control.control_messages import (
     StopLine,
     ThreadEnded,
 )
-from app.compose.control.left_note import remove_note, save_events, save_note
+from app.compose.control.left_note import LeftEvents, remove_note, save_events, save_note
 from app.compose.control.passed_files import SharedMemory, obey_line, receive_file, send_file
 from app.compose.control.rights import READING, Right
 from app.compose.extra import extras
@@ -68,7 +69,7 @@ from core.interpreter.dialects import ReadProgram
 from core.machine.machine_model import Machine
 from core.message import Message
 from core.ports import DriverError
-from core.store.store_rows import EventRow, utc
+from core.store.store_rows import EventOrigin, EventRow, utc
 from drivers.process_rights import lower_thread
 from drivers.waiting import RealClock
 
@@ -130,10 +131,10 @@ class Outbox:
                 self._events.popleft()
 
     @property
-    def unheard(self) -> list[Event]:
-        """Events that no screen has stored."""
+    def unheard(self) -> list[Happened]:
+        """Events that no screen has confirmed."""
         with self._lock:
-            return [each.event for each in self._events]
+            return list(self._events)
 
     def note(self, job: InterruptedJob | None) -> None:
         """Replace the note about the interrupted job."""
@@ -208,6 +209,7 @@ class ControlServer:
         lock: int | None = None,
     ) -> None:
         self._machine, self._clock, self._folder, self._rights = machine, clock, folder, rights
+        self._identity = uuid4().hex  # of this control, for the numbers of its events
         self._connected = connect(machine, clock, lock)
         recorded = recorded_of(machine, self._connected.ports)
         self._memory = SharedMemory.of_size(recorded.ring_bytes)
@@ -267,12 +269,9 @@ class ControlServer:
         left = self.outbox.unheard if self._screen is None else []
         if left:
             began = datetime.now(UTC) - timedelta(seconds=self._clock.now())
-            times = (utc(began + timedelta(seconds=each.t)) for each in left)
-            rows = [
-                EventRow(at, each.kind, each.text, each.line, each.record)
-                for at, each in zip(times, left, strict=True)
-            ]
-            save_events(self._folder, self.executor.snapshot.program, rows)
+            rows = tuple(_row(each.event, began) for each in left)
+            origins = tuple(EventOrigin(self._identity, each.number) for each in left)
+            save_events(self._folder, LeftEvents(self.executor.snapshot.program, rows, origins))
 
     # --- Executor thread ------------------------------------------------------------------------------
 
@@ -339,6 +338,7 @@ class ControlServer:
         return Hello(
             VERSION,
             os.getpid(),
+            self._identity,
             self._machine,
             self._clock.zero,
             tuple(connected.ports.warnings),
@@ -473,6 +473,12 @@ class ControlServer:
         save_note(self._folder, noted)
         if self._screen is not None:  # a screen has connected since and has the note
             remove_note(self._folder)
+
+
+def _row(event: Event, began: datetime) -> EventRow:
+    """Return the event as a row of the log; ``began`` is the zero of the control's clock."""
+    at = utc(began + timedelta(seconds=event.t))
+    return EventRow(at, event.kind, event.text, event.line, event.record)
 
 
 def watched() -> tuple[str, ...]:

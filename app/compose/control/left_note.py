@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import json
 import logging
-from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
+from typing import NamedTuple
 
 from core.executor.snapshot import InterruptedJob, of_plain, plain
 from core.file_placing import write_in_place
 from core.message import pack_message, unpack_message
-from core.store.store_rows import EventRow
+from core.store.store_rows import EventOrigin, EventRow
 
 _log = logging.getLogger(__name__)
 NAME = "interrupted.json"
@@ -44,29 +44,42 @@ def remove_note(folder: Path) -> None:
         (folder / NAME).unlink(missing_ok=True)
 
 
-def save_events(folder: Path, program: str, rows: Iterable[EventRow]) -> None:
-    """Save the events of this program that no screen has stored. A disk error is logged."""
-    told = [[*row[:5], pack_message(row.text)] for row in rows]
+class LeftEvents(NamedTuple):
+    """Events that no screen has confirmed, with the program and the origin of each event."""
+
+    program: str = ""
+    rows: tuple[EventRow, ...] = ()
+    origins: tuple[EventOrigin, ...] = ()
+
+
+def save_events(folder: Path, left: LeftEvents) -> None:
+    """Save the events that no screen has confirmed. A disk error is logged."""
+    program, rows, origins = left
+    told = [[*row[:5], pack_message(row.text), *origin] for row, origin in zip(rows, origins, strict=True)]
     try:
         write_in_place(folder / EVENTS, json.dumps([program, told]).encode())
     except OSError as error:
         _log.warning("%d events cannot be kept in %s: %s", len(told), folder / EVENTS, error)
 
 
-def take_events(folder: Path) -> tuple[str, tuple[EventRow, ...]]:
-    """Return the program and its events that no screen has stored; delete the file."""
+def take_events(folder: Path) -> LeftEvents:
+    """Return the events that no screen has confirmed; delete the file."""
     path = folder / EVENTS
     try:
         program, told = json.loads(path.read_bytes())
-        rows = tuple(_row(*each) for each in told)
+        left = LeftEvents(
+            str(program),
+            tuple(_row(*each[:6]) for each in told),
+            tuple(EventOrigin(str(control), int(number)) for *_, control, number in told),
+        )
     except FileNotFoundError:
-        return "", ()
+        return LeftEvents()
     except (OSError, ValueError, TypeError) as error:
         _log.warning("the events in %s are lost: %s", path, error)
-        program, rows = "", ()
+        left = LeftEvents()
     with suppress(OSError):
         path.unlink()
-    return str(program), rows
+    return left
 
 
 def _row(at: str, kind: str, text: str, line: int, record: str, packed: str) -> EventRow:

@@ -175,7 +175,7 @@ class LiveControl:
             self._client = new
         old.forget()
         new.begin(self._events)
-        self._events.event(Event(new.clock.now(), "warning", Message("the control was started again")))
+        self._events.event(Event(new.clock.now(), "warning", Message("the control was started again")), None)
         self._say(tr("THE CONTROL HAS STARTED AGAIN. CHECK TOOL, PART AND POSITION"))
         self._events.stirs()
 

@@ -10,6 +10,7 @@ from contextlib import closing
 from pathlib import Path
 
 from app.compose.control.left_note import take_events, take_note
+from app.compose.runs.receipt import Receipt
 from app.desk.data_folder import data_folder
 from app.desk.persistence import NoRunRecords, Persistence
 from app.offsets.offset_book import OffsetBook, OffsetRows, rows_of_store
@@ -28,7 +29,7 @@ from core.store.store import Store
 from core.store.store_access import Backlog
 from core.store.store_errors import StoreError
 from core.store.store_file import FILE_NAME, has_store
-from core.store.store_rows import EventRow, Kind, ToolRow, VersionRow
+from core.store.store_rows import EventOrigin, EventRow, Kind, ToolRow, VersionRow, utc_now
 
 _log = logging.getLogger(__name__)
 HELD = 10_000  # events buffered while no store is open
@@ -53,7 +54,9 @@ class Journal(Persistence):
         self._folder, self._goes_on = folder, goes_on
         self.who: Callable[[], str] = str  # returns the name of the user who is logged in
         self._lock = threading.Lock()  # locked briefly while the store or events are exchanged
-        self._held: deque[Event] | None = None  # events buffered during a restore or without a store
+        self._held: deque[tuple[Event, Receipt | None]] | None = (
+            None  # events buffered during a restore or without a store
+        )
         self._books: list[OffsetBook | PartsBook] = []
         self._store: Store | None = None
         self._program = ""
@@ -61,6 +64,7 @@ class Journal(Persistence):
         self._recorder = CycleRecorder()
         self._noted: InterruptedJob | None = None  # job that a power failure would interrupt
         self._has_noted = False  # whether this control has noted a job since
+        self._last_origin: EventOrigin | None = None  # of the last event that an earlier screen has stored
         self._unread = True  # whether the data of the last control has still to be read
         self._closing = threading.Event()
         # thread that opens a store that was unavailable at the start
@@ -96,6 +100,7 @@ class Journal(Persistence):
     def _read_what_was_left(self, store: Store) -> None:
         """Read damage, runs without an end and the interrupted job. Raises StoreError."""
         self.damage = (*store.repaired, *store.find_damaged_rows())
+        self._last_origin = store.runs.read_last_origin()
         left = None
         if not self._goes_on:
             note_cut_off_runs(store.runs)
@@ -107,11 +112,10 @@ class Journal(Persistence):
 
     def _what_was_left(self, store: Store) -> InterruptedJob | None:
         """Store the events of a control without a screen; return its interrupted job."""
-        program, rows = take_events(self._folder)
-        if rows:
-            store.events.log_events(rows)
-        for _ in (row for row in rows if row.kind == "part"):
-            store.runs.add_parts(Path(program).name)
+        program, rows, origins = take_events(self._folder)
+        for row, origin in zip(rows, origins, strict=True):
+            if not self.has_stored(origin):
+                store.runs.record_event(row, Path(program).name if row.kind == "part" else "", origin)
         known, left = take_note(self._folder)
         if not known:
             return of_plain(store.settings.read_setting(UNDER_WAY))
@@ -137,7 +141,7 @@ class Journal(Persistence):
             return store.backlog.words if store.backlog is not None else ""
         if not held:
             return ""
-        parts = sum(event.kind == "part" for event in tuple(held))
+        parts = sum(event.kind == "part" for event, _ in tuple(held))
         return Backlog("", events=len(held), parts=parts).words
 
     def note(self, what: InterruptedJob | None) -> None:
@@ -186,15 +190,24 @@ class Journal(Persistence):
         if self._store is not store:
             book.reopen(self._store, self._trouble)
 
-    def hear(self, event: Event) -> None:
-        """Save an event; a finished part is counted for its program."""
+    def hear(self, event: Event, receipt: Receipt | None = None) -> None:
+        """Save an event; a finished part is counted for its program.
+
+        The receipt is confirmed when the event is on the disk. An event that waits in memory is confirmed
+        together with the next event that the disk accepts.
+        """
         with self._lock:
             if event.kind == "load":
                 self._program = event.text
             if self._held is not None:
-                self._held.append(event)
+                self._held.append((event, receipt))
             elif self._store is not None:
-                self._write(self._store, event)
+                self._write(self._store, event, receipt)
+
+    def has_stored(self, origin: EventOrigin) -> bool:
+        """Return whether an earlier screen has stored the event with this origin."""
+        last = self._last_origin
+        return last is not None and origin.control == last.control and origin.number <= last.number
 
     def go_on(self, snapshot: Snapshot) -> None:
         """Continue with a control that ran without this process, before its events are received."""
@@ -203,11 +216,18 @@ class Journal(Persistence):
             if snapshot.state in CYCLE and self._store is not None:
                 self._recorder.go_on(snapshot.program, snapshot.t, self._store.cycles)
 
-    def _write(self, store: Store, event: Event) -> None:
-        store.events.log_event(event.kind, event.text, event.line, event.record)
-        if event.kind == "part" and self._program:
-            store.runs.add_parts(Path(self._program).name)
+    def _write(self, store: Store, event: Event, receipt: Receipt | None) -> None:
+        if receipt is not None and self.has_stored(receipt.origin):  # the store was opened late
+            receipt.confirm()
+            return
         self._recorder.hear(event, store.cycles)
+        row = EventRow(utc_now(), event.kind, event.text, event.line, event.record)
+        part_of = Path(self._program).name if event.kind == "part" and self._program else ""
+        if receipt is None:
+            store.runs.record_event(row, part_of)
+            return
+        stored = store.runs.record_event(row, part_of, receipt.origin)
+        stored.add_done_callback(lambda done: receipt.confirm() if done.exception() is None else None)
 
     def keep(self, source: Source) -> None:
         """Save the text that is about to be proved and run as a version of its program."""
@@ -342,8 +362,8 @@ class Journal(Persistence):
             return
         with self._lock:
             held, self._held, self._store = self._held or (), None, store
-            for event in held:
-                self._write(store, event)
+            for event, receipt in held:
+                self._write(store, event, receipt)
         self._trouble = ""
         self._post_noted()
         for book in self._books:

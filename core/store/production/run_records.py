@@ -6,12 +6,14 @@ import sqlite3
 from typing import TYPE_CHECKING
 
 from core.message import Message
-from core.store import event_log, program_records
-from core.store.store_access import StoreAccess
-from core.store.store_rows import EventRow, RunRow, utc_now
+from core.store import event_log, program_records, settings
+from core.store.store_access import StoreAccess, WaitingEntries
+from core.store.store_rows import EventOrigin, EventRow, RunRow, utc_now
 
 if TYPE_CHECKING:
     from concurrent.futures import Future
+
+ORIGIN = "last_event"  # key of the setting with the origin of the last stored event
 
 
 class LoadedTexts:
@@ -68,6 +70,33 @@ class RunRecords:
         """Add parts to the part count of a program; a negative ``count`` subtracts, down to zero."""
         key = self._loaded.key_of(program)
         return self._store.keep(lambda unwritten: unwritten.count_parts(key, count))
+
+    def record_event(
+        self, event: EventRow, part_of: str = "", origin: EventOrigin | None = None
+    ) -> Future[None]:
+        """Log an event, count a part of the program ``part_of`` if it is not empty, and store the origin.
+
+        All is written in one transaction. The future is done when it is on the disk.
+        """
+        key = self._loaded.key_of(part_of) if part_of else ""
+
+        def keeping(unwritten: WaitingEntries) -> None:
+            unwritten.event(event)
+            if key:
+                unwritten.count_parts(key, 1)
+            if origin is not None:
+                value = list(origin)
+                unwritten.latest(("setting", ORIGIN), lambda c: settings.save_setting(c, ORIGIN, value))
+
+        return self._store.keep(keeping)
+
+    def read_last_origin(self) -> EventOrigin | None:
+        """Return the origin of the last event of a control process that is stored."""
+        match self._store.query(settings.read_setting, ORIGIN):
+            case [str() as control, int() as number]:
+                return EventOrigin(control, number)
+            case _:
+                return None
 
     def reset_parts(self, program: str) -> Future[None]:
         """Set the part count of a program to zero."""
