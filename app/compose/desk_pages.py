@@ -207,7 +207,7 @@ def register_production(setup: PageSetup) -> None:
     desk, tools = setup.desk, tools_of(setup.machine.kind)
     book = setup.journal.parts_book(tools) if setup.journal is not None else PartsBook(tools=tools)
     book.access = desk.access
-    watch = PartsWatch(desk, book, ToolLifeWatch(book))
+    watch = PartsWatch(desk, book, ToolLifeWatch(book, desk.control.identity))
     desk.pages.attach(watch)
     desk.pages.add_run_watcher(watch)
     if tools is Kind.MILL_TOOL:

@@ -135,6 +135,7 @@ def _desk_on_process(
         client.records,
         live.open_stop_line,
         live.restart,
+        lambda: live.client.hello.identity,
     )
     desk = desk_of(machine, used, events, offsets)
     for right in client.hello.rights:

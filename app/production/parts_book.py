@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import sqlite3
+from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import Future
 from dataclasses import dataclass, field
 from functools import partial
@@ -10,13 +11,15 @@ from typing import Any
 
 from app.desk.access import Access
 from app.desk.background_work import Latest
+from app.production.tool_totals import TOTALS, ToolTotals
 from core.access.access_table import Act
 from core.message import Message
 from core.store.production import part_cycles, tool_lives
 from core.store.production.part_cycles import StopRow
 from core.store.production.tool_lives import LifeRow
+from core.store.settings import save_setting
 from core.store.store import Store
-from core.store.store_access import Operation
+from core.store.store_access import Operation, WaitingEntries
 from core.store.store_errors import StoreError
 from core.store.store_rows import Kind
 
@@ -182,12 +185,21 @@ class PartsBook:
         except StoreError as error:
             failed(str(error))
 
-    def keep_use(self, life: LifeRow) -> None:
-        """Store the use of a tool as soon as possible."""
-        store = self.store
-        if store is not None:
-            use = (life.number, life.parts, life.seconds, self.tools)
-            store.keep_latest(("life", str(life.number)), lambda c: tool_lives.set_use(c, *use))
+    def keep_use(self, lives: Iterable[LifeRow], totals: ToolTotals | None = None) -> None:
+        """Store the use of tools, and the totals of the control that it includes, in one transaction."""
+        store, tools = self.store, self.tools
+        if store is None:
+            return
+        rows = tuple(lives)
+
+        def keeping(unwritten: WaitingEntries) -> None:
+            for row in rows:
+                use = (row.number, row.parts, row.seconds, tools)
+                unwritten.latest(("life", str(row.number)), partial(_set_use, use))
+            if totals is not None:
+                unwritten.latest(("setting", TOTALS), lambda c: save_setting(c, TOTALS, totals.plain))
+
+        store.keep(keeping)
 
     def reopen(self, store: Store | None, trouble: str) -> None:
         """Replace the store; callable from any thread."""
@@ -196,3 +208,7 @@ class PartsBook:
     def close(self) -> None:
         """Stop the worker."""
         self.worker.close()
+
+
+def _set_use(use: tuple[int, int, float, Kind], connection: sqlite3.Connection) -> None:
+    tool_lives.set_use(connection, *use)

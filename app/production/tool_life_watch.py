@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 
 from app.desk.translation import tr
 from app.production.parts_book import PartsBook
+from app.production.tool_totals import TOTALS, ToolTotals
 from core.access.access_table import Act
 from core.executor.snapshot import CYCLE, Snapshot
 from core.message import Message
@@ -34,12 +35,14 @@ class ToolLifeWatch:
     """
 
     book: PartsBook
+    control: Callable[[], str] = str  # identity of the control process, empty without one
     # parts and seconds since the last change of insert
     counted: dict[int, tuple[int, float]] = field(default_factory=dict)
     _kept: dict[int, float] = field(default_factory=dict)  # stored seconds
     _cut: Mapping[int, float] = field(default_factory=dict)  # cutting seconds of the last snapshot
     _in_part: set[int] = field(default_factory=set)  # tools that have cut since the last end of a part
     _ends: int = -1
+    _control: str | None = None  # identity of the control to which the totals belong
     _told: dict[int, LifeState] = field(default_factory=dict)
     _changes: int = 0  # number of changes of ``counted``
     _lives: tuple[object, dict[int, ToolLife]] = field(default=(None, {}))
@@ -67,8 +70,8 @@ class ToolLifeWatch:
 
     def see(self, snapshot: Snapshot, say: Callable[[str], None]) -> None:
         """Update the use of tools from a snapshot, and report tool life. Called once per frame."""
-        if self._ends < 0:
-            self._ends, self._cut = snapshot.ends, snapshot.cutting
+        if self._control != self.control():
+            self._begin(snapshot, self.control())
         if not self.book.loads and self.book.store is not None:
             return  # The stored counts are not known yet; the totals of the snapshot remain until then.
         for number, seconds in snapshot.cutting.items():
@@ -76,33 +79,49 @@ class ToolLifeWatch:
             if number and more > 0.0:
                 self._in_part.add(number)
                 self._add(number, 0, more)
-        self._cut = snapshot.cutting
-        if snapshot.ends > self._ends:
-            for number in self._in_part:
-                self._add(number, 1, 0.0)
-            self._keep(self._in_part)
+        ended, tools = snapshot.ends - self._ends, self._in_part
+        self._cut, self._ends = snapshot.cutting, snapshot.ends
+        if ended > 0:
+            for number in tools:
+                self._add(number, ended, 0.0)
             self._in_part = set()
-        elif snapshot.state not in CYCLE:
-            self._keep({number for number in self._in_part if self._unkept(number)})
-        self._ends = snapshot.ends
+            self._keep(tools)
+        elif snapshot.state not in CYCLE or any(self._unkept(number) > KEEP for number in tools):
+            self._keep({number for number in tools if self._unkept(number)})
         self._tell(say)
+
+    def _begin(self, snapshot: Snapshot, control: str) -> None:
+        """Continue from the stored totals of this control, or else from those of the snapshot."""
+        self._control, self._ends, self._cut = control, snapshot.ends, snapshot.cutting
+        stored = ToolTotals.of_plain(self.book.access.persistence.read_setting(TOTALS)) if control else None
+        if stored is not None and stored.control == control:
+            self._ends, self._cut, self._in_part = stored.ends, stored.cut, set(stored.in_part)
+        elif control:
+            self.book.keep_use((), self._totals())
+
+    def _totals(self) -> ToolTotals | None:
+        if not self._control:
+            return None
+        return ToolTotals(self._control, self._ends, dict(self._cut), frozenset(self._in_part))
 
     def _add(self, number: int, parts: int, seconds: float) -> None:
         row = self.book.now.lives.get(number, LifeRow(number))
         before = self.counted.get(number, (row.parts, row.seconds))
         self.counted[number] = before[0] + parts, before[1] + seconds
         self._changes += 1
-        if self._unkept(number) > KEEP:
-            self._keep({number})
 
     def _unkept(self, number: int) -> float:
-        return self.counted[number][1] - self._kept.get(number, 0.0)
+        used = self.counted.get(number)
+        return used[1] - self._kept.get(number, 0.0) if used is not None else 0.0
 
     def _keep(self, numbers: set[int]) -> None:
+        rows = []
         for number in numbers:
             parts, seconds = self.counted[number]
             self._kept[number] = seconds
-            self.book.keep_use(LifeRow(number, parts=parts, seconds=seconds))
+            rows.append(LifeRow(number, parts=parts, seconds=seconds))
+        if rows:
+            self.book.keep_use(rows, self._totals())
 
     def keep_all(self) -> None:
         """Store the use of all tools when TurnDesk closes."""

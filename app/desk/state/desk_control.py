@@ -23,7 +23,8 @@ class DeskControl:
     ``panel`` is None if the machine has its own operator station. ``set_input`` switches an input of a
     simulated machine. ``recordings`` contains the last minutes of samples, or is None without a recorder.
     ``open_stop_line`` opens a connection that sends stop keys to the control without the screen. ``restart``
-    starts another control in place of one that is silent, or is None if this is not possible.
+    starts another control in place of one that is silent, or is None if this is not possible. ``identity``
+    returns the identity of a control process, and an empty text for a control in this process.
     """
 
     post: Callable[[Command], None]
@@ -34,4 +35,5 @@ class DeskControl:
     recordings: Recordings | None = None
     open_stop_line: OpenLine = lambda: None
     restart: Callable[[], object] | None = None
+    identity: Callable[[], str] = str
     silence: SilenceWatch = field(default_factory=SilenceWatch)

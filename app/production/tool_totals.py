@@ -1,0 +1,42 @@
+"""Totals of a control whose use of tools is stored, so that the next screen adds only the difference."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+TOTALS = "tool_totals"  # key of the setting
+
+
+@dataclass(frozen=True, slots=True)
+class ToolTotals:
+    """Finished parts and cutting seconds by tool of a control, and the tools of its present part."""
+
+    control: str
+    ends: int = 0
+    cut: Mapping[int, float] = field(default_factory=dict)
+    in_part: frozenset[int] = frozenset()
+
+    @property
+    def plain(self) -> dict[str, object]:
+        """The totals as a setting."""
+        cut = {str(number): seconds for number, seconds in self.cut.items()}
+        return {"control": self.control, "ends": self.ends, "cut": cut, "in_part": sorted(self.in_part)}
+
+    @classmethod
+    def of_plain(cls, value: object) -> ToolTotals | None:
+        """Return the totals of a setting, or None if it is not set or damaged."""
+        match value:
+            case {
+                "control": str() as control,
+                "ends": int() as ends,
+                "cut": dict() as cut,
+                "in_part": list() as in_part,
+            }:
+                try:
+                    seconds = {int(number): float(each) for number, each in cut.items()}
+                    return cls(control, ends, seconds, frozenset(map(int, in_part)))
+                except (TypeError, ValueError):
+                    return None
+            case _:
+                return None
