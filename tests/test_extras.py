@@ -12,7 +12,7 @@ import resources
 from app.cli import main
 from app.compose import extra
 from app.compose.extra import NAMES, command_modules, drawing_endings, extras, insert_after
-from app.compose.machine.machine_files import DRIVERS
+from app.compose.machine.driver_modules import all_drivers
 from app.special.special_functions import SpecialFunctions
 from core.machine.machine_file import parse_machine
 from core.table_schema import MachineFileError
@@ -117,7 +117,7 @@ def test_a_folder_of_a_feature_with_only_caches_counts_as_absent(monkeypatch: py
     ],
 )
 def test_a_signal_at_a_device_of_an_absent_feature_is_rejected(signal: str, old: str, new: str) -> None:
-    own = [each for each in DRIVERS if each.prefix != "pendant."]
+    own = [each for each in all_drivers() if each.prefix != "pendant."]
     text = resources.machine_file("gt75.toml")
     assert old in text
     with pytest.raises(MachineFileError) as caught:

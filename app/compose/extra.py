@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from core.machine.machine_model import Machine
     from core.store.people import PersonRow
     from core.store.store import Store
-    from core.table_schema import Driver
 
 NAMES = (
     *("access", "quality", "jobs", "pendant", "mtconnect", "office", "sharing", "analyses", "scheduler"),
@@ -59,8 +58,9 @@ class Extra:
     which this feature makes programs; the list of programs shows them. ``editor_panel`` is the dotted name of
     a subclass of ``EditorPanel`` that replaces the editor's text area and writes lines. ``machine_actions``
     lists the actions of ``turndesk machine``, each with a module ``app.extras.NAME.ACTION_command``.
-    ``tables_follow`` is the table of the machine file after which the tables of this feature are listed;
-    empty lists them last.
+    ``machine_tables`` maps each module whose ``DRIVER`` declares tables of the machine file to the paths of
+    these tables. ``tables_follow`` is the table of the machine file after which the tables of this feature
+    are listed; empty lists them last.
     """
 
     needs: Sequence[str] = ()
@@ -70,16 +70,13 @@ class Extra:
     proof_workers = ""
     drawings: Sequence[str] = ()
     editor_panel: str = ""
+    machine_tables: Mapping[str, tuple[str, ...]] = {}
     tables_follow: str = ""
     own_functions: Collection[str] = ()
 
     @property
     def pages(self) -> Sequence[PageEntry]:
         """The pages of the main window that this feature adds."""
-        return ()
-
-    def machine_tables(self) -> Sequence[Driver]:
-        """Return the tables that this feature adds to the machine file."""
         return ()
 
     def wired(self, machine: Machine) -> Machine:

@@ -14,7 +14,7 @@ from decimal import Decimal
 from math import isfinite
 from pathlib import Path
 
-from app.compose.machine.machine_files import DRIVERS
+from app.compose.machine.driver_modules import all_drivers
 from core.key_declaration import LENGTHS, Field, Kind, Unit, keys_of, to_file
 from core.machine import axis_tables, machine_tables, mill_kinematics
 from core.machine.driver_tables import tables_of
@@ -60,11 +60,11 @@ def document() -> str:
 
 def references() -> Iterator[TableReference]:
     """Yield every table that a machine file may have, in the order of the page."""
-    plain = dict(machine_tables.plain_tables(DRIVERS))
+    plain = dict(machine_tables.plain_tables(all_drivers()))
     yield TableReference(
         "machine",
         "General machine settings and the timing of the setpoint queue.",
-        machine_tables.machine_fields(DRIVERS),
+        machine_tables.machine_fields(all_drivers()),
     )
     yield TableReference("limits", "Limits that apply to all axes. The table is optional.", plain["limits"])
     yield from _axes()
@@ -92,7 +92,7 @@ def references() -> Iterator[TableReference]:
     )
     yield from _signals()
     yield from _kinematics()
-    for table in tables_of(DRIVERS):
+    for table in tables_of(all_drivers()):
         yield TableReference(table.path, table.purpose, table.keys)
         yield from table.parts
     yield from family_table.TABLES

@@ -72,10 +72,19 @@ def parse_machine(text: str, source: str, drivers: Sequence[Driver]) -> Machine:
 
     Raises MachineFileError with all findings if the text has errors.
     """
+    return machine_of(parse_tables(text, source), text, source, drivers)
+
+
+def parse_tables(text: str, source: str) -> dict[str, object]:
+    """Return the tables of a machine file. Raises MachineFileError if ``text`` is not TOML."""
     try:
-        data = toml_tables(text)
+        return toml_tables(text)
     except ValueError as error:
         raise MachineFileError([Finding("TOML", "", str(error), "not-toml")], source) from error
+
+
+def machine_of(data: Mapping[str, object], text: str, source: str, drivers: Sequence[Driver]) -> Machine:
+    """Return the machine described by parsed tables, as ``parse_machine`` does."""
     reading = Reading(data, drivers)
     untold = [*machine_reading.fill(reading)]
     axes, said = _axis_names(reading), signal_rules.terminals(reading)

@@ -10,12 +10,12 @@ import pytest
 PROGRAM = "G90G94F300G72\nM03S2000\nT1\nX1Z.1\nG95F.003\nX.5Z0\nX.6Z-.1\nG00X1\nZ1\nM30\n"
 OF_THE_REST = (
     *("PySide6", "shtab", "app.screen", "app.report", "app.offsets.offset_book"),
-    *("core.executor", "core.alarms", "core.extras.drawings", "core.extras.shapes", "core.ports"),
-    *("core.records", "core.store.store", "core.extras.quality"),
+    *("core.executor", "core.alarms", "core.ports", "core.records", "core.store.store"),
     *("core.interpreter.klartext", "core.interpreter.sinumerik", "core.part.milled_part"),
-    *("drivers.canopen.canopen_machine", "drivers.grblhal.grblhal_machine", "drivers.hal.hal_machine"),
-    *("drivers.inverter.inverter_spindle", "app.extras.mtconnect.driver.mtconnect_adapter"),
-    *("app.extras.pendant.driver.pendant_station", "drivers.simulators", "drivers.setpoint_queue"),
+    *("drivers.canopen", "drivers.grblhal", "drivers.hal", "drivers.inverter"),
+    *("core.machine.desk_tables", "core.machine.setter_table"),
+    *("app.extras.mtconnect.driver", "app.extras.pendant.driver", "core.extras"),
+    *("drivers.simulators", "drivers.setpoint_queue"),
 )
 OF_PYTHON = (
     *("concurrent", "difflib", "hashlib", "importlib.resources", "logging", "random", "socket", "sqlite3"),

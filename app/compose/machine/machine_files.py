@@ -7,39 +7,13 @@ from pathlib import Path
 from typing import TypeGuard
 
 import resources
-from app.compose.extra import extras, insert_after
-from core.machine import desk_tables, machine_file, setter_table
+from app.compose.machine.driver_modules import all_drivers, drivers_of
+from core.machine import machine_file
 from core.machine.machine_model import Machine
 from core.message import Message
-from core.table_schema import Driver, Finding, MachineFileError, written
-from drivers.canopen import canopen_table
-from drivers.grblhal import grblhal_table
-from drivers.hal import hal_table
-from drivers.hal.boards import board_table
-from drivers.inverter import inverter_table
-from drivers.simulated import simulated_table
+from core.table_schema import Finding, MachineFileError, written
 
 SHIPPED = "gt75.toml"
-# Tables that each driver adds, in the order of the findings. The module that assembles a backend is named in
-# ``backend_entry``, so that it is loaded only when needed.
-_OWN_DRIVERS: tuple[Driver, ...] = (
-    simulated_table.DRIVER,
-    canopen_table.DRIVER,
-    inverter_table.DRIVER,
-    grblhal_table.DRIVER,
-    hal_table.DRIVER,
-    board_table.DRIVER,
-    desk_tables.DRIVER,
-    setter_table.DRIVER,
-    desk_tables.BACKUP_DRIVER,
-)
-DRIVERS: tuple[Driver, ...] = tuple(
-    insert_after(
-        _OWN_DRIVERS,
-        lambda driver: driver.tables[0].path,
-        [(each, extra.tables_follow) for extra in extras().values() for each in extra.machine_tables()],
-    )
-)
 
 
 @lru_cache(maxsize=8)  # cached by text, because folder proofs and their workers read the same file
@@ -48,7 +22,11 @@ def parse_machine(text: str, source: str) -> Machine:
 
     ``source`` names the file in messages. Raises MachineFileError with every finding.
     """
-    machine = machine_file.parse_machine(text, source, DRIVERS)
+    data = machine_file.parse_tables(text, source)
+    try:
+        machine = machine_file.machine_of(data, text, source, drivers_of(data))
+    except MachineFileError:  # the findings name the possible values of all drivers
+        machine = machine_file.machine_of(data, text, source, all_drivers())
     if machine.silenced:
         _known_checks(machine.silenced, source)
     return machine

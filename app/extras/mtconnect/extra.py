@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from app.compose.extra import Close, Extra, Tell
@@ -13,7 +13,6 @@ if TYPE_CHECKING:
     from app.desk.desk import Desk
     from core.executor.snapshot import Snapshot
     from core.machine.machine_model import Machine
-    from core.table_schema import Driver
 
 _TABLE = "mtconnect"  # table whose presence loads the adapter
 
@@ -23,12 +22,8 @@ class Mtconnect(Extra):
 
     machine_actions = ("mtconnect",)
     threads = {"mtconnect": "MTCONNECT"}
+    machine_tables = {"app.extras.mtconnect.driver.mtconnect_table": ("mtconnect",)}
     tables_follow = "setter"
-
-    def machine_tables(self) -> Sequence[Driver]:
-        from app.extras.mtconnect.driver.mtconnect_table import DRIVER
-
-        return (DRIVER,)
 
     def start(self, desk: Desk, journal: Journal, tell: Tell) -> Close | None:
         if desk.machine.model is None or _TABLE not in desk.machine.model.hardware.tables:

@@ -13,7 +13,6 @@ if TYPE_CHECKING:
     from app.desk.desk import Desk
     from core.json_key import Output
     from core.machine.machine_model import Machine
-    from core.table_schema import Driver
 
 _TABLES = frozenset({"status_page", "announce"})  # tables whose presence loads the office
 
@@ -27,12 +26,8 @@ class Office(Extra):
         "paho-mqtt-client-": "MQTT BROKER CONNECTION",  # thread name used by paho
         "web-hook": "WEBHOOK",
     }
+    machine_tables = {"core.extras.office.shop_network_tables": ("status_page", "announce")}
     tables_follow = "setter"
-
-    def machine_tables(self) -> Sequence[Driver]:
-        from core.extras.office.shop_network_tables import DRIVER
-
-        return (DRIVER,)
 
     def start(self, desk: Desk, journal: Journal, tell: Tell) -> Close | None:
         if desk.machine.model is None or _TABLES.isdisjoint(desk.machine.model.hardware.tables):

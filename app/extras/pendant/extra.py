@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from app.compose.extra import Extra
@@ -10,7 +9,6 @@ from app.compose.extra import Extra
 if TYPE_CHECKING:
     from app.compose.backends.backend_entry import Connected
     from core.machine.machine_model import Machine
-    from core.table_schema import Driver
 
 _TABLE = "pendant"  # table whose presence loads the pendant
 
@@ -19,12 +17,8 @@ class Pendant(Extra):
     """Optional feature with the buttons and handwheel of a USB pendant, and the table [pendant]."""
 
     threads = {"pendant": "PENDANT CONNECTION"}
+    machine_tables = {"app.extras.pendant.driver.pendant_table": ("pendant",)}
     tables_follow = "setter"
-
-    def machine_tables(self) -> Sequence[Driver]:
-        from app.extras.pendant.driver.pendant_table import DRIVER
-
-        return (DRIVER,)
 
     def wired(self, machine: Machine) -> Machine:
         if _TABLE not in machine.hardware.tables:

@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from app.special.special_functions import SpecialFunction
     from core.json_key import Output
     from core.machine.machine_model import Machine
-    from core.table_schema import Driver
 
 
 class Quality(Extra):
@@ -30,6 +29,7 @@ class Quality(Extra):
         "shift": Subcommand("share", "print a shift report: parts, times, stops, alarms, offsets, readings"),
     }
     own_functions = ("TOOL LIFE",)
+    machine_tables = {"app.extras.quality.gauge_table": ("gauge",)}
     tables_follow = "dnc"
 
     @property
@@ -51,11 +51,6 @@ class Quality(Extra):
                 after="SCOPE",
             ),
         )
-
-    def machine_tables(self) -> Sequence[Driver]:
-        from app.extras.quality.gauge_table import DRIVER
-
-        return (DRIVER,)
 
     def attach(self, desk: Desk, machine: Machine, journal: Journal | None, work: LoadingSteps) -> None:
         from app.extras.quality.quality_desk import attach_quality

@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from app.desk.programs.program_loading import LoadingSteps
     from core.json_key import Output
     from core.machine.machine_model import Machine
-    from core.table_schema import Driver
 
 
 class Sharing(Extra):
@@ -25,6 +24,8 @@ class Sharing(Extra):
         "share": Subcommand("jobs", "share programs with other controls: publish, take, compare"),
     }
     threads = {"sharing": "PROGRAM SHARING"}
+
+    machine_tables = {"core.extras.sharing.sharing_table": ("sharing",)}
 
     @property
     def pages(self) -> Sequence[PageEntry]:
@@ -41,11 +42,6 @@ class Sharing(Extra):
                 after="JOBS",
             ),
         )
-
-    def machine_tables(self) -> Sequence[Driver]:
-        from core.extras.sharing.sharing_table import DRIVER
-
-        return (DRIVER,)
 
     def attach(self, desk: Desk, machine: Machine, journal: Journal | None, work: LoadingSteps) -> None:
         from app.extras.sharing.sharing_desk import attach_sharing

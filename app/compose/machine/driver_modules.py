@@ -1,0 +1,83 @@
+"""The modules that declare the tables of drivers in a machine file, loaded only for files that need them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from functools import cache
+from importlib import import_module
+from typing import NamedTuple
+
+from app.compose.extra import extras, insert_after
+from core.table_schema import Driver, raw_at
+
+
+class DriverModule(NamedTuple):
+    """A module with a ``Driver``, the paths of its tables, and its names of a backend and a spindle driver.
+
+    ``attribute`` is the name of the ``Driver`` in the module. ``always`` loads the module for every file.
+    """
+
+    module: str
+    tables: tuple[str, ...]
+    backend: str = ""
+    spindle: str = ""
+    attribute: str = "DRIVER"
+    always: bool = False
+
+    def load(self) -> Driver:
+        """Return the ``Driver`` of the module."""
+        driver: Driver = getattr(import_module(self.module), self.attribute)
+        return driver
+
+
+# The order is that of the findings. The module that assembles a backend is named in ``backend_entry``.
+_OWN_MODULES = (
+    DriverModule("drivers.simulated.simulated_table", ("sim",), "sim", "sim", always=True),
+    DriverModule("drivers.canopen.canopen_table", ("canopen", "spindle.encoder"), "canopen", "cia402"),
+    DriverModule("drivers.inverter.inverter_table", ("spindle.vfd",), "", "vfd"),
+    DriverModule("drivers.grblhal.grblhal_table", ("grblhal",), "grblhal", "grblhal"),
+    DriverModule("drivers.hal.hal_table", ("hal",), "hal", "hal"),
+    DriverModule("drivers.hal.boards.board_table", ("board",)),
+    DriverModule("core.machine.desk_tables", ("dnc",)),
+    DriverModule("core.machine.setter_table", ("setter",)),
+    DriverModule("core.machine.desk_tables", ("backup",), attribute="BACKUP_DRIVER"),
+)
+
+
+@cache
+def driver_modules() -> tuple[DriverModule, ...]:
+    """Return the modules of all drivers and optional features, in the order of the findings."""
+    added = [
+        (DriverModule(module, tables), extra.tables_follow)
+        for extra in extras().values()
+        for module, tables in extra.machine_tables.items()
+    ]
+    return tuple(insert_after(_OWN_MODULES, lambda each: each.tables[0], added))
+
+
+def all_drivers() -> tuple[Driver, ...]:
+    """Return the drivers of all modules."""
+    return _loaded(driver_modules())
+
+
+def drivers_of(data: Mapping[str, object]) -> tuple[Driver, ...]:
+    """Return the drivers that a parsed machine file uses, by a table or by name.
+
+    A file without errors gives the same machine with these drivers as with all drivers.
+    """
+    return _loaded(each for each in driver_modules() if each.always or _is_used(each, data))
+
+
+def _is_used(module: DriverModule, data: Mapping[str, object]) -> bool:
+    return any(_marks(module, data))
+
+
+def _marks(module: DriverModule, data: Mapping[str, object]) -> Iterator[bool]:
+    yield bool(module.backend) and raw_at(data, "machine.backend") == module.backend
+    yield bool(module.spindle) and raw_at(data, "spindle.driver") == module.spindle
+    for path in module.tables:
+        yield raw_at(data, path) is not None
+
+
+def _loaded(modules: Iterable[DriverModule]) -> tuple[Driver, ...]:
+    return tuple(each.load() for each in modules)

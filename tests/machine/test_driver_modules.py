@@ -1,0 +1,64 @@
+"""Which modules with tables of drivers are loaded for a machine file."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+import resources
+from app.compose.machine.driver_modules import DriverModule, all_drivers, driver_modules, drivers_of
+from app.compose.machine.machine_files import parse_machine
+from core.input_file import toml_tables
+from core.machine.machine_file import machine_of
+from core.table_schema import MachineFileError
+
+TEXT = resources.machine_file("gt75.toml")
+
+
+@pytest.mark.parametrize("module", driver_modules(), ids=lambda each: each.tables[0])
+def test_a_module_is_listed_with_the_names_that_its_driver_has(module: DriverModule) -> None:
+    driver = module.load()
+    assert module.tables == tuple(table.path for table in driver.tables)
+    assert (module.backend, module.spindle) == (driver.backend, driver.spindle)
+    assert module.always == any(table.always for table in driver.tables)
+
+
+@pytest.mark.parametrize(
+    ("text", "first_tables"),
+    [
+        ("", ["sim"]),
+        ("[backup]\nkeep = 3", ["sim", "backup"]),
+        ('[machine]\nbackend = "hal"', ["sim", "hal"]),
+        ('[spindle]\ndriver = "cia402"', ["sim", "canopen"]),
+        ("[spindle.encoder]", ["sim", "canopen"]),
+        ("machine = 1\nspindle = [2]", ["sim"]),
+    ],
+)
+def test_a_file_loads_only_the_drivers_that_its_tables_or_names_need(
+    text: str, first_tables: list[str]
+) -> None:
+    assert [each.tables[0].path for each in drivers_of(toml_tables(text))] == first_tables
+
+
+@pytest.mark.parametrize("name", sorted(resources.machine_names()))
+def test_a_shipped_file_gives_the_same_machine_with_all_drivers(name: str) -> None:
+    text = resources.machine_file(f"{name}.toml")
+    data = toml_tables(text)
+    few, all_of_them = (machine_of(data, text, name, each) for each in (drivers_of(data), all_drivers()))
+    assert few == all_of_them
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "known"),
+    [
+        ('backend = "sim"', 'backend = "him"', "grblhal"),
+        ("[collet]", "[grblhall]\n[collet]", "did you mean grblhal?"),
+    ],
+)
+def test_the_findings_name_what_the_drivers_that_are_not_used_would_allow(
+    old: str, new: str, known: str
+) -> None:
+    assert old in TEXT
+    with pytest.raises(MachineFileError, match=re.escape(known)):
+        parse_machine(TEXT.replace(old, new), "own.toml")
